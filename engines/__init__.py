@@ -1,0 +1,64 @@
+"""The contract of an engine under test, and the one list of them.
+
+1. An engine is a frozen dataclass; its fields are its settings, printed in the report.
+2. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
+   sentence. It sees no scene, so it can't see the answer.
+3. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
+   again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
+4. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
+5. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`); both go on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+
+class Unsupported(Exception):
+    """An engine can't build this mechanism; the message is one sentence that says why."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """What was modelled: to be held against the mechanism's own size."""
+
+    bodies: int  # moving bodies
+    coordinates: int  # position coordinates that the engine integrates
+    rows: int  # scalar constraints that the engine holds by forces
+    solver_rows: int  # rows in the engine's solver, empty ones included
+
+
+class Run(Protocol):
+    """A built model, ready to be stepped once."""
+
+    size: Size
+
+    def __call__(self, samples: int, every: int) -> Trajectory: ...
+
+
+class Engine(Protocol):
+    """See the module's numbered contract."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def variant(self) -> str: ...
+    def build(self, mechanism: Mechanism, dt: float) -> Run: ...
+
+
+def check_step(dt: float) -> None:
+    """Raise ValueError unless dt is a finite time above zero: some engines abort the process instead."""
+    if not (isinstance(dt, (int, float)) and math.isfinite(dt) and dt > 0):
+        raise ValueError(f"step dt is {dt!r}; it must be a finite number of seconds greater than zero")
+
+
+def check_counts(samples: int, every: int) -> None:
+    """Raise ValueError unless both counts are whole numbers above zero."""
+    for name, value in (("samples", samples), ("every", every)):
+        if not (isinstance(value, int) and value > 0):
+            raise ValueError(f"{name} is {value!r}; it must be a whole number greater than zero")

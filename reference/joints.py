@@ -1,0 +1,117 @@
+"""The joints that join two bodies, or a body and the ground: their gap, and their velocity rows J v = rate.
+
+A closed vocabulary: engines `match` on it, and a joint enters only when a scene needs it and `engines.lagrange` runs it.
+A joint has `name`; `first` and `second`, names of bodies or None for the ground; `size` rows with `labels`; `holonomic`,
+whether the rows are derivatives of a position; `rate`, the right-hand side (size,); and, for poses (..., 3) of the two
+bodies (the ground's is zero), `gap(first, second, t)` (..., size) and `rows(first, second)` (..., size, 6), whose columns
+are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step passes through them.
+The reaction of a row acts along it on the second body, and against it on the first.
+`mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import require_finite
+
+Vector = tuple[float, float]
+
+
+def turn(angle: NDArray[Any], point: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """The world components of a body's own vector `point` (..., 2) [m] after a rotation by `angle` (...) [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return cosine * point[..., 0] - sine * point[..., 1], sine * point[..., 0] + cosine * point[..., 1]
+
+
+@dataclass(frozen=True)
+class Pin:
+    """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
+
+    Points [m] are in the body's own frame, from its centre of mass; on the ground (None) they are world coordinates.
+    Rows: velocity of the second point minus that of the first, x then y. Reaction: force on the second body [N].
+    """
+
+    size: ClassVar[int] = 2
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("x", "y")
+
+    name: str
+    first: str | None
+    second: str | None
+    first_point: Vector
+    second_point: Vector
+
+    def __post_init__(self) -> None:
+        require_finite(f"pin {self.name!r}", first_point=self.first_point, second_point=self.second_point)
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (0.0, 0.0)
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Distance of the two points, second minus first (..., 2) [m], for the bodies' poses (..., 3)."""
+        first_x, first_y = turn(first[..., 2], np.asarray(self.first_point))
+        second_x, second_y = turn(second[..., 2], np.asarray(self.second_point))
+        return np.stack(
+            [second[..., 0] + second_x - first[..., 0] - first_x, second[..., 1] + second_y - first[..., 1] - first_y],
+            axis=-1,
+        )
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity rows (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
+        first_x, first_y = turn(first[..., 2], np.asarray(self.first_point))
+        second_x, second_y = turn(second[..., 2], np.asarray(self.second_point))
+        rows = np.zeros((*first_x.shape, 2, 6), dtype=first_x.dtype)
+        rows[..., 0, 0] = rows[..., 1, 1] = -1
+        rows[..., 0, 3] = rows[..., 1, 4] = 1
+        rows[..., 0, 2] = first_y
+        rows[..., 1, 2] = -first_x
+        rows[..., 0, 5] = -second_y
+        rows[..., 1, 5] = second_x
+        return rows
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A prescribed relative rotation: the second body turns against the first at a constant `turning_rate` [rad/s].
+
+    `offset` [rad] is the relative angle at t = 0. Row: omega of the second minus omega of the first. Reaction: torque on
+    the second body [N m].
+    """
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("torque",)
+
+    name: str
+    first: str | None
+    second: str | None
+    turning_rate: float
+    offset: float
+
+    def __post_init__(self) -> None:
+        require_finite(f"drive {self.name!r}", turning_rate=self.turning_rate, offset=self.offset)
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (self.turning_rate,)
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Relative angle minus the prescribed one (..., 1) [rad], at times t [s] that broadcast against the poses."""
+        prescribed = np.asarray(self.offset) + np.asarray(self.turning_rate) * np.asarray(t)
+        return (second[..., 2] - first[..., 2] - prescribed)[..., None]
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity row (..., 1, 6)."""
+        rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
+        rows[..., 0, 2] = -1
+        rows[..., 0, 5] = 1
+        return rows
+
+
+Joint = Pin | Drive

@@ -1,0 +1,277 @@
+"""What a planar mechanism is: rigid bodies, and joints written as velocity rows J(q) v = rate.
+
+Maximal coordinates: every body has a pose (x, y, angle) of its centre of mass and a twist (vx, vy, omega), and the
+mechanism's vectors q and v stack them in the order of `Mechanism.bodies`. Nothing here knows a scene or an engine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.joints import Drive, Joint, Vector
+
+Triple = tuple[float, float, float]
+
+# A row is counted as dependent below this fraction of the largest singular value, and a start that misses a row by more
+# than this fraction of the mechanism's own length or speed is refused: both are far above rounding, far below a mistake.
+RANK_TOLERANCE = 1e-9
+START_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body in the plane, described at its centre of mass.
+
+    mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
+    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a non-positive mass or inertia, or a number not finite.
+    """
+
+    name: str
+    mass: float
+    inertia: float
+    pose: Triple
+    twist: Triple = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        require_positive(f"body {self.name!r}", mass=self.mass, inertia=self.inertia)
+        require_finite(f"body {self.name!r}", pose=self.pose, twist=self.twist)
+        if len(self.pose) != 3 or len(self.twist) != 3:
+            raise InvalidMechanism(f"body {self.name!r}: pose and twist are triples (x, y, angle)")
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Joints of one kind, stacked so that one numpy expression serves them all."""
+
+    joint: Any  # of the kind, each numeric field an array with the joints along its first axis
+    first: NDArray[np.intp]  # (joints,) index of the body; the ground is the index after the last body
+    second: NDArray[np.intp]
+    rows: NDArray[np.intp]  # (joints, size) where their rows stand in the mechanism
+
+
+def _stack(joints: Sequence[Any]) -> Any:
+    """One joint that stands for several of its kind: every numeric field becomes an array."""
+    numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
+    stacked = {name: np.array([getattr(joint, name) for joint in joints]) for name in numeric}
+    return replace(joints[0], **stacked)
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Bodies, the joints between them, and gravity [m/s^2].
+
+    Raises InvalidMechanism for a repeated or unknown name, a joint of a body with itself, or a start that does not
+    satisfy the joints: an engine that begins with a gap would be blamed for ours.
+    """
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    gravity: Vector = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        require_finite("mechanism", gravity=self.gravity)
+        if not self.bodies:
+            raise InvalidMechanism("mechanism: it has no bodies; give at least one")
+        for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
+            for name in names:
+                if names.count(name) > 1:
+                    raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
+        for joint in self.joints:
+            for name in (joint.first, joint.second):
+                if name is not None and name not in self._index:
+                    known = ", ".join(repr(body.name) for body in self.bodies)
+                    raise InvalidMechanism(f"joint {joint.name!r}: no body is called {name!r}; there are {known}")
+            if joint.first == joint.second:
+                raise InvalidMechanism(f"joint {joint.name!r}: it joins {joint.first!r} with itself; name two bodies")
+        self._refuse_a_start_off_the_joints()
+
+    def _refuse_a_start_off_the_joints(self) -> None:
+        if not self.joints:
+            return
+        gap = np.nan_to_num(np.abs(self.gap(self.pose, 0.0)))
+        slip = np.abs(self.slip(self.pose, self.twist))
+        for value, scale, unit, what in (
+            (gap, 1 + float(np.abs(self.pose).max()), "m or rad", "open by"),
+            (slip, 1 + float(np.abs(self.twist).max()) * (1 + self.length_scale), "m/s or rad/s", "moving apart at"),
+        ):
+            worst = int(np.argmax(value))
+            if value[worst] > START_TOLERANCE * scale:
+                raise InvalidMechanism(
+                    f"mechanism: at t = 0 row {self.row_names[worst]!r} is {what} {value[worst]:.3g} {unit}; "
+                    f"the start must satisfy every joint to {START_TOLERANCE * scale:.1g}"
+                )
+
+    @cached_property
+    def _index(self) -> dict[str | None, int]:
+        return {**{body.name: index for index, body in enumerate(self.bodies)}, None: len(self.bodies)}
+
+    @cached_property
+    def _groups(self) -> tuple[_Group, ...]:
+        kinds: dict[type, list[tuple[Any, range]]] = {}
+        start = 0
+        for joint in self.joints:
+            kinds.setdefault(type(joint), []).append((joint, range(start, start + joint.size)))
+            start += joint.size
+        return tuple(
+            _Group(
+                joint=_stack([joint for joint, _ in members]),
+                first=np.array([self._index[joint.first] for joint, _ in members]),
+                second=np.array([self._index[joint.second] for joint, _ in members]),
+                rows=np.array([list(where) for _, where in members]),
+            )
+            for members in kinds.values()
+        )
+
+    def body_index(self, name: str) -> int:
+        """Where a body stands in q, v and every trajectory of this mechanism."""
+        return self._index[name]
+
+    @cached_property
+    def row_names(self) -> tuple[str, ...]:
+        """One name a row, 'B x' for the x row of joint B; reactions stand in this order."""
+        return tuple(f"{joint.name} {label}" for joint in self.joints for label in joint.labels)
+
+    @cached_property
+    def row_count(self) -> int:
+        return sum(joint.size for joint in self.joints)
+
+    @cached_property
+    def pose(self) -> NDArray[np.float64]:
+        """Poses at t = 0 (bodies, 3) [m, m, rad]."""
+        return np.array([body.pose for body in self.bodies], dtype=float)
+
+    @cached_property
+    def twist(self) -> NDArray[np.float64]:
+        """Twists at t = 0 (bodies, 3) [m/s, m/s, rad/s]."""
+        return np.array([body.twist for body in self.bodies], dtype=float)
+
+    @cached_property
+    def inertias(self) -> NDArray[np.float64]:
+        """The diagonal of the mass matrix (bodies, 3) [kg, kg, kg m^2]."""
+        return np.array([(body.mass, body.mass, body.inertia) for body in self.bodies], dtype=float)
+
+    @cached_property
+    def free_fall(self) -> NDArray[np.float64]:
+        """Accelerations without any joint (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
+        return np.array([(*self.gravity, 0.0)] * len(self.bodies), dtype=float)
+
+    @cached_property
+    def rate(self) -> NDArray[np.float64]:
+        """The prescribed right-hand side of J v = rate (rows,), zero but for drives."""
+        return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
+
+    @cached_property
+    def holonomic(self) -> NDArray[np.bool_]:
+        """Which rows are derivatives of a position (rows,)."""
+        return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
+
+    def _with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
+        pose = np.asarray(pose)
+        return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
+
+    def gap(self, pose: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """How far every joint is open (..., rows) [m, rad for a drive]; NaN in rows that constrain velocity only.
+
+        pose (..., bodies, 3) and times t (...) [s].
+        """
+        everything = self._with_ground(pose)
+        out = np.full((*everything.shape[:-2], self.row_count), np.nan, dtype=everything.dtype)
+        for group in self._groups:
+            if group.joint.holonomic:
+                first, second = everything[..., group.first, :], everything[..., group.second, :]
+                out[..., group.rows] = group.joint.gap(first, second, np.asarray(t)[..., None])
+        return out
+
+    def rows(self, pose: NDArray[Any]) -> NDArray[Any]:
+        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes."""
+        everything = self._with_ground(pose)
+        leading, count = everything.shape[:-2], everything.shape[-2]
+        out = np.zeros((*leading, self.row_count, count, 3), dtype=np.result_type(everything, float))
+        for group in self._groups:
+            block = group.joint.rows(everything[..., group.first, :], everything[..., group.second, :])
+            out[..., group.rows, group.first[:, None], :] += block[..., 0:3]
+            out[..., group.rows, group.second[:, None], :] += block[..., 3:6]
+        return out[..., :-1, :].reshape((*leading, self.row_count, 3 * (count - 1)))
+
+    def slip(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+        """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
+        flat = np.asarray(twist).reshape((*np.shape(twist)[:-2], -1, 1))
+        return (self.rows(pose) @ flat)[..., 0] - self.rate
+
+    def bias(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
+        """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
+        step = 1e-100
+        flat = twist.reshape((*twist.shape[:-2], -1, 1))
+        return -(self.rows(pose + 1j * step * twist).imag @ flat)[..., 0] / step
+
+    def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
+
+        pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
+        have applied. Unique when the rows are independent; of redundant rows it gives the smallest.
+        """
+        rows = self.rows(pose)
+        weighted = rows / self.inertias.reshape(-1)
+        excess = (acceleration - self.free_fall).reshape((*acceleration.shape[:-2], -1, 1))
+        matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ excess
+        return solve_rows(matrix, right)[..., 0]
+
+    def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
+        """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
+
+        A skate takes a freedom of velocity and none of configuration; a drive takes one of both.
+        """
+        rows = self.rows(self.pose if pose is None else pose)
+        coordinates = rows.shape[-1]
+        return coordinates - _rank(rows[self.holonomic]), coordinates - _rank(rows)
+
+    @cached_property
+    def length_scale(self) -> float:
+        """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
+        points: dict[str, list[Vector]] = {body.name: [(0.0, 0.0)] for body in self.bodies}
+        for joint in self.joints:
+            for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
+                if name is not None and hasattr(joint, point):
+                    points[name].append(getattr(joint, point))
+        return max((math.dist(p, q) for own in points.values() for p in own for q in own), default=0.0) or 1.0
+
+    @cached_property
+    def time_scale(self) -> float:
+        """One radian of the fastest motion that the description promises [s]: the scale for an engine's settings.
+
+        The inverse of the largest of: a body's rotation rate, a drive's rate, speed over length, and the pendulum
+        frequency sqrt(g / length); 1 s when nothing moves or pulls.
+        """
+        length = self.length_scale
+        rates = [math.sqrt(math.hypot(*self.gravity) / length)]
+        rates += [abs(body.twist[2]) for body in self.bodies]
+        rates += [math.hypot(*body.twist[:2]) / length for body in self.bodies]
+        rates += [abs(joint.turning_rate) for joint in self.joints if isinstance(joint, Drive)]
+        return 1 / max(rates) if max(rates) > 0 else 1.0
+
+
+def _rank(rows: NDArray[np.float64]) -> int:
+    if rows.size == 0:
+        return 0
+    singular = np.linalg.svd(rows, compute_uv=False)
+    return int(np.sum(singular > RANK_TOLERANCE * max(singular[0], 1.0)))
+
+
+def solve_rows(matrix: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve the symmetric row system (..., rows, rows) x = (..., rows, 1); the smallest solution if it is singular."""
+    try:
+        solution = np.linalg.solve(matrix, right)
+        # An LU that meets exact dependence may still end, with garbage of the order of 1/eps.
+        if np.all(np.isfinite(solution)) and np.all(np.linalg.cond(matrix) < 1 / RANK_TOLERANCE):
+            return solution
+    except np.linalg.LinAlgError:
+        pass
+    return np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right
