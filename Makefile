@@ -1,0 +1,33 @@
+# Everything from a fresh checkout: environment, install, run.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: report test check bench clean
+
+report: .venv/installed          ## run the grid, write reports/results
+	$(BIN)/crosscheck run --full
+	$(BIN)/crosscheck report
+
+test: .venv/installed            ## every test, the crosscheck grid included
+	$(BIN)/python -m pytest
+
+check: .venv/installed-develop   ## style, types, layers
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the reference beside its peers
+	$(BIN)/crosscheck bench
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test]"
+	touch $@
+
+.venv/installed-%: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test,$*]"
+	touch $@
+
+clean:
+	rm -rf .venv

@@ -1,0 +1,105 @@
+"""Exact multipliers: orders, stabilisation, and motions known in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ellipj, ellipk
+
+from engines.lagrange import METHODS, TRUTH, Lagrange
+from reference.mechanism import Body, Mechanism
+from reference.trajectory import energy, joint_gap, slip
+from tests.mechanisms import four_bar, pendulum
+
+
+def swinging_angle(t, amplitude):
+    """A uniform bar of 1 m released from rest at `amplitude` [rad] from the vertical: Jacobi's elliptic functions."""
+    frequency, modulus = np.sqrt(1.5 * 9.81), np.sin(amplitude / 2) ** 2
+    return 2 * np.arcsin(np.sin(amplitude / 2) * ellipj(ellipk(modulus) - frequency * t, modulus)[0])
+
+
+def test_a_swinging_bar_agrees_with_elliptic_functions():
+    run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.01)(300, 1)
+    # 3 s at a tolerance of 1e-13 a step: a few 1e-13.
+    np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
+
+
+@pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("rk4", 4)])
+@pytest.mark.parametrize("stabilisation", ["none", "projection"])
+def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisation):
+    mechanism = four_bar(crank_rate=3.0)
+    truth = TRUTH.build(mechanism, 0.02)(25, 1)
+    errors = []
+    for every in (4, 8, 16):
+        run = Lagrange(integrator, stabilisation).build(mechanism, 0.02 / every)(25, every)
+        errors.append(np.max(np.abs(run.pose - truth.pose)))
+    observed = np.log2(np.array(errors[:-1]) / errors[1:])
+    # Within half an order: the next power of the step still contributes at these steps.
+    np.testing.assert_allclose(observed, order, atol=0.5)
+
+
+def test_without_stabilisation_the_joints_drift_apart_and_projection_closes_them():
+    mechanism = four_bar(crank_rate=3.0)
+    gaps = {}
+    for stabilisation in ("none", "baumgarte", "projection"):
+        run = Lagrange("rk4", stabilisation).build(mechanism, 5e-3)(40, 5)
+        gaps[stabilisation] = np.max(np.abs(joint_gap(mechanism, run)))
+        if stabilisation == "projection":
+            assert np.max(np.abs(slip(mechanism, run))) < 1e-13
+    assert gaps["projection"] < 1e-14 < gaps["none"]
+    assert gaps["baumgarte"] < gaps["none"]
+
+
+def test_a_driven_crank_keeps_its_rate_and_its_torque_balances_the_power():
+    mechanism = four_bar(crank_rate=10.0, drive=10.0)
+    run = TRUTH.build(mechanism, 2 * np.pi / 1000)(100, 1)
+    np.testing.assert_allclose(run.twist[:, 0, 2], 10.0, atol=1e-12)
+    # d(energy)/dt = torque * rate over one revolution; the trapezoidal rule is spectral for a periodic power.
+    assert np.mean(run.reaction[:-1, -1]) * 10.0 == pytest.approx(0, abs=1e-9)
+    assert np.ptp(energy(mechanism, run)) > 1  # and the power was not zero all along
+
+
+def test_redundant_rows_change_no_motion():
+    mechanism = pendulum()
+    twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[0], name="A again")))
+    for method in (Lagrange("rk4", "none"), Lagrange("rk4", "projection"), Lagrange("rk4", "baumgarte")):
+        once, again = (method.build(m, 1e-2)(50, 1) for m in (mechanism, twice))
+        np.testing.assert_allclose(again.pose, once.pose, atol=1e-12)
+
+
+def test_a_body_without_joints_falls_freely():
+    mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 2.0, 3.0)),), (), (0.0, -9.81))
+    run = Lagrange("rk4", "projection").build(mechanism, 0.1)(10, 1)
+    np.testing.assert_allclose(run.pose[-1, 0], [1.0, 2.0 - 9.81 / 2, 3.0], atol=1e-14)
+
+
+def test_every_integrator_comes_with_every_stabilisation():
+    assert len({method.variant for method in METHODS}) == 9
+
+
+def test_a_wrong_length_is_caught():
+    """A rocker longer by 1e-3 moves visibly otherwise: the comparison of the suite could fail."""
+    right = pendulum()
+    wrong = pendulum(length=1.001)
+    runs = [TRUTH.build(m, 0.01)(100, 1).pose[..., 2] for m in (right, wrong)]
+    assert np.max(np.abs(runs[0] - runs[1])) > 1e-4
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Lagrange("leapfrog"),
+        lambda: Lagrange("rk4", "glue"),
+        lambda: Lagrange("rk4", "none", tolerance=1e-6),
+        lambda: Lagrange(tolerance=0.0),
+        lambda: Lagrange().build(pendulum(), -1e-3),
+        lambda: Lagrange().build(pendulum(), float("nan")),
+        lambda: Lagrange().build(pendulum(), 1e-3)(0, 1),
+        lambda: Lagrange().build(pendulum(), 1e-3)(1, 0.5),
+    ],
+)
+def test_settings_that_do_not_exist_are_refused(make):
+    with pytest.raises(ValueError, match=r"must|tolerance"):
+        make()
