@@ -1,11 +1,11 @@
 """The joints that join two bodies, or a body and the ground: their gap, and their velocity rows J v = rate.
 
-A closed vocabulary: engines `match` on it, and a joint enters only when a scene needs it and `engines.lagrange` runs it.
-A joint has `name`; `first` and `second`, names of bodies or None for the ground; `size` rows with `labels`; `holonomic`,
-whether the rows are derivatives of a position; `rate`, the right-hand side (size,); and, for poses (..., 3) of the two
-bodies (the ground's is zero), `gap(first, second, t)` (..., size) and `rows(first, second)` (..., size, 6), whose columns
-are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step passes through them.
-The reaction of a row acts along it on the second body, and against it on the first.
+A closed vocabulary: engines `match` on it, and a joint enters only when a scene needs it and `engines.lagrange` runs
+it. A joint has `name`; `first` and `second`, names of bodies or None for the ground; `size` rows with `labels`;
+`holonomic`, whether the rows are derivatives of a position; `rate`, the right-hand side (size,); and, for poses of the
+two bodies (..., 3), the ground's zero, `gap(first, second, t)` (..., size) and `rows(first, second)` (..., size, 6),
+whose columns are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step
+passes through them. The reaction of a row acts along it on the second body, and against it on the first.
 `mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis.
 """
 
@@ -80,8 +80,8 @@ class Pin:
 class Drive:
     """A prescribed relative rotation: the second body turns against the first at a constant `turning_rate` [rad/s].
 
-    `offset` [rad] is the relative angle at t = 0. Row: omega of the second minus omega of the first. Reaction: torque on
-    the second body [N m].
+    `offset` [rad] is the relative angle at t = 0. Row: omega of the second minus omega of the first. Reaction: torque
+    on the second body [N m].
     """
 
     size: ClassVar[int] = 1

@@ -20,8 +20,8 @@ from reference.joints import Drive, Joint, Vector
 
 Triple = tuple[float, float, float]
 
-# A row is counted as dependent below this fraction of the largest singular value, and a start that misses a row by more
-# than this fraction of the mechanism's own length or speed is refused: both are far above rounding, far below a mistake.
+# A row is counted as dependent below this fraction of the largest singular value, and a start that misses a row by
+# more than this fraction of the mechanism's own length or speed is refused: far above rounding, far below a mistake.
 RANK_TOLERANCE = 1e-9
 START_TOLERANCE = 1e-9
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
-# Samples stand about this far apart [s]; every step of a sweep divides the distance, so all steps meet the same instants.
+# Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
 
 
