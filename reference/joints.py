@@ -114,4 +114,57 @@ class Drive:
         return rows
 
 
-Joint = Pin | Drive
+@dataclass(frozen=True)
+class Slot:
+    """A straight slot in the first body, in which the point `second_point` of the second slides.
+
+    The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the centre
+    of mass, on the ground (None) world coordinates. The second body may turn: a block that keeps its angle has, besides,
+    a `Drive` of rate zero. Row: velocity of the second point across the line, to the left of the line's direction, relative
+    to the first body's material there. Reaction: force across the line on the second body [N].
+    """
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("across",)
+
+    name: str
+    first: str | None
+    second: str | None
+    first_point: Vector
+    line_angle: float
+    second_point: Vector
+
+    def __post_init__(self) -> None:
+        owner = f"slot {self.name!r}"
+        require_finite(owner, first_point=self.first_point, second_point=self.second_point, line_angle=self.line_angle)
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (0.0,)
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Distance of the second point from the line, positive to its left (..., 1) [m], for the bodies' poses (..., 3)."""
+        line = first[..., 2] + np.asarray(self.line_angle)
+        first_x, first_y = turn(first[..., 2], np.asarray(self.first_point))
+        second_x, second_y = turn(second[..., 2], np.asarray(self.second_point))
+        across_x = second[..., 0] + second_x - first[..., 0] - first_x
+        across_y = second[..., 1] + second_y - first[..., 1] - first_y
+        return (np.cos(line) * across_y - np.sin(line) * across_x)[..., None]
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
+        line = first[..., 2] + np.asarray(self.line_angle)
+        along, across = np.cos(line), np.sin(line)
+        second_x, second_y = turn(second[..., 2], np.asarray(self.second_point))
+        arm_x = second[..., 0] + second_x - first[..., 0]
+        arm_y = second[..., 1] + second_y - first[..., 1]
+        rows = np.zeros((*arm_x.shape, 1, 6), dtype=np.result_type(arm_x, along))
+        rows[..., 0, 0], rows[..., 0, 1] = across, -along
+        rows[..., 0, 2] = -along * arm_x - across * arm_y
+        rows[..., 0, 3], rows[..., 0, 4] = -across, along
+        rows[..., 0, 5] = across * second_y + along * second_x
+        return rows
+
+
+Joint = Pin | Slot | Drive
