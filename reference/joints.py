@@ -118,10 +118,10 @@ class Drive:
 class Slot:
     """A straight slot in the first body, in which the point `second_point` of the second slides.
 
-    The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the centre
-    of mass, on the ground (None) world coordinates. The second body may turn: a block that keeps its angle has, besides,
-    a `Drive` of rate zero. Row: velocity of the second point across the line, to the left of the line's direction, relative
-    to the first body's material there. Reaction: force across the line on the second body [N].
+    The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
+    centre of mass, on the ground (None) world coordinates. The second body may turn: a block that keeps its angle has,
+    besides, a `Drive` of rate zero. Row: velocity of the second point across the line, to the left of its direction,
+    relative to the first body's material there. Reaction: force across the line on the second body [N].
     """
 
     size: ClassVar[int] = 1
@@ -144,7 +144,7 @@ class Slot:
         return (0.0,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Distance of the second point from the line, positive to its left (..., 1) [m], for the bodies' poses (..., 3)."""
+        """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
         line = first[..., 2] + np.asarray(self.line_angle)
         first_x, first_y = turn(first[..., 2], np.asarray(self.first_point))
         second_x, second_y = turn(second[..., 2], np.asarray(self.second_point))
@@ -167,4 +167,51 @@ class Slot:
         return rows
 
 
-Joint = Pin | Slot | Drive
+@dataclass(frozen=True)
+class Skate:
+    """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
+
+    `second_point` [m] is where the blade touches, in the second body's own frame from its centre of mass, and `angle`
+    [rad] the blade's direction in that frame. On the ground (first None) the row is the velocity of that point across
+    the blade; on another body it is that velocity relative to the first body's material under the blade. It limits no
+    configuration, so the gap is NaN. Reaction: force across the blade, to its left, on the second body [N].
+    """
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = False
+    labels: ClassVar[tuple[str, ...]] = ("across",)
+
+    name: str
+    first: str | None
+    second: str | None
+    second_point: Vector
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite(f"skate {self.name!r}", second_point=self.second_point, angle=self.angle)
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (0.0,)
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """NaN (..., 1): no function of the pose is held (18.65)."""
+        return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity row (..., 1, 6)."""
+        point_x, point_y = turn(second[..., 2], np.asarray(self.second_point))
+        heading = second[..., 2] + np.asarray(self.angle)
+        left_x, left_y = -np.sin(heading), np.cos(heading)
+        arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]
+        rows = np.zeros((*heading.shape, 1, 6), dtype=heading.dtype)
+        rows[..., 0, 0] = -left_x
+        rows[..., 0, 1] = -left_y
+        rows[..., 0, 2] = arm_y * left_x - arm_x * left_y
+        rows[..., 0, 3] = left_x
+        rows[..., 0, 4] = left_y
+        rows[..., 0, 5] = point_x * left_y - point_y * left_x
+        return rows
+
+
+Joint = Pin | Slot | Skate | Drive
