@@ -59,6 +59,8 @@ class _Group:
 
 def _stack(joints: Sequence[Any]) -> Any:
     """One joint that stands for several of its kind: every numeric field becomes an array."""
+    if not getattr(joints[0], "stackable", True):
+        return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
     stacked = {name: np.array([getattr(joint, name) for joint in joints]) for name in numeric}
     return replace(joints[0], **stacked)
@@ -115,10 +117,11 @@ class Mechanism:
 
     @cached_property
     def _groups(self) -> tuple[_Group, ...]:
-        kinds: dict[type, list[tuple[Any, range]]] = {}
+        kinds: dict[Any, list[tuple[Any, range]]] = {}  # one that can't stack is a kind of its own
         start = 0
         for joint in self.joints:
-            kinds.setdefault(type(joint), []).append((joint, range(start, start + joint.size)))
+            kind = type(joint) if getattr(joint, "stackable", True) else joint.name
+            kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
             start += joint.size
         return tuple(
             _Group(
@@ -203,14 +206,12 @@ class Mechanism:
 
     def slip(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
         """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
-        flat = np.asarray(twist).reshape((*np.shape(twist)[:-2], -1, 1))
-        return (self.rows(pose) @ flat)[..., 0] - self.rate
+        return (self.rows(pose) @ _column(twist))[..., 0] - self.rate
 
     def bias(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
-        flat = twist.reshape((*twist.shape[:-2], -1, 1))
-        return -(self.rows(pose + 1j * step * twist).imag @ flat)[..., 0] / step
+        return -(self.rows(pose + 1j * step * twist).imag @ _column(twist))[..., 0] / step
 
     def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
@@ -220,7 +221,7 @@ class Mechanism:
         """
         rows = self.rows(pose)
         weighted = rows / self.inertias.reshape(-1)
-        excess = (acceleration - self.free_fall).reshape((*acceleration.shape[:-2], -1, 1))
+        excess = _column(acceleration - self.free_fall)
         matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ excess
         return solve_rows(matrix, right)[..., 0]
 
@@ -256,6 +257,12 @@ class Mechanism:
         rates += [math.hypot(*body.twist[:2]) / length for body in self.bodies]
         rates += [abs(joint.turning_rate) for joint in self.joints if isinstance(joint, Drive)]
         return 1 / max(rates) if max(rates) > 0 else 1.0
+
+
+def _column(per_body: NDArray[Any]) -> NDArray[Any]:
+    """(..., bodies, 3) as columns (..., 3 bodies, 1)."""
+    per_body = np.asarray(per_body)
+    return per_body.reshape((*per_body.shape[:-2], 3 * per_body.shape[-2], 1))
 
 
 def _rank(rows: NDArray[np.float64]) -> int:
