@@ -1,0 +1,83 @@
+"""The forces in a moving four-bar of uniform bars, by Newton's and Euler's laws of its three bars."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, require_finite, require_positive
+
+
+class Forces(NamedTuple):
+    """Pin forces (..., 2) [N] on each pin's second body, and the torque (...) [N m] on the crank from the ground.
+
+    A: ground on crank; B: crank on coupler; C: coupler on rocker; D: ground on rocker.
+    """
+
+    A: Any
+    B: Any
+    C: Any
+    D: Any
+    torque: Any
+
+
+def three_densities(density: ArrayLike) -> tuple[float, float, float]:
+    """Densities of crank, coupler and rocker [kg/m] from one number or three; raises InvalidMechanism."""
+    values = np.asarray(density, dtype=float)
+    if values.shape not in ((), (3,)):
+        raise InvalidMechanism(f"four-bar: density is {density!r}; give one number or three (crank, coupler, rocker)")
+    crank, coupler, rocker = (float(value) for value in np.broadcast_to(values, 3))
+    require_positive("four-bar", crank_density=crank, coupler_density=coupler, rocker_density=rocker)
+    return crank, coupler, rocker
+
+
+def bar_forces(
+    lengths: tuple[float, float, float],
+    density: ArrayLike,
+    gravity: tuple[float, float],
+    angles: tuple[Any, Any, Any],
+    rates: tuple[Any, Any, Any],
+    accelerations: tuple[Any, Any, Any],
+) -> Forces:
+    """Forces for uniform bars of the given lengths [m], density [kg/m] and gravity [m/s^2], in a given motion.
+
+    Angles, rates and accelerations are those of crank, coupler and rocker (theta, beta, phi) and broadcast.
+    """
+    require_finite("four-bar", gravity=gravity)
+    masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
+    weight = complex(*gravity)
+    # Plane vectors are complex numbers here: half bars, and their accelerations about their own end.
+    half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
+    swing = [
+        arm * (1j * np.asarray(bend) - np.asarray(rate) ** 2)
+        for arm, rate, bend in zip(half, rates, accelerations, strict=True)
+    ]
+    pull = [
+        masses[0] * (swing[0] - weight),
+        masses[1] * (2 * swing[0] + swing[1] - weight),
+        masses[2] * (swing[2] - weight),
+    ]  # m (a - g) of each bar: the sum of its pin forces
+    spin = [
+        mass * length**2 / 12 * np.asarray(bend)
+        for mass, length, bend in zip(masses, lengths, accelerations, strict=True)
+    ]
+    # Moments of the coupler about B and of the rocker about D leave two equations for the force at C.
+    coupler, rocker = 2 * half[1], 2 * half[2]
+    about_b = -(spin[1] + _cross(half[1], pull[1]))
+    about_d = spin[2] + _cross(half[2], pull[2])
+    at_c = (rocker * about_b - coupler * about_d) / _cross(coupler, rocker)
+    at_b = pull[1] + at_c
+    at_a = pull[0] + at_b
+    at_d = pull[2] - at_c
+    torque = spin[0] + _cross(half[0], pull[0]) + _cross(2 * half[0], at_b)
+    return Forces(_plane(at_a), _plane(at_b), _plane(at_c), _plane(at_d), torque)
+
+
+def _plane(value: Any) -> Any:
+    return np.stack([np.real(value), np.imag(value)], axis=-1)
+
+
+def _cross(first: Any, second: Any) -> Any:
+    return (np.conj(first) * second).imag

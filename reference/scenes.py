@@ -1,0 +1,19 @@
+"""The one list of scenes, each with its default numbers."""
+
+from __future__ import annotations
+
+import difflib
+
+from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scene import Scene
+
+SCENES: tuple[Scene, ...] = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
+
+
+def scene(name: str) -> Scene:
+    """The scene of that name; raises ValueError that suggests the nearest name."""
+    known = {each.name: each for each in SCENES}
+    if name in known:
+        return known[name]
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    raise ValueError(f"no scene is called {name!r}; did you mean {near[0]!r}? There are {', '.join(known)}")

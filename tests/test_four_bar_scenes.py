@@ -1,0 +1,242 @@
+"""The four-bar scenes: their truth against the mechanism's rows, energy, another formulation, and wrong models."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from reference.checks import InvalidMechanism
+from reference.four_bar import Unreachable
+from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scenes import SCENES, scene
+from reference.trajectory import energy, joint_gap, slip
+
+# No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
+TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
+TURNED = FreeFourBar(
+    crank=0.5, coupler=0.9, rocker=0.8, ground=(-0.6, 0.7), assembly=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0
+)
+FREE = (FreeFourBar(), SpinningFourBar(), TRIPLE_ROCKER, TURNED)
+DRIVEN = (
+    DrivenFourBar(),
+    DrivenFourBar(rate=-7.0, assembly=-1, revolutions=0.5),
+    DrivenFourBar(crank=1.0, coupler=0.9, rocker=1.1, ground=(0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
+)
+
+
+def sampled(each):
+    return np.linspace(0, each.duration, 51)
+
+
+def accelerations(each, times):
+    return each._bodies(each._angles(times))[2]
+
+
+@pytest.mark.parametrize("each", [*FREE, *DRIVEN])
+def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint(each):
+    mechanism, times = each.mechanism(), sampled(each)
+    motion = each.motion(times)
+    assert np.array_equal(motion.pose[0], mechanism.pose)
+    assert np.array_equal(motion.twist[0], mechanism.twist)
+    # Rounding of angles up to 20 rad and of speeds up to 20 m/s.
+    assert np.max(np.abs(joint_gap(mechanism, motion))) < 1e-14
+    assert np.max(np.abs(slip(mechanism, motion))) < 1e-13
+    assert mechanism.degrees_of_freedom() == ((0, 0) if isinstance(each, DrivenFourBar) else (1, 1))
+    assert set(np.abs(each.branch(motion.pose))) == {1}
+    assert each.branch(mechanism.pose) == each.assembly
+
+
+@pytest.mark.parametrize("each", [*FREE, *DRIVEN])
+def test_accelerations_satisfy_the_rows_differentiated(each):
+    mechanism, times = each.mechanism(), sampled(each)
+    motion, bend = each.motion(times), accelerations(each, times)
+    left = (mechanism.rows(motion.pose) @ bend.reshape(len(times), 9, 1))[..., 0]
+    scale = 1 + np.max(np.abs(bend))
+    assert np.max(np.abs(left - mechanism.bias(motion.pose, motion.twist))) < 1e-13 * scale
+    assert np.max(np.abs(left + mechanism.bias(motion.pose, motion.twist))) > 0.1
+
+
+@pytest.mark.parametrize("each", [*FREE, *DRIVEN])
+def test_reactions_are_what_newton_needs(each):
+    mechanism, times = each.mechanism(), sampled(each)
+    motion = each.motion(times)
+    force = (np.swapaxes(mechanism.rows(motion.pose), -1, -2) @ motion.reaction[..., None])[..., 0]
+    needed = mechanism.inertias * (accelerations(each, times) - mechanism.free_fall)
+    size = np.max(np.abs(motion.reaction))
+    assert np.max(np.abs(force - needed.reshape(len(times), 9))) < 1e-12 * size
+    assert np.max(np.abs(force + needed.reshape(len(times), 9))) > 0.1 * size
+    assert motion.reaction.shape == (51, mechanism.row_count)
+
+
+def test_the_driven_torque_and_pins_stand_in_the_order_of_the_rows():
+    each = DrivenFourBar(density=(1.0, 2.0, 0.5))
+    times = sampled(each)
+    mechanism, motion = each.mechanism(), each.motion(times)
+    assert mechanism.row_names == ("A x", "A y", "B x", "B y", "C x", "C y", "D x", "D y", "drive torque")
+    by_rows = mechanism.reaction(motion.pose, accelerations(each, times))
+    # The row system squares the condition of J, about 30.
+    assert np.max(np.abs(by_rows - motion.reaction)) < 1e-12 * np.max(np.abs(by_rows))
+
+
+def test_the_driven_crank_is_back_after_a_revolution():
+    each = DrivenFourBar()
+    motion = each.motion([0.0, each.duration])
+    assert np.max(np.abs(motion.pose[1] - motion.pose[0] - [[0, 0, 2 * np.pi], [0, 0, 0], [0, 0, 0]])) < 1e-14
+    assert np.allclose(motion.twist[0, :, 2], (10.0, -5.0, 2.5), rtol=1e-14)
+
+
+def test_the_nine_configurations_of_the_figure_end_where_they_begin():
+    # Erratum 20: nine times, the last of which is the first configuration again.
+    each = DrivenFourBar()
+    angle = each.motion(each.duration * np.arange(9) / 8).pose[:, :, 2]
+    steps = np.diff(angle[:, 0])
+    assert np.max(np.abs(steps - np.pi / 4)) < 1e-14
+    assert np.max(np.abs(angle[8, 1:] - angle[0, 1:])) < 1e-14
+
+
+@pytest.mark.parametrize("each", FREE)
+def test_free_motion_keeps_its_energy_and_its_own_error_is_rounding(each):
+    mechanism, times = each.mechanism(), sampled(each)
+    total = energy(mechanism, each.motion(times))
+    assert np.ptp(total) < 3e-14 * (1 + np.max(np.abs(total)) + 9.81 * sum(each.masses))
+    # Rounding to double of angles of 10 rad and speeds of 20 m/s. Where longdouble is no longer than double, some
+    # hundred steps' rounding, amplified by the motion, is added.
+    assert each.own_error(times) < (1e-14 if np.finfo(np.longdouble).eps < 1e-18 else 1e-12)
+
+
+@pytest.mark.parametrize("each", [FreeFourBar(), SpinningFourBar(), TURNED])
+def test_free_motion_agrees_with_the_crank_angle_as_the_coordinate(each):
+    """Lagrange's equation in theta, inertia and potential by the closed form and their slopes by its derivatives."""
+    four_bar, masses = each.four_bar, each.masses
+    lengths = four_bar.lengths
+
+    def slope(_, state):
+        theta, rate = state
+        unit = four_bar.kinematics(theta, 1.0, 0.0, each.assembly)
+        arms = [
+            complex(length * np.exp(1j * a)) for length, a in zip(lengths, (theta, unit.beta, unit.phi), strict=True)
+        ]
+        turning, bends = (1.0, unit.beta_dot, unit.phi_dot), (0.0, unit.beta_ddot, unit.phi_ddot)
+        ends = [1j * w * arm for w, arm in zip(turning, arms, strict=True)]
+        curves = [(1j * k - w * w) * arm for k, w, arm in zip(bends, turning, arms, strict=True)]
+        along = (ends[0] / 2, ends[0] + ends[1] / 2, ends[2] / 2)
+        curving = (curves[0] / 2, curves[0] + curves[1] / 2, curves[2] / 2)
+        inertia = slope_of_inertia = force = 0.0
+        for m, length, v, a, w, k in zip(masses, lengths, along, curving, turning, bends, strict=True):
+            inertia += m * (abs(v) ** 2 + length**2 / 12 * w**2)
+            slope_of_inertia += 2 * m * ((v.conjugate() * a).real + length**2 / 12 * w * k)
+            force += m * (each.gravity[0] * v.real + each.gravity[1] * v.imag)
+        return [rate, (force - slope_of_inertia * rate**2 / 2) / inertia]
+
+    times = np.linspace(0, each.duration, 11)
+    other = solve_ivp(slope, (0, times[-1]), [each.start, each.rate], "DOP853", times, rtol=1e-12, atol=1e-12)
+    motion = each.motion(times)
+    # About a hundred steps of 1e-12, amplified by the motion, and DOP853's interpolation between its steps.
+    assert np.max(np.abs(motion.pose[:, 0, 2] - other.y[0])) < 2e-9
+    assert np.max(np.abs(motion.twist[:, 0, 2] - other.y[1])) < 2e-8
+    for wrong in (replace(each, coupler=each.coupler + 1e-3), replace(each, gravity=(0.0, 9.81))):
+        assert np.max(np.abs(wrong.motion(times).pose[:, 0, 2] - other.y[0])) > 1e-5
+
+
+@pytest.mark.parametrize("each", FREE)
+def test_twists_and_accelerations_are_derivatives_of_the_poses(each):
+    step = 1e-3
+    weights = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840 / step
+    for middle in np.linspace(0.1, 0.9, 5) * each.duration:
+        times = middle + step * np.arange(-4, 5)
+        motion = each.motion(times)
+        # step^8 = 1e-24 times a ninth derivative of up to (40/s)^9 = 3e14, and rounding over the step.
+        assert np.max(np.abs(np.tensordot(weights, motion.pose, 1) - motion.twist[4])) < 1e-8
+        assert np.max(np.abs(np.tensordot(weights, motion.twist, 1) - accelerations(each, times)[4])) < 1e-6
+
+
+def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_assembly():
+    each = TRIPLE_ROCKER
+    assert each.four_bar.grashof() == "triple-rocker"
+    times = np.linspace(0, each.duration, 2001)
+    motion, bend = each.motion(times[::5]), accelerations(each, times[::5])
+    (low, high), *_ = (
+        interval for interval in each.four_bar.crank_limits() if interval[0] <= each.start <= interval[1]
+    )
+    theta, branch = motion.pose[:, 0, 2], each.branch(motion.pose)
+    assert np.min(theta) >= low - 1e-14
+    assert np.max(theta) <= high + 1e-14
+    assert set(branch) == {1, -1}
+    for change in np.flatnonzero(np.diff(branch)):
+        near = min(abs(theta[change] - low), abs(theta[change] - high))
+        assert near < 0.05  # less than the crank turns between samples
+        # No jolt: the speed changes by what the accelerations either side tell.
+        pair = slice(change, change + 2)
+        told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])
+        assert np.max(np.abs(np.diff(motion.twist[pair], axis=0)[0] - told)) < 0.1
+    # Before and after, the angles are those of the closed form in the assembly reported.
+    beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
+    turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
+    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
+
+
+def test_a_motion_does_not_depend_on_the_samples_asked_for():
+    each = SpinningFourBar()
+    times = np.linspace(0, 1, 21)
+    whole = each.motion(times)
+    shuffled = np.random.default_rng(1).permutation(21)
+    mixed = each.motion(np.concatenate([times[shuffled], [0.5]]))
+    assert np.max(np.abs(mixed.pose[:-1] - whole.pose[shuffled])) < 1e-14
+    assert np.max(np.abs(mixed.twist[-1] - whole.twist[10])) < 1e-13
+    assert np.max(np.abs(each.motion([1.0]).pose[0] - whole.pose[-1])) < 1e-14
+    assert each.motion(0.0).pose.shape == (1, 3, 3)
+
+
+@pytest.mark.parametrize("times", [[-0.1, 0.0], [math.nan], [math.inf], [[0.0, 1.0]]])
+def test_times_that_are_none_are_refused(times):
+    for each in (DrivenFourBar(), FreeFourBar()):
+        with pytest.raises(ValueError, match="times must be a row of finite numbers"):
+            each.motion(times)
+
+
+def test_a_start_that_can_not_be_is_refused_in_a_sentence():
+    triple = TRIPLE_ROCKER.four_bar
+    (_, high), *_ = triple.crank_limits()
+    with pytest.raises(Unreachable, match="possible is"):
+        replace(TRIPLE_ROCKER, start=high + 0.1)
+    with pytest.raises(InvalidMechanism, match="at its limit"):
+        replace(TRIPLE_ROCKER, start=high, rate=1.0)
+    with pytest.raises(InvalidMechanism, match="change point"):
+        FreeFourBar(crank=0.4, coupler=1.2, rocker=0.4, start=0.0)
+    with pytest.raises(InvalidMechanism, match="density"):
+        FreeFourBar(density=-1.0)
+    with pytest.raises(InvalidMechanism, match="duration"):
+        FreeFourBar(duration=0.0)
+    with pytest.raises(InvalidMechanism, match="revolutions"):
+        DrivenFourBar(revolutions=-1.0)
+    with pytest.raises(InvalidMechanism, match="rate is 0"):
+        DrivenFourBar(rate=0.0)
+    with pytest.raises(InvalidMechanism, match="assembly is 0"):
+        DrivenFourBar(assembly=0)
+    with pytest.raises(InvalidMechanism, match="start is nan"):
+        FreeFourBar(start=math.nan)
+
+
+def test_a_start_at_rest_at_a_crank_limit_moves_off_it():
+    (_, high), *_ = TRIPLE_ROCKER.four_bar.crank_limits()
+    each = replace(TRIPLE_ROCKER, start=high, duration=0.2)
+    motion = each.motion(sampled(each))
+    assert np.max(np.abs(joint_gap(each.mechanism(), motion))) < 1e-14
+    assert np.max(np.abs(motion.twist[-1])) > 0.1
+
+
+def test_driving_a_crank_beyond_its_limit_is_refused_by_the_reference():
+    each = DrivenFourBar(crank=1.0, coupler=0.5, rocker=0.6, start=0.3, rate=1.0)
+    with pytest.raises(Unreachable, match="crank angle"):
+        each.motion(sampled(each))
+
+
+def test_scenes_are_found_by_name_and_the_nearest_is_suggested():
+    names = [each.name for each in SCENES]
+    assert len(set(names)) == len(names)
+    assert all(scene(name).name == name for name in names)
+    assert scene("spinning_four_bar") == SpinningFourBar()
+    with pytest.raises(ValueError, match="did you mean 'free_four_bar'"):
+        scene("fre_fourbar")
