@@ -1,0 +1,104 @@
+"""From the words of a command line to scenes, engines and cells; what can't be is refused with the nearest that can."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Sequence
+
+from engines import Engine
+from reference.scene import Scene
+from reports.cells import FULL, QUICK, Cell, sweep_cells
+from reports.page import Page
+
+
+class BadInput(ValueError):
+    """A sentence for one line on stderr: which value, why, and what would be valid."""
+
+
+def nearest(kind: str, word: str, known: Iterable[str]) -> BadInput:
+    """The refusal of an unknown word, with the nearest known one if any is near."""
+    names = list(dict.fromkeys(known))
+    near = difflib.get_close_matches(word, names, 1, 0.4)
+    if not near:
+        near = [name for name in names if word and (word in name or name in word)][:1]
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
+    return BadInput(f"unknown {kind} {word!r}: {hint}")
+
+
+def choose_scenes(words: Sequence[str], scenes: Sequence[Scene]) -> tuple[Scene, ...]:
+    """The scenes of these names, or of the pages of these names; all of them for no word. Raises BadInput."""
+    if not words:
+        return tuple(scenes)
+    for word in words:
+        if not any(word in (scene.name, scene.page) for scene in scenes):
+            raise nearest("scene", word, [*(s.name for s in scenes), *(s.page for s in scenes)])
+    return tuple(scene for scene in scenes if scene.name in words or scene.page in words)
+
+
+def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
+    """The engines of this name and variant; None takes all. Raises BadInput."""
+    chosen = tuple(engines)
+    if engine is not None:
+        chosen = tuple(e for e in chosen if e.name == engine)
+        if not chosen:
+            raise nearest("engine", engine, (e.name for e in engines))
+    if variant is not None:
+        found = tuple(e for e in chosen if e.variant == variant)
+        if not found:
+            raise nearest("variant" if engine is None else f"variant of {engine}", variant, (e.variant for e in chosen))
+        chosen = found
+    return chosen
+
+
+def steps_per_sample(scene: Scene, step: float) -> int:
+    """How many steps [s] fit between two samples of a scene. Raises BadInput unless it is a whole number."""
+    if not (math.isfinite(step) and step > 0):
+        raise BadInput(f"step is {step!r} s; it must be a finite time greater than zero")
+    ratio = scene.spacing / step
+    every = max(1, round(ratio))
+    # 1e-9: a step typed with ten digits or more is meant to divide.
+    if abs(ratio - every) > 1e-9 * ratio:
+        raise BadInput(
+            f"step {step:g} s does not divide the {scene.spacing:.10g} s between samples of {scene.name}; "
+            f"{every} steps a sample would be --step {scene.spacing / every:.12g}, or --every {every}"
+        )
+    return every
+
+
+def choose_cells(
+    scenes: Sequence[Scene],
+    engines: Sequence[Engine],
+    pages: Sequence[Page],
+    full: bool,
+    every: Sequence[int] = (),
+    steps: Sequence[float] = (),
+) -> tuple[Cell, ...]:
+    """The cells of a run: the grid, with the failures of the pages that teach these scenes, and their maps if full.
+
+    `every` or `steps` replace the grid by these steps alone. Raises BadInput for steps that can't be.
+    """
+    for count in every:
+        if count < 1:
+            raise BadInput(f"--every is {count}; it must be a whole number greater than zero")
+    if every or steps:
+        chosen: dict[Cell, None] = {}
+        for scene in scenes:
+            for count in dict.fromkeys([*every, *(steps_per_sample(scene, step) for step in steps)]):
+                chosen.update((Cell(scene, engine, count), None) for engine in engines)
+        return tuple(chosen)
+    cells = list(sweep_cells(scenes, engines, FULL if full else QUICK))
+    taught = {scene.page for scene in scenes}
+    for page in pages:
+        if page.name in taught:
+            cells += [
+                cell
+                for cell in page.extra_cells()
+                if any(cell.engine == engine for engine in engines) and (full or cell.purpose != "map")
+            ]
+    return tuple(dict.fromkeys(cells))
+
+
+def page_cells(page: Page) -> tuple[Cell, ...]:
+    """Every cell that a page could show."""
+    return tuple(dict.fromkeys([*sweep_cells(page.scenes, page.engines, FULL), *page.extra_cells()]))

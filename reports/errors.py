@@ -1,0 +1,90 @@
+"""A trajectory held against the truth at the same instants: plain numbers, NaN where there is nothing to compare."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reference.trajectory import Trajectory, energy, joint_gap, slip
+
+Array = NDArray[np.float64]
+NAN = float("nan")
+
+
+def largest(values: Array) -> float:
+    """The largest absolute value that is a number; NaN if none is."""
+    values = np.abs(np.asarray(values, dtype=float))
+    values = values[~np.isnan(values)]
+    return float(values.max()) if values.size else NAN
+
+
+def root_mean_square(values: Array) -> float:
+    """Over all entries that are numbers; NaN if none is."""
+    values = np.asarray(values, dtype=float)
+    values = values[~np.isnan(values)]
+    return float(np.sqrt(np.mean(values**2))) if values.size else NAN
+
+
+def turning_rows(mechanism: Mechanism) -> NDArray[np.bool_]:
+    """Which rows are rotations (rad, rad/s, N m) and not lengths (rows,)."""
+    return np.array([label == "torque" for joint in mechanism.joints for label in joint.labels], dtype=bool)
+
+
+def usable_samples(trajectory: Trajectory) -> int:
+    """How many samples from the start are finite throughout."""
+    finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
+    return len(finite) if finite.all() else int(np.argmin(finite))
+
+
+def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:
+    """What needs no truth: `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s], the largest over the samples."""
+    turning = turning_rows(mechanism)
+    gap, speed = joint_gap(mechanism, trajectory), slip(mechanism, trajectory)
+    return {"gap": largest(gap[:, ~turning]), "drive_gap": largest(gap[:, turning]), "slip": largest(speed)}
+
+
+def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, trajectory: Trajectory) -> dict[str, float]:
+    """Errors within the scene's horizon, and `angle_duration` over the whole duration, for finite samples.
+
+    position [m], angle [rad], velocity [m/s], rate [rad/s]: the largest over samples and bodies; `_rms` likewise.
+    energy: largest difference from the truth's energy, relative to the truth's largest kinetic energy, so that it is
+    the drift of a free motion, means something in a driven one, and does not depend on where height is counted from.
+    reaction: relative to the largest true reaction of its kind (forces, torques).
+    """
+    within = trajectory.t <= scene.horizon * (1 + 1e-12)
+    pose, twist = trajectory.pose - truth.pose, trajectory.twist - truth.twist
+    distance, speed = np.hypot(pose[..., 0], pose[..., 1]), np.hypot(twist[..., 0], twist[..., 1])
+    kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
+    span = largest(kinetic)
+    drift = largest((energy(mechanism, trajectory) - energy(mechanism, truth))[within])
+    return {
+        "position": largest(distance[within]),
+        "position_rms": root_mean_square(distance[within]),
+        "angle": largest(pose[within][..., 2]),
+        "angle_rms": root_mean_square(pose[within][..., 2]),
+        "angle_duration": largest(pose[..., 2]),
+        "velocity": largest(speed[within]),
+        "rate": largest(twist[within][..., 2]),
+        "energy": drift / span if span > 0 else NAN,
+        "reaction": reaction_error(mechanism, truth.reaction[within], trajectory.reaction[within]),
+    }
+
+
+def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float:
+    """Largest error over the rows that both know (times, rows), relative to the largest true reaction of its kind."""
+    turning = turning_rows(mechanism)
+    worst = [NAN]
+    for rows in (turning, ~turning):
+        scale = largest(truth[:, rows])
+        if scale > 0:
+            worst.append(largest(reaction[:, rows] - truth[:, rows]) / scale)
+    return largest(np.array(worst))
+
+
+def branch_flips(scene: Scene, truth: Trajectory, trajectory: Trajectory) -> int:
+    """How often the assembly mode changes when the truth's does not (or the other way round)."""
+    agreement = scene.branch(trajectory.pose) * scene.branch(truth.pose)
+    agreement = np.concatenate([[1], agreement[agreement != 0]])
+    return int(np.sum(agreement[1:] != agreement[:-1]))

@@ -1,0 +1,8 @@
+"""PAGES: the one list. A new page is its own module and template, and one line here."""
+
+from __future__ import annotations
+
+from reports.page import Page
+from reports.pages import four_bar
+
+PAGES: tuple[Page, ...] = (four_bar.PAGE,)

@@ -1,0 +1,74 @@
+"""The four-bar's page: its scenes, its failure experiments, and the nine configurations of Fig. 18.66."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from engines.registry import ENGINES
+from reference.four_bar_scenes import DrivenFourBar
+from reference.scenes import SCENES
+from reports import drawings
+from reports.cells import Cell
+from reports.page import Failure, Material, Page, StabilityMap
+from reports.sweep import best_of, by_method, sweeps
+from reports.theme import svg
+
+NAME = "four_bar"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+FAILURES: tuple[Failure, ...] = ()
+MAPS: tuple[StabilityMap, ...] = ()
+
+# The nine poses of Fig. 18.66 divide the revolution into nine, so the samples must.
+PICTURES = 9
+OVERLAID = {"pymunk default": ("pymunk", "--"), "mujoco default": ("mujoco", ":")}
+
+
+def figures(material: Material) -> dict[str, str]:
+    """The nine configurations, with each engine as shipped overlaid where it differs visibly."""
+    scene = DrivenFourBar()
+    cells = {
+        f"{engine.name} {engine.variant}": Cell(scene, engine, 1, samples=PICTURES * 7)
+        for engine in ENGINES
+        if f"{engine.name} {engine.variant}" in OVERLAID
+    }
+    found = material.trajectories(tuple(cells.values()))
+    truth = scene.motion(np.arange(PICTURES) * scene.duration / PICTURES)
+    others = {
+        f"{name}, step {cell.step:.2g} s": (found[cell].pose[::7][:PICTURES], *OVERLAID[name])
+        for name, cell in cells.items()
+        if cell in found
+    }
+    titles = [f"t{i} = {t:.3f} s" for i, t in enumerate(truth.t)]
+    figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others)
+    return {"configurations": svg(figure, "The nine configurations of Fig. 18.66, from the closed form")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows and sweeps by method, for sentences: `best(scene, engine, variant)`, `sweep(...)`; None without one."""
+    rows = material.sweep(SCENES_HERE)
+    found = tuple(sweeps(rows))
+
+    def best(scene: str, engine: str, variant: str) -> Any:
+        return best_of((row for row in rows if row.scene == scene), engine, variant)
+
+    def sweep(scene: str, engine: str, variant: str, quantity: str = "angle") -> Any:
+        return by_method(found, quantity).get((scene, engine, variant))
+
+    return {"best": best, "sweep": sweep}
+
+
+PAGE = Page(
+    name=NAME,
+    title="The four-bar linkage",
+    lesson="Three bars and four pins: the loop that the chapter closes exactly and an engine closes by forces.",
+    scenes=SCENES_HERE,
+    engines=ENGINES,
+    failures=FAILURES,
+    maps=MAPS,
+    figures=figures,
+    words=words,
+)

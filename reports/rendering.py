@@ -1,0 +1,169 @@
+"""A page's material to its files, as texts by file name; nothing here writes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from reference.scene import Scene
+from reports import charts, tables
+from reports.machine import machine, today, versions
+from reports.measure import Measurement
+from reports.outcomes import Outcome
+from reports.page import Failure, Material, Page, StabilityMap
+from reports.sweep import judged, sweeps
+from reports.theme import svg
+
+TEMPLATES = Path(__file__).parent / "pages"
+
+
+@dataclass(frozen=True)
+class Told:
+    """A failure or a map with its table or picture, ready for the template."""
+
+    title: str
+    expected: str
+    table: str
+    observations: str
+    remark: str
+    picture: str = ""
+
+
+def environment() -> Environment:
+    """Templates fail loudly on a name that has no value."""
+    out = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    out.filters["number"] = tables.number
+    out.filters["milliseconds"] = tables.milliseconds
+    return out
+
+
+def parameters(scene: Scene) -> str:
+    """A table of the scene's fields, which are the only place where its numbers stand."""
+    body = [[field.name, _value(getattr(scene, field.name))] for field in fields(scene)]  # type: ignore[arg-type]
+    return tables.markdown(["parameter", "value"], body)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, tuple):
+        return "(" + ", ".join(map(_value, value)) + ")"
+    return str(value)
+
+
+def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
+    """The page's Markdown and its SVG pictures by file name.
+
+    Raises jinja2.UndefinedError when the template names what the page does not give.
+    """
+    rows = judged(material.sweep(page.scenes))
+    files: dict[str, str] = {}
+    pictures: dict[str, str] = {}
+
+    def keep(name: str, text: str) -> None:
+        files[f"{page.name}_{name}.svg"] = text
+        pictures[name] = f"{page.name}_{name}.svg"
+
+    if any(row.purpose == "sweep" and Outcome(row.outcome).comparable for row in rows):
+        keep("work", svg(charts.work_precision(rows, page.featured), f"{page.title}: error against CPU time"))
+        keep("steps", svg(charts.error_against_step(rows, page.featured), f"{page.title}: error against step"))
+    maps = [_told_map(page, picture, material, keep) for picture in page.maps]
+    for name, text in page.figures(material).items():
+        keep(name, text)
+    scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name]) for scene in page.scenes]
+    files[f"{page.name}.md"] = (
+        environment()
+        .get_template(f"{page.name}.md")
+        .render(
+            page=page,
+            scenes=scenes,
+            pictures=pictures,
+            failures=[_told_failure(failure, material) for failure in page.failures],
+            maps=[told for told in maps if told],
+            outcomes=[outcome for outcome in Outcome if outcome in {row.outcome for row in material.rows.values()}],
+            foot=foot(command),
+            **page.words(material),
+        )
+    )
+    return files
+
+
+def _told_scene(scene: Scene, rows: list[Measurement]) -> dict[str, Any]:
+    told = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
+    return {
+        "name": scene.name,
+        "source": scene.source,
+        "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
+        "parameters": parameters(scene),
+        "errors": tables.error_table(rows),
+        "orders": tables.order_table(sweeps(rows)),
+        "work": tables.work_table(rows),
+        "reactions": tables.reaction_table(rows),
+        "sizes": tables.size_table(rows),
+        "unsupported": [(row.method, row.sentence) for row in told if row.every == min(r.every for r in told)],
+        "missing": not rows,
+    }
+
+
+def _told_failure(failure: Failure, material: Material) -> Told:
+    rows = material.of(failure.cells)
+    seen = failure.observations() if failure.observations else ()
+    observations = tables.markdown(
+        ["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3
+    )
+    return Told(
+        failure.title,
+        failure.expected,
+        tables.outcome_table(rows) if rows else "",
+        observations if seen else "",
+        failure.remark,
+    )
+
+
+def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> Told | None:
+    rows = [(value, material.rows[cell]) for value, cell in picture.cells if cell in material.rows]
+    if not rows:
+        return None
+    keep(picture.name, svg(charts.stability_map(rows, picture.parameter), picture.title))
+    return Told(picture.title, "", "", "", picture.remark, f"{page.name}_{picture.name}.svg")
+
+
+def foot(command: str) -> str:
+    """What the page was made with."""
+    return f"Made by `{command}` with {versions()}; timings on {machine()}."
+
+
+def render_index(pages: Iterable[tuple[Page, Material]], command: str) -> str:
+    """The index: a table a scene, a line a method that its page features."""
+    told = []
+    for page, material in pages:
+        rows = [row for row in judged(material.sweep(page.scenes)) if page.featured(row)]
+        names = [scene.name for scene in page.scenes]
+        summaries = {name: tables.summary_table([row for row in rows if row.scene == name]) for name in names}
+        told.append({"page": page, "summaries": summaries, "missing": not rows})
+    return environment().get_template("index.md").render(pages=told, outcomes=list(Outcome), foot=foot(command))
+
+
+def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:
+    """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines."""
+    files: dict[str, str] = {}
+    rows: dict[str, Measurement] = {}
+    for page, material in pages.items():
+        files.update(render_page(page, material, command))
+        rows.update({row.key: row for row in material.rows.values()})
+    files["index.md"] = render_index(pages.items(), command)
+    files["errors.csv"] = tables.as_csv(rows.values(), timings=False)
+    header = f"{today()}\n{machine()}\n{versions()}\n{command}\nCPU seconds: cpu per simulated second; build once"
+    files["timings.csv"] = tables.as_csv(rows.values(), timings=True, header=header)
+    return files

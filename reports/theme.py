@@ -1,0 +1,130 @@
+"""Colours for light and dark paper, and how a figure becomes an SVG that reads well on both."""
+
+from __future__ import annotations
+
+import io
+import re
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, fields
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+WIDTH = 9.2  # inches: GitHub shows about this much of a page without scaling
+
+
+@dataclass(frozen=True)
+class Theme:
+    """One colour for each role; no two roles share a colour, so that a stylesheet can tell them apart in an SVG."""
+
+    paper: str
+    ink: str
+    quiet: str
+    grid: str
+    pymunk: str
+    mujoco: str
+    lagrange: str
+    fourth: str
+    good: str
+    middling: str
+    bad: str
+    worse: str
+
+
+LIGHT = Theme(
+    paper="#fdfdfc",
+    ink="#1f2328",
+    quiet="#5d6670",
+    grid="#dfe3e8",
+    pymunk="#c2410c",
+    mujoco="#1d5fbf",
+    lagrange="#2f7d4f",
+    fourth="#8b3fa0",
+    good="#cfe8d5",
+    middling="#fae3a8",
+    bad="#f0a58f",
+    worse="#b7a3d8",
+)
+DARK = Theme(
+    paper="#15191f",
+    ink="#e6eaef",
+    quiet="#9aa4af",
+    grid="#333b45",
+    pymunk="#ff9457",
+    mujoco="#74aefc",
+    lagrange="#6fcf97",
+    fourth="#d79be8",
+    good="#24503a",
+    middling="#6b5617",
+    bad="#8c3b29",
+    worse="#55437f",
+)
+
+SETTINGS = {
+    "svg.hashsalt": "crosscheck",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.titlesize": 9.5,
+    "axes.labelsize": 9,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "hatch.linewidth": 0.6,
+}
+
+
+def settings() -> AbstractContextManager[None]:
+    """Context in which every figure is made and saved, whatever the user's own configuration says."""
+    return matplotlib.rc_context({**matplotlib.rcParamsDefault, **SETTINGS})
+
+
+def new_figure(height: float, theme: Theme, width: float = WIDTH) -> Figure:
+    """An empty figure [inches] on the theme's paper."""
+    return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
+
+
+def style_axes(axes: Axes, theme: Theme, grid: bool = True) -> None:
+    """Quiet frame, quiet ticks, a grid behind the data."""
+    axes.set_facecolor(theme.paper)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_color(theme.quiet)
+    axes.tick_params(which="both", colors=theme.quiet, labelcolor=theme.ink)
+    axes.xaxis.label.set_color(theme.ink)
+    axes.yaxis.label.set_color(theme.ink)
+    axes.title.set_color(theme.ink)
+    if grid:
+        axes.grid(True, which="major", color=theme.grid, linewidth=0.7)
+    axes.set_axisbelow(True)
+
+
+def svg(figure: Figure, title: str) -> str:
+    """A figure made with LIGHT as an SVG text whose colours follow the reader's scheme; the same bytes every time.
+
+    The light colours stand in the drawing itself, so that a viewer without stylesheets shows it well too; one rule a
+    role replaces them on dark paper. `title` becomes the text that a screen reader says.
+    """
+    out = io.StringIO()
+    with settings():
+        FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None, "Creator": None, "Title": title})
+    text = out.getvalue()
+    rules = []
+    for field in fields(Theme):
+        light, dark = getattr(LIGHT, field.name), getattr(DARK, field.name)
+        for kind in ("fill", "stroke"):
+            if f"{kind}: {light}" in text:
+                rules.append(f'[style*="{kind}: {light}"] {{ {kind}: {dark} !important }}')
+    sheet = "\n".join(["<style>@media (prefers-color-scheme: dark) {", *rules, "}</style>"])
+    text = re.sub(r"(<svg [^>]*>)", lambda match: match.group(1) + "\n" + sheet, text, count=1)
+    return re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE)
+
+
+def png(figure: Figure, path: str, resolution: int = 110) -> None:
+    """Write a figure as a picture, to be looked at."""
+    FigureCanvasAgg(figure)
+    with settings():
+        figure.savefig(path, dpi=resolution)

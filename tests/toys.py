@@ -1,0 +1,135 @@
+"""A scene and engines with known errors and known ways to fail: they exercise the reports, not any physics engine."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from engines import Size, Unsupported
+from reference.joints import Pin
+from reference.mechanism import Body, Mechanism
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Disc(Scene):
+    """A disc on a pin through its centre turns at a constant rate [rad/s], and the pin carries its weight."""
+
+    name: ClassVar[str] = "disc"
+    page: ClassVar[str] = "discs"
+    source: ClassVar[str] = "invented"
+
+    rate: float = 2.0
+    duration: float = 0.2
+    horizon: float = 0.2
+
+    def mechanism(self) -> Mechanism:
+        disc = Body("disc", 1.0, 0.5, (0.0, 0.0, 0.0), (0.0, 0.0, self.rate))
+        return Mechanism((disc,), (Pin("axle", None, "disc", (0.0, 0.0), (0.0, 0.0)),), (0.0, -10.0))
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        return turning(self.mechanism(), np.asarray(t, dtype=float))
+
+    def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
+        return np.where(pose[..., 0, 0] < -0.5, -1, 1)
+
+
+@dataclass(frozen=True)
+class ImpossibleDisc(Disc):
+    """The mechanism exists, the textbook has no motion for it."""
+
+    name: ClassVar[str] = "impossible_disc"
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        raise ValueError("no such motion")
+
+
+def turning(mechanism: Mechanism, t: NDArray[np.float64]) -> Trajectory:
+    pose, twist = np.zeros((len(t), 1, 3)), np.zeros((len(t), 1, 3))
+    pose[:, 0, 2], twist[:, 0, 2] = mechanism.twist[0, 2] * t, mechanism.twist[0, 2]
+    return Trajectory(t, pose, twist, np.tile([0.0, 10.0], (len(t), 1)), 1e-4)
+
+
+class ToyRun:
+    def __init__(self, mechanism: Mechanism, dt: float, spoil: Callable[[Trajectory, float], Trajectory]) -> None:
+        self.size = Size(1, 3, 2, 2)
+        self._mechanism, self._dt, self._spoil = mechanism, dt, spoil
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        t = np.arange(samples + 1) * every * self._dt
+        return self._spoil(turning(self._mechanism, t), self._dt)
+
+
+@dataclass(frozen=True)
+class Toy:
+    """Angle error `factor` * step ** `order` + `plateau`, reached linearly in time."""
+
+    variant: str = "default"
+    factor: float = 1.0
+    order: float = 2.0
+    plateau: float = 0.0
+    name: str = "toy"
+
+    def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
+        return ToyRun(mechanism, dt, self.spoil)
+
+    def spoil(self, exact: Trajectory, dt: float) -> Trajectory:
+        exact.pose[:, 0, 2] += (self.factor * dt**self.order + self.plateau) * exact.t / exact.t[-1]
+        return exact
+
+
+@dataclass(frozen=True)
+class FailingToy(Toy):
+    """Fails as its variant says: abort, exit, hang, raise, nan, refuse, unsupported, tear, reset, flip, saturate."""
+
+    def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
+        match self.variant:
+            case "refuse":
+                raise ValueError("mass is -1; it must be greater than zero")
+            case "unsupported":
+                raise Unsupported("it has no pins")
+        return super().build(mechanism, dt)
+
+    def spoil(self, exact: Trajectory, dt: float) -> Trajectory:
+        match self.variant:
+            case "abort":
+                os.write(2, b"Aborting due to Toy error: no such thing\n")
+                os.abort()
+            case "exit":
+                os._exit(3)
+            case "hang":
+                while True:
+                    time.sleep(1)
+            case "raise":
+                raise RuntimeError("something else")
+            case "nan":
+                exact.pose[3:] = np.nan
+            case "tear":
+                exact.pose[5:, 0, 0] = 0.3
+            case "reset":
+                exact.pose[5:] = np.nan
+                return Trajectory(exact.t, exact.pose, exact.twist, exact.reaction, 1e-4, reset_at=float(exact.t[5]))
+            case "saturate":
+                exact.pose[:, 0, 2] += 5 * exact.t
+        return exact
+
+
+FAILURES = {
+    "abort": "aborted",
+    "exit": "aborted",
+    "hang": "timed out",
+    "raise": "failed",
+    "nan": "diverged",
+    "refuse": "refused",
+    "unsupported": "unsupported",
+    "tear": "torn",
+    "reset": "reset",
+    "saturate": "saturated",
+}
