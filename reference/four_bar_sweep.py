@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # All buffers of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
-BLOCK = 4096
+BLOCK = 8192
 # A crank angle is a rounded number: one that misses the reachable range by this many roundings is taken as its end.
 ROUNDINGS = 16
 
