@@ -1,0 +1,164 @@
+"""The MuJoCo engine as a value: its settings, what they may be, and the variants and methods that the report shows."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, get_args
+
+import mujoco
+
+from engines import Size, Unsupported, check_step
+from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
+from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.solution import choose_solver
+from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
+from reference.mechanism import Mechanism
+
+Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
+Solver = Literal["Newton", "CG", "PGS"]
+Factorisation = Literal["auto", "dense", "sparse"]
+
+
+def refuse_wrong_version(version: str) -> None:
+    """Raise Unsupported for the releases that are known to give wrong motions without a warning."""
+    numbers = tuple(int(part) for part in version.split(".")[:3] if part.isdigit())
+    if numbers < (3, 7):
+        raise Unsupported(
+            f"MuJoCo {version} leaves the velocity term out of its loop constraints; 3.7 and later have it, "
+            "and 4.0.1 is what this suite is made for"
+        )
+    if numbers == (4, 0, 0):
+        raise Unsupported(
+            "MuJoCo 4.0.0 factorises the inertia of some branching trees wrongly and says nothing; take 4.0.1 or later"
+        )
+
+
+@dataclass(frozen=True)
+class MuJoCo:
+    """A mechanism in MuJoCo; every field but `variant` is a setting.
+
+    `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
+    coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
+    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
+    beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
+    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, as users do. `solvers` are tried at
+    the start in this order, and the first that solves it is taken.
+    Raises ValueError for a setting that MuJoCo would not understand.
+    """
+
+    variant: str
+    integrator: Integrator = "Euler"
+    stiffness: Stiffness = field(default_factory=Shipped)
+    coordinates: Coordinates = "tree"
+    drive: DriveBy = "inertia"
+    armature: float = 1e8
+    servo_gain: float = 10.0
+    solvers: tuple[Solver, ...] = ("Newton",)
+    iterations: int = 100
+    tolerance: float = 1e-8
+    jacobian: Factorisation = "auto"
+    islands: bool = True
+    name: ClassVar[str] = "mujoco"
+
+    def __post_init__(self) -> None:
+        for setting, valid in (
+            ("integrator", get_args(Integrator)),
+            ("coordinates", get_args(Coordinates)),
+            ("drive", get_args(DriveBy)),
+            ("jacobian", get_args(Factorisation)),
+            ("islands", (True, False)),
+        ):
+            if getattr(self, setting) not in valid:
+                raise ValueError(f"mujoco: {setting} is {getattr(self, setting)!r}; it must be one of {list(valid)}")
+        if not self.solvers or any(solver not in get_args(Solver) for solver in self.solvers):
+            valid = list(get_args(Solver))
+            raise ValueError(f"mujoco: solvers is {self.solvers!r}; it must be a tuple of at least one of {valid}")
+        if not isinstance(self.stiffness, Stiffness):
+            raise ValueError(f"mujoco: stiffness is {self.stiffness!r}; it must be Shipped, TiedToStep or Hardened")
+        if not (isinstance(self.iterations, int) and self.iterations > 0):
+            raise ValueError(f"mujoco: iterations is {self.iterations!r}; it must be a whole number greater than zero")
+        for setting, least in (("tolerance", 0.0), ("armature", math.ulp(0.0)), ("servo_gain", math.ulp(0.0))):
+            value = getattr(self, setting)
+            if not (isinstance(value, (int, float)) and math.isfinite(value) and value >= least):
+                bound = "zero or greater" if least == 0 else "greater than zero"
+                raise ValueError(f"mujoco: {setting} is {value!r}; it must be a finite number, {bound}")
+
+    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
+        """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
+        model = self.model(mechanism, dt)
+        data = model.start()
+        size = Size(
+            bodies=model.compiled.nbody - 1,
+            coordinates=model.compiled.nq,
+            rows=2 * len(model.tree.loops) + (len(model.driven) if self.drive != "overwrite" else 0),
+            solver_rows=data.nefc,
+        )
+        return MuJoCoRun(model, data, size)
+
+    def model(self, mechanism: Mechanism, dt: float) -> Model:
+        """The compiled model alone."""
+        check_step(dt)
+        refuse_wrong_version(mujoco.__version__)
+        disable = mujoco.mjtDisableBit.mjDSBL_CONTACT
+        if not self.islands:
+            disable |= mujoco.mjtDisableBit.mjDSBL_ISLAND
+        model = build_model(
+            mechanism,
+            float(dt),
+            options={
+                "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{self.integrator.upper()}"),
+                "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
+                "iterations": self.iterations,
+                "tolerance": self.tolerance,
+            },
+            disable=int(disable),
+            stiffness=self.stiffness,
+            coordinates=self.coordinates,
+            drive=self.drive,
+            armature=self.armature,
+            servo_gain=self.servo_gain,
+        )
+        choose_solver(model, self.solvers)
+        return model
+
+
+def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: float, steps: int) -> float:
+    """CPU seconds of the plainest loop over `mj_step`: what any user pays, to hold a run's cost against."""
+    model = engine.model(mechanism, dt)
+    compiled, data, advance = model.compiled, model.start(), mujoco.mj_step
+    begin = time.process_time()
+    for _ in range(steps):
+        advance(compiled, data)
+    return time.process_time() - begin
+
+
+DEFAULT = MuJoCo("default")
+TUNED = MuJoCo("tuned", "RK4", TiedToStep(), jacobian="dense", islands=False)
+EXTENDED = MuJoCo(
+    "extended",
+    "RK4",
+    Hardened(),
+    armature=1e12,
+    solvers=("PGS", "Newton", "CG"),
+    iterations=100,
+    tolerance=1e-28,
+    jacobian="dense",
+    islands=False,
+)
+METHODS = (
+    DEFAULT,
+    TUNED,
+    EXTENDED,
+    replace(TUNED, variant="stiff Euler", integrator="Euler"),
+    replace(TUNED, variant="stiff implicitfast", integrator="implicitfast"),
+    replace(TUNED, variant="stiff discrete", integrator="discrete"),
+    replace(TUNED, variant="RK4 alone", stiffness=Shipped()),
+    replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
+    replace(TUNED, variant="tuned, servo", drive="servo"),
+    replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),
+)

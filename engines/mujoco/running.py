@@ -1,0 +1,151 @@
+"""Stepping a model and recording its states in the timed loop; accelerations, reactions and warnings are read later."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Size, check_counts
+from engines.mujoco.model import Model
+from engines.mujoco.solution import unsolved
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+# A joint that opens by more than this part of the mechanism's length is no longer an error of integration: we say so.
+TORN = 1e-3
+# A solver that misses the accelerations by more than this part of them has not converged, whatever it reports.
+UNSOLVED = 1e-5
+
+
+@dataclass
+class _Complaints:
+    """What MuJoCo says while it runs, each sentence once, and when it first reset itself [s]."""
+
+    data: Any
+    said: dict[str, None] = field(default_factory=dict)
+    reset_at: float | None = None
+
+    def hear(self, message: str) -> None:
+        # Called before the reset, so the time is still that of the step which failed.
+        text = message.split(" Time = ")[0]
+        self.said.setdefault(text)
+        if "value in Q" in text and self.reset_at is None:
+            self.reset_at = float(self.data.time)
+
+
+@contextmanager
+def _listening(data: Any) -> Iterator[_Complaints]:
+    """Hear MuJoCo's warnings, which it would otherwise write into a file in the working directory."""
+    complaints = _Complaints(data)
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(complaints.hear)
+    try:
+        yield complaints
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+@dataclass(frozen=True)
+class MuJoCoRun:
+    """A built model at its start; call it once with (samples, every) for a Trajectory."""
+
+    model: Model
+    data: Any  # mujoco.MjData, which stepping changes
+    size: Size
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already."""
+        check_counts(samples, every)
+        if self.data.time > 0:
+            raise RuntimeError("this model has been stepped already; build it again to repeat the run")
+        step = self.model.compiled.opt.timestep
+        t = np.arange(samples + 1) * (every * step)
+        with _listening(self.data) as complaints:
+            position, velocity, clock, stepping = self._step(samples, every)
+            # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
+            behind = np.abs(clock - t) > step / 2
+            reset_at = complaints.reset_at if complaints.reset_at is not None else _first(t, behind)
+            sound = ~behind & np.all(np.isfinite(position) & np.isfinite(velocity), axis=1)
+            if reset_at is not None:
+                sound &= t <= reset_at
+            warnings = list(complaints.said)
+            acceleration, missed = self._accelerations(position, velocity, t, sound)
+        pose, twist, change = self.model.tree.motion(*(self._ordered(x) for x in (position, velocity, acceleration)))
+        reaction = np.full((samples + 1, self.model.mechanism.row_count), np.nan)
+        read = np.all(np.isfinite(change), axis=(1, 2))
+        reaction[read] = self.model.mechanism.reaction(pose[read], change[read])
+        pose[~sound], twist[~sound] = np.nan, np.nan
+        warnings += self._doubts(pose[sound], t[sound], missed)
+        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
+
+    def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:
+        """(samples + 1, ...) positions, velocities and clock, as MuJoCo orders them, and the loop's CPU seconds."""
+        compiled, data = self.model.compiled, self.data
+        position, velocity = np.empty((samples + 1, compiled.nq)), np.empty((samples + 1, compiled.nv))
+        clock = np.empty(samples + 1)
+        now_position, now_velocity, advance = data.qpos, data.qvel, mujoco.mj_step
+        position[0], velocity[0], clock[0] = now_position, now_velocity, data.time
+        overwrite = self.model.drive == "overwrite" and self.model.driven
+        begin = time.process_time()
+        if overwrite:
+            for sample in range(1, samples + 1):
+                for _ in range(every):
+                    advance(compiled, data)
+                    self._overwrite()
+                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
+        else:
+            for sample in range(1, samples + 1):
+                advance(compiled, data, nstep=every)
+                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
+        return position, velocity, clock, time.process_time() - begin
+
+    def _overwrite(self) -> None:
+        for driven in self.model.driven:
+            place = self.model.address[driven.column]
+            self.data.qpos[place] = driven.rate * self.data.time
+            self.data.qvel[place] = driven.rate
+
+    def _ordered(self, values: Array) -> Array:
+        return values[:, self.model.address]
+
+    def _accelerations(
+        self, position: Array, velocity: Array, t: Array, sound: NDArray[np.bool_]
+    ) -> tuple[Array, float]:
+        """Accelerations at the samples by the engine's own solver, and by how much it failed to solve, at worst."""
+        compiled, data = self.model.compiled, self.data
+        acceleration, worst = np.full_like(velocity, np.nan), 0.0
+        for sample in np.flatnonzero(sound):
+            data.qpos[:], data.qvel[:], data.time = position[sample], velocity[sample], t[sample]
+            mujoco.mj_forward(compiled, data)
+            acceleration[sample] = data.qacc
+            data.qacc_warmstart[:] = data.qacc
+            worst = max(worst, unsolved(compiled, data))
+        return acceleration, worst
+
+    def _doubts(self, pose: Array, t: Array, missed: float) -> list[str]:
+        """What we noticed and MuJoCo did not say."""
+        mechanism, doubts = self.model.mechanism, []
+        if len(t):
+            gap = np.nan_to_num(np.abs(mechanism.gap(pose, t)))
+            sample, row = np.unravel_index(int(np.argmax(gap)), gap.shape) if gap.size else (0, 0)
+            if gap.size and gap[sample, row] > TORN * mechanism.length_scale:
+                name = mechanism.row_names[row]
+                doubts.append(f"ours: row {name!r} is open by {gap[sample, row]:.2g} at {t[sample]:.4g} s")
+        if not missed <= UNSOLVED:
+            doubts.append(f"ours: the solver missed the accelerations by {missed:.1g} of themselves")
+        return doubts
+
+
+def _first(t: Array, flags: NDArray[np.bool_]) -> float | None:
+    return float(t[int(np.argmax(flags))]) if flags.any() else None

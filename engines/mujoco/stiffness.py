@@ -1,0 +1,96 @@
+"""How stiff MuJoCo makes its equality constraints: every one is a spring and damper with a compliance of its own.
+
+A row obeys a + b v + k r = -R f: the reference acceleration that the solver aims at, missed by the regularisation R
+times the row's force. R is (1 - d) / d of a diagonal estimate of the row's inverse inertia, and d can't exceed 0.9999.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from reference.mechanism import Mechanism
+
+# MuJoCo clamps its impedance d here; all five numbers of solimp with it make d constant.
+STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
+
+
+def _require_positive(owner: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
+            raise ValueError(f"{owner}: {name} is {value!r}; it must be a finite number greater than zero")
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """MuJoCo's defaults: a time constant of 0.02 s whatever the step, impedance 0.9 to 0.95."""
+
+    softening: ClassVar[float] = 1.0
+
+    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """solref."""
+        return 0.02, 1.0
+
+    @property
+    def impedance(self) -> tuple[float, float, float, float, float]:
+        """solimp."""
+        return 0.9, 0.95, 0.001, 0.5, 2.0
+
+
+@dataclass(frozen=True)
+class TiedToStep:
+    """Critically damped with a time constant of some steps, impedance at its limit: documented settings only.
+
+    The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
+    Below two steps MuJoCo clamps the time constant.
+    """
+
+    steps: float = 5.0
+    softening: ClassVar[float] = 1.0
+
+    def __post_init__(self) -> None:
+        _require_positive("stiffness tied to the step", steps=self.steps)
+
+    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """solref."""
+        return self.steps * dt, 1.0
+
+    @property
+    def impedance(self) -> tuple[float, float, float, float, float]:
+        """solimp."""
+        return STIFFEST
+
+
+@dataclass(frozen=True)
+class Hardened:
+    """The compliance itself multiplied by `softening`; springs as slow as the motion allows, whatever the step.
+
+    The estimate in R comes from fields of the model that can be written after it is compiled. With R near zero the loop
+    needs no stiff spring, so its time constant can be `share` of the mechanism's time scale, and at least `steps`
+    steps: the Runge-Kutta integrator then keeps its order 4.
+    """
+
+    softening: float = 1e-8
+    share: float = 0.2
+    steps: float = 5.0
+
+    def __post_init__(self) -> None:
+        _require_positive("hardened stiffness", softening=self.softening, share=self.share, steps=self.steps)
+
+    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
+        """[s]"""
+        return max(self.steps * dt, self.share * mechanism.time_scale)
+
+    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """solref in its direct form, -stiffness and -damping of a unit mass: this one MuJoCo doesn't clamp."""
+        constant = self.time_constant(mechanism, dt)
+        return -1 / constant**2, -2 / constant
+
+    @property
+    def impedance(self) -> tuple[float, float, float, float, float]:
+        """solimp."""
+        return STIFFEST
+
+
+Stiffness = Shipped | TiedToStep | Hardened

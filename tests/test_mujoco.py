@@ -1,0 +1,340 @@
+"""MuJoCo as an engine: the right model, the right instants, the right forces, and no silent trouble."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.mujoco import DEFAULT, EXTENDED, METHODS, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
+from engines.mujoco.engine import refuse_wrong_version
+from engines.mujoco.solution import unsolved
+from reference.four_bar_scenes import DrivenFourBar, FreeFourBar
+from reference.joints import Drive, Joint, Pin
+from reference.mechanism import Body, Mechanism
+from reference.trajectory import Trajectory, energy
+from tests.mechanisms import bar, four_bar, pendulum
+
+FREE, DRIVEN = FreeFourBar(), DrivenFourBar()
+
+
+def run(engine: MuJoCo, scene: Any, every: int) -> tuple[Trajectory, Trajectory]:
+    dt = scene.spacing / every
+    motion = engine.build(scene.mechanism(), dt)(scene.samples, every)
+    return motion, scene.motion(motion.t)
+
+
+def angle_error(engine: MuJoCo, scene: Any, every: int) -> float:
+    motion, truth = run(engine, scene, every)
+    return float(np.abs(motion.pose - truth.pose)[..., 2].max())
+
+
+def heavy_coupler(ratio: float) -> Mechanism:
+    mechanism = four_bar(crank_rate=10.0)
+    crank, coupler, rocker = mechanism.bodies
+    coupler = replace(coupler, mass=coupler.mass * ratio, inertia=coupler.inertia * ratio)
+    return replace(mechanism, bodies=(crank, coupler, rocker))
+
+
+def arch(links: int, length: float = 0.02) -> Mechanism:
+    """Bars along a half circle, pinned to the ground at both ends."""
+    angle = np.linspace(np.pi, 0, links + 1)
+    points = length / (2 * np.sin(np.pi / 2 / links)) * np.stack([np.cos(angle), -np.sin(angle)], axis=-1)
+    places = [(float(x), float(y)) for x, y in points]
+    bodies = tuple(bar(f"bar {i}", places[i], places[i + 1]) for i in range(links))
+    half = [body.mass / 2 for body in bodies]
+    joints: list[Joint] = [Pin("left", None, "bar 0", places[0], (-half[0], 0.0))]
+    for i in range(1, links):
+        joints.append(Pin(f"pin {i}", f"bar {i - 1}", f"bar {i}", (half[i - 1], 0.0), (-half[i], 0.0)))
+    joints.append(Pin("right", f"bar {links - 1}", None, (half[-1], 0.0), places[-1]))
+    return Mechanism(bodies, tuple(joints), (1.0, -9.81))
+
+
+@pytest.mark.parametrize("engine", METHODS, ids=lambda engine: engine.variant)
+@pytest.mark.parametrize("scene", [FREE, DRIVEN], ids=["free", "driven"])
+def test_the_start_is_the_mechanisms_own_to_rounding(engine: MuJoCo, scene: Any) -> None:
+    mechanism = scene.mechanism()
+    motion = engine.build(mechanism, 1e-3)(1, 1)
+    # A few roundings of numbers of about 10; a velocity at the wrong time level would miss by a dt = 1e-2.
+    assert np.abs(motion.pose[0] - mechanism.pose).max() < 1e-14
+    assert np.abs(motion.twist[0] - mechanism.twist).max() < 1e-14
+    assert np.abs(mechanism.slip(motion.pose[0], motion.twist[0])).max() < 1e-14
+    assert np.abs(mechanism.gap(motion.pose[0], 0.0)).max() < 1e-14
+
+
+def test_the_targets_of_the_tuned_variant_hold_at_a_millisecond() -> None:
+    assert angle_error(TUNED, FREE, every=10) < 1e-6
+    assert angle_error(TUNED, DRIVEN, every=10) < 1e-6
+
+
+def test_the_targets_of_the_extended_variant_hold_at_a_millisecond() -> None:
+    for scene in (FREE, DRIVEN):
+        motion, truth = run(EXTENDED, scene, every=10)
+        assert np.abs(motion.pose - truth.pose)[..., 2].max() < 1e-8
+        assert np.abs(motion.reaction - truth.reaction).max() < 1e-6 * np.abs(truth.reaction).max()
+        assert motion.warnings == ()
+
+
+def test_the_targets_of_the_extended_variant_hold_at_a_tenth_of_a_millisecond() -> None:
+    motion, truth = run(EXTENDED, FREE, every=100)
+    assert np.abs(motion.pose - truth.pose)[..., 2].max() < 1e-11
+    total = energy(FREE.mechanism(), motion)
+    assert np.abs(total - total[0]).max() < 1e-11
+    assert angle_error(EXTENDED, DRIVEN, every=100) < 1e-11
+
+
+def test_a_crank_that_is_one_thousandth_longer_would_be_noticed() -> None:
+    wrong = FreeFourBar(crank=FREE.crank * 1.001)
+    truth = FREE.motion(np.linspace(0.0, 0.1, 11)).pose[..., 2]
+    motion = EXTENDED.build(wrong.mechanism(), 1e-3)(10, 10).pose[..., 2]
+    assert np.abs(motion - truth).max() > 1e-5
+
+
+def test_the_default_error_stays_as_the_step_shrinks_and_the_tuned_one_falls_as_its_square() -> None:
+    # The shipped time constant of 0.02 s and impedance of 0.9 are a soft loop at any step: a plateau.
+    assert angle_error(DEFAULT, FREE, every=100) > 0.5 * angle_error(DEFAULT, FREE, every=10)
+    # With a time constant of five steps the softness falls as dt^2: a factor of 16 from four times the steps.
+    ratio = angle_error(TUNED, FREE, every=10) / angle_error(TUNED, FREE, every=40)
+    assert 8 < ratio < 32
+
+
+def test_the_extended_variant_has_the_order_four_of_its_integrator() -> None:
+    # 2^4 = 16 between steps that resolve the time constant well; the bounds are orders 3.5 and 4.5.
+    ratio = angle_error(EXTENDED, FREE, every=10) / angle_error(EXTENDED, FREE, every=20)
+    assert 2**3.5 < ratio < 2**4.5
+
+
+@pytest.mark.parametrize("engine", [DEFAULT, TUNED, EXTENDED], ids=lambda engine: engine.variant)
+def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine: MuJoCo) -> None:
+    mechanism = four_bar(crank_rate=10.0)
+    built = engine.build(mechanism, 1e-3)
+    motion = built(10, 10)
+    compiled, data = built.model.compiled, built.data  # left at the last sample by the reading
+    mujoco.mj_rnePostConstraint(compiled, data)
+    rows = dict(zip(mechanism.row_names, motion.reaction[-1], strict=True))
+    loop = data.efc_force[:2]
+    # Both are sums of forces of about 100 N: a hundred roundings. The hinges differ from the loop by the whole chain.
+    largest = np.abs(motion.reaction[-1]).max()
+    assert np.abs(loop - [rows["C x"], rows["C y"]]).max() < 1e-9 * largest
+    for pin, body in (("A", "crank"), ("B", "coupler"), ("D", "rocker")):
+        number = compiled.body(f"body {mechanism.body_index(body)}").id
+        assert np.abs(data.cfrc_int[number, 3:5] - [rows[f"{pin} x"], rows[f"{pin} y"]]).max() < 1e-9 * largest
+
+
+def test_the_drive_torque_does_not_contain_the_armature() -> None:
+    motion, truth = run(EXTENDED, DRIVEN, every=10)
+    torque = list(DRIVEN.mechanism().row_names).index("drive torque")
+    assert np.abs(motion.reaction - truth.reaction)[:, torque].max() < 1e-6 * np.abs(truth.reaction[:, torque]).max()
+
+
+def test_a_drive_between_two_hinged_bodies_turns_the_one_against_the_other() -> None:
+    mechanism = four_bar(crank_rate=10.0)
+    # Relative to the crank the coupler turns at -15 rad/s at the start; a two-bar chain has no loop to disagree.
+    bodies, joints = mechanism.bodies[:2], mechanism.joints[:2]
+    for first, second, sign in (("crank", "coupler", 1.0), ("coupler", "crank", -1.0)):
+        offset = sign * (mechanism.pose[1, 2] - mechanism.pose[0, 2])
+        drive = Drive("elbow", first, second, sign * -15.0, float(offset))
+        chain = Mechanism(bodies, (*joints, drive), (0.0, -9.81))
+        motion = EXTENDED.build(chain, 1e-3)(10, 10)
+        assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-11
+        total = energy(chain, motion)
+        assert np.ptp(total) > 1e-2  # the drive works
+
+
+def test_free_coordinates_give_the_same_motion_with_every_pin_a_constraint() -> None:
+    engine = replace(EXTENDED, coordinates="free")
+    assert angle_error(engine, FREE, every=10) < 1e-7
+    size = engine.build(FREE.mechanism(), 1e-3).size
+    assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 9, 8, 12)
+
+
+def test_a_tree_closes_only_the_loops() -> None:
+    size = EXTENDED.build(FREE.mechanism(), 1e-3).size
+    assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 3, 2, 3)
+
+
+def test_a_body_that_no_pin_reaches_flies_freely_and_carries_its_own_tree() -> None:
+    mechanism = four_bar()
+    crank, coupler = (replace(body, twist=(1.0, 2.0, 0.0)) for body in mechanism.bodies[:2])
+    flying = Mechanism((crank, coupler), (mechanism.joints[1],), (0.0, -9.81))
+    built = EXTENDED.build(flying, 1e-3)
+    motion = built(10, 10)
+    assert built.size.coordinates == 4
+    fall = np.array([1.0, 2.0, 0.0]) * motion.t[:, None, None] + flying.free_fall / 2 * motion.t[:, None, None] ** 2
+    assert np.abs(motion.pose - flying.pose - fall).max() < 1e-13
+    assert np.abs(motion.reaction).max() < 1e-12  # nothing pulls on the pin of a body in free fall
+
+
+def test_angles_are_never_wrapped() -> None:
+    motion = EXTENDED.build(pendulum(rate=100.0), 1e-3)(20, 50)
+    assert motion.pose[-1, 0, 2] > 90
+
+
+def test_a_servo_lags_and_an_overwritten_crank_tears_the_loop_at_any_step() -> None:
+    mechanism = DRIVEN.mechanism()
+    servo, _ = run(replace(TUNED, drive="servo"), DRIVEN, every=10)
+    lag = np.abs(mechanism.gap(servo.pose, servo.t)[:, -1]).max()
+    assert lag > 1e-2
+    # The solver believes that an overwritten crank is free to accelerate, so the loop is wrong by a time constant's
+    # worth of its acceleration, however small the step.
+    gaps = []
+    for every in (10, 40):
+        motion, _ = run(replace(DEFAULT, drive="overwrite"), DRIVEN, every)
+        gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
+        assert any(warning.startswith("ours:") for warning in motion.warnings)
+    assert gaps[1] > 0.5 * gaps[0] > 5e-3
+
+
+@pytest.mark.parametrize("ratio", [1e-4, 1.0, 1e4])
+def test_the_extended_variant_takes_a_solver_that_solves_whatever_the_mass_ratio(ratio: float) -> None:
+    motion = EXTENDED.build(heavy_coupler(ratio), 1e-3)(30, 10)
+    assert motion.warnings == ()
+    assert np.abs(heavy_coupler(ratio).gap(motion.pose, motion.t)).max() < 1e-7
+
+
+def test_a_solver_that_fails_is_reported_though_mujoco_says_nothing() -> None:
+    motion = replace(EXTENDED, solvers=("PGS",)).build(heavy_coupler(1e4), 1e-3)(30, 10)
+    assert any(warning.startswith("ours: the solver missed") for warning in motion.warnings)
+
+
+def test_a_hundred_links_closed_by_one_loop_are_solved_by_the_first_solver_and_not_by_newton() -> None:
+    chain = arch(100)
+    built = EXTENDED.build(chain, 1e-3)
+    assert built.model.compiled.opt.solver == mujoco.mjtSolver.mjSOL_PGS
+    motion = built(2, 10)
+    assert motion.warnings == ()
+    assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
+    newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
+    assert unsolved(newton.model.compiled, newton.data) > 1e-3
+
+
+@pytest.mark.parametrize("scene", [FREE, DRIVEN], ids=["free", "driven"])
+@pytest.mark.parametrize("every", [1, 1000])
+def test_the_extended_rule_holds_from_large_steps_to_small_ones(scene: Any, every: int) -> None:
+    dt = scene.spacing / every
+    motion = EXTENDED.build(scene.mechanism(), dt)(5, every)
+    truth = scene.motion(motion.t)
+    # 1e-2 s: five steps are longer than the motion's own time constant, and order 4 leaves about 1e-5.
+    assert np.abs(motion.pose - truth.pose).max() < (1e-4 if every == 1 else 1e-11)
+
+
+def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, 5e11, 1e12))  # MuJoCo resets at rates above 1e10
+    mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),))
+    motion = DEFAULT.build(mechanism, 1e-3)(4, 10)
+    assert motion.reset_at == 0.0
+    assert np.isnan(motion.pose[1:]).all()
+    assert np.isnan(motion.twist[1:]).all()
+    assert np.isnan(motion.reaction[1:]).all()
+    assert any("QVEL" in warning for warning in motion.warnings)
+    assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT beside whatever it is run from
+
+
+def test_a_reset_in_the_middle_of_a_run_keeps_what_came_before() -> None:
+    # A spring that is faster than the step blows up: a direct time constant far below what the integrator can take.
+    engine = replace(TUNED, stiffness=Hardened(share=1e-6, steps=0.2))
+    motion = engine.build(four_bar(crank_rate=10.0), 1e-2)(100, 1)
+    assert motion.reset_at is not None
+    assert 0 < motion.reset_at < 1
+    before = motion.t <= motion.reset_at
+    assert np.isfinite(motion.pose[before]).all()
+    assert np.isnan(motion.pose[~before]).all()
+
+
+def test_a_run_can_not_be_repeated() -> None:
+    built = DEFAULT.build(FREE.mechanism(), 1e-3)
+    built(1, 1)
+    with pytest.raises(RuntimeError, match="build it again"):
+        built(1, 1)
+
+
+def test_two_runs_of_the_same_model_are_equal_to_the_last_bit() -> None:
+    first, second = (EXTENDED.build(FREE.mechanism(), 1e-3)(10, 10) for _ in range(2))
+    assert np.array_equal(first.pose, second.pose)
+    assert np.array_equal(first.reaction, second.reaction)
+
+
+def test_dense_and_sparse_factorisations_give_the_same_motion() -> None:
+    dense, sparse = (replace(TUNED, jacobian=kind).build(arch(12), 1e-3)(10, 10) for kind in ("dense", "sparse"))
+    # The same equations in another order: rounding, magnified by a stiff loop over a hundred steps.
+    assert np.abs(dense.pose - sparse.pose).max() < 1e-9
+
+
+def test_the_bare_loop_takes_some_time() -> None:
+    assert bare_loop(DEFAULT, FREE.mechanism(), 1e-3, 200) > 0
+
+
+def test_a_drive_that_no_coordinate_stands_for_is_unsupported_in_a_sentence() -> None:
+    mechanism = four_bar(crank_rate=10.0)
+    drive = Drive("far", None, "coupler", -5.0, mechanism.bodies[1].pose[2])
+    far = replace(mechanism, joints=(*mechanism.joints, drive))
+    with pytest.raises(Unsupported, match="'coupler' against the ground"):
+        EXTENDED.build(far, 1e-3)
+    assert replace(EXTENDED, coordinates="free").build(far, 1e-3).size.rows == 9
+
+
+def test_two_drives_of_one_joint_are_unsupported() -> None:
+    mechanism = four_bar(crank_rate=10.0, drive=10.0)
+    second = replace(mechanism.joints[-1], name="again")
+    with pytest.raises(Unsupported, match="another drive turns already"):
+        EXTENDED.build(replace(mechanism, joints=(*mechanism.joints, second)), 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("version", "reason"), [("3.3.7", "velocity term"), ("3.6.0", "velocity term"), ("4.0.0", "factorises")]
+)
+def test_versions_that_move_wrongly_are_refused(version: str, reason: str) -> None:
+    with pytest.raises(Unsupported, match=reason):
+        refuse_wrong_version(version)
+
+
+@pytest.mark.parametrize("version", ["3.7.0", "3.17.0", "4.0.1", "4.1.0", mujoco.__version__])
+def test_versions_that_move_rightly_are_taken(version: str) -> None:
+    refuse_wrong_version(version)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"integrator": "rk4"},
+        {"coordinates": "maximal"},
+        {"drive": "motor"},
+        {"solvers": ()},
+        {"solvers": ("Jacobi",)},
+        {"jacobian": "full"},
+        {"iterations": 0},
+        {"iterations": 1.5},
+        {"tolerance": -1e-8},
+        {"tolerance": float("nan")},
+        {"armature": 0.0},
+        {"servo_gain": float("inf")},
+        {"stiffness": 0.02},
+    ],
+    ids=str,
+)
+def test_bad_settings_are_refused_in_a_sentence(wrong: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=f"mujoco: {next(iter(wrong))} is .* must be"):
+        replace(EXTENDED, **wrong)
+
+
+@pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf")])
+def test_bad_steps_are_refused(dt: float) -> None:
+    with pytest.raises(ValueError, match="step dt"):
+        DEFAULT.build(FREE.mechanism(), dt)
+
+
+@pytest.mark.parametrize("make", [lambda: TiedToStep(0.0), lambda: Hardened(softening=-1.0), lambda: Hardened(share=0)])
+def test_bad_stiffness_is_refused(make: Any) -> None:
+    with pytest.raises(ValueError, match="greater than zero"):
+        make()
+
+
+def test_the_shipped_stiffness_is_mujocos_own() -> None:
+    equality = mujoco.MjSpec().add_equality()
+    assert tuple(equality.solref) == Shipped().reference(FREE.mechanism(), 1e-3)
+    assert tuple(equality.solimp) == Shipped().impedance
