@@ -1,0 +1,104 @@
+"""Richardson's extrapolation to zero step, around any engine: run it at several steps, keep what the steps agree on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine, Run, Size, check_counts, check_step
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+def extrapolation_weights(levels: Sequence[int], powers: Sequence[int]) -> Array:
+    """Weights w (levels,) of runs at steps dt / level: sum w = 1, and sum w level^-power = 0 for every power."""
+    steps = levels[0] / np.array(levels, dtype=float)
+    matrix = np.array([steps**power for power in (0, *powers)])
+    return np.linalg.solve(matrix, np.eye(len(levels))[0])
+
+
+@dataclass(frozen=True)
+class Extrapolated:
+    """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
+
+    A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
+    of the step (L. F. Richardson, 1911): they must be the powers that the inner engine's error really has, one fewer
+    than `levels`. A sample is NaN wherever one of the runs is not finite. The cost is the sum of all. The `estimate` is
+    the distance to the extrapolation without the coarsest run and without the highest power: the error of that simpler
+    one, so cautious while the powers describe the error, and large when they don't.
+
+    Raises ValueError for levels that are not rising whole numbers or powers that do not fit them.
+    """
+
+    engine: Engine
+    variant: str
+    levels: tuple[int, ...]
+    powers: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        for name, values in (("levels", self.levels), ("powers", self.powers)):
+            whole = all(isinstance(value, int) and value > 0 for value in values)
+            if not (values and whole and all(low < high for low, high in pairwise(values))):
+                raise ValueError(f"extrapolated: {name} are {values!r}; they must be whole numbers from 1, rising")
+        if len(self.levels) != len(self.powers) + 1:
+            raise ValueError(
+                f"extrapolated: {len(self.levels)} levels remove {len(self.levels) - 1} powers, "
+                f"but powers are {self.powers!r}; give one power fewer than levels"
+            )
+
+    @property
+    def name(self) -> str:
+        """The name of the engine inside."""
+        return self.engine.name
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:
+        """Build the engine once a level; raises whatever it raises."""
+        check_step(dt)
+        return ExtrapolatedRun(self, tuple(self.engine.build(mechanism, dt / level) for level in self.levels))
+
+
+class ExtrapolatedRun:
+    """The built models of all levels, ready to be stepped once; see `engines.Run`."""
+
+    def __init__(self, method: Extrapolated, runs: tuple[Run, ...]) -> None:
+        self._method, self._runs = method, runs
+        self.size: Size = runs[0].size
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        check_counts(samples, every)
+        levels, powers = self._method.levels, self._method.powers
+        parts = [run(samples, every * level) for run, level in zip(self._runs, levels, strict=True)]
+        weights = extrapolation_weights(levels, powers)
+        poses = np.stack([part.pose for part in parts])
+        pose = combine(poses, weights)
+        simpler = combine(poses[1:], extrapolation_weights(levels[1:], powers[:-1]))
+        with np.errstate(all="ignore"):
+            estimate = np.abs(pose - simpler)
+        resets = [part.reset_at for part in parts if part.reset_at is not None]
+        return Trajectory(
+            t=parts[-1].t,
+            pose=pose,
+            twist=combine(np.stack([part.twist for part in parts]), weights),
+            reaction=combine(np.stack([part.reaction for part in parts]), weights),
+            stepping=sum(part.stepping for part in parts),
+            warnings=tuple(dict.fromkeys(warning for part in parts for warning in part.warnings)),
+            reset_at=min(resets, default=None),
+            estimate=estimate,
+        )
+
+
+def combine(values: Array, weights: Array) -> Array:
+    """sum of weights (levels,) times values (levels, ...), NaN wherever a level is not finite.
+
+    Taken as the finest plus weighted differences from it: what all levels agree on, such as the start, comes out exact.
+    """
+    with np.errstate(all="ignore"):
+        finest = values[-1]
+        out = finest + np.tensordot(weights[:-1], values[:-1] - finest, axes=1)
+    return np.where(np.all(np.isfinite(values), axis=0), out, np.nan)

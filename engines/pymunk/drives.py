@@ -1,0 +1,61 @@
+"""A prescribed rotation in pymunk: a kinematic body turning about its pin, or else a motor between two bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pymunk
+from pymunk.constraints import SimpleMotor
+
+from reference.joints import Drive, Pin, Vector
+from reference.mechanism import Body, Mechanism
+
+
+@dataclass(frozen=True)
+class Crank:
+    """A body pinned to the ground and driven against it: its motion is known, so no constraint has to find it."""
+
+    pin: Pin
+    drive: Drive
+    own_point: Vector  # m, the pin in the body's frame
+    ground_point: Vector  # m, the pin in the world
+    turning_rate: float  # rad/s, of the body in the world
+
+
+def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
+    """The bodies that are pinned to the ground and driven against it, by name; each by its first pin and drive."""
+    pins: dict[str, Pin] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Pin) and (name := _grounded(joint)) is not None:
+            pins.setdefault(name, joint)
+    cranks: dict[str, Crank] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and (name := _grounded(joint)) in pins and name not in cranks:
+            pin = pins[name]
+            own, ground = pin.second_point, pin.first_point
+            if pin.second is None:
+                own, ground = ground, own
+            rate = joint.turning_rate if joint.first is None else -joint.turning_rate
+            cranks[name] = Crank(pin, joint, own, ground, rate)
+    return cranks
+
+
+def _grounded(joint: Pin | Drive) -> str | None:
+    """The name of the body that the joint holds to the ground, if it holds one to the ground."""
+    if joint.first is None:
+        return joint.second
+    return joint.first if joint.second is None else None
+
+
+def crank_body(crank: Crank, body: Body) -> pymunk.Body:
+    """A kinematic body whose origin is the pin: its drift keeps the pin in place and the angle linear, exactly."""
+    kinematic = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    kinematic.position, kinematic.angle = crank.ground_point, body.pose[2]
+    kinematic.angular_velocity = crank.turning_rate
+    return kinematic
+
+
+def motor(joint: Drive, first: pymunk.Body, second: pymunk.Body) -> SimpleMotor:
+    """One velocity row: it holds the rate and knows no angle, so what the sweeps leave adds up as a drift."""
+    # pymunk drives omega_first - omega_second to the motor's rate.
+    return SimpleMotor(first, second, -joint.turning_rate)

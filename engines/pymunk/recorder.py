@@ -1,0 +1,196 @@
+"""Stepping a pymunk model, copying its states out cheaply, and reading poses, twists and reactions from them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import repeat
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import ffi, lib
+from pymunk.batch import BodyFields, Buffer, get_space_bodies
+
+from engines import Size, check_counts
+from engines.pymunk.model import Model
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
+# Enough for the pins of a chain of tens of bodies to agree to rounding, in the few steps that give the first reaction.
+CONVERGED_ITERATIONS = 1000
+
+
+class Recorder:
+    """Copies the bodies of a space, in C, to the end of an array that is allocated before.
+
+    `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record: a quarter of a microsecond,
+    where reading attributes in Python takes more than one for every body.
+    """
+
+    def __init__(self, space: pymunk.Space, bodies: tuple[pymunk.Body, ...], states: int, velocities: int) -> None:
+        visited = _visited(space)
+        self._order = [visited.index(body.id) for body in bodies]
+        self._count = len(visited)
+        length = (6 * states + 3 * velocities) * self._count
+        # C grows an array a little before it is full, and this one is not its own to grow.
+        room = np.full(length + 64, np.nan)
+        self.values = room[:length]
+        floats = ffi.from_buffer("double[]", room)
+        integers = ffi.new("pmIntArray *")
+        target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
+        self._owned = (floats, integers, target)  # C holds bare pointers to these
+        self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
+        self.states, self.velocities = (
+            ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
+            for fields in (STATES, VELOCITIES)
+        )
+
+    def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
+        """States (samples + 1, bodies, 6) and the velocities one step before each (samples, bodies, 3).
+
+        In the array stands a state, then for every sample, if `with_velocities`, velocities and a state, else a state.
+        """
+        first, rest = np.split(self.values, [6 * self._count])
+        rest = rest.reshape(samples, -1)
+        split = 3 * self._count if with_velocities else 0
+        states = np.concatenate([first[None], rest[:, split:]]).reshape(samples + 1, self._count, 6)
+        before = rest[:, :split].reshape(samples, self._count, 3) if with_velocities else states[:-1, :, 3:]
+        return states[:, self._order], before[:, self._order]
+
+
+def _visited(space: pymunk.Space) -> list[int]:
+    """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
+    buffer = Buffer()
+    get_space_bodies(space, BodyFields.BODY_ID, buffer)
+    return list(memoryview(buffer.int_buf()).cast("P"))
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What the engine held at the samples, in the mechanism's order and frame."""
+
+    pose: Array  # (times, bodies, 3) at t
+    after: Array  # (times, bodies, 3) the engine's velocities with p(t): those of t, or of t + dt/2 in a leapfrog
+    before: Array  # (times - 1, bodies, 3) its velocities a step earlier, from the second sample on
+    stepping: float  # s
+
+
+def record(model: Model, dt: float, samples: int, every: int, raw: bool) -> Recording:
+    """Step samples * every times and keep every `every`-th state, with the velocities of the step before it."""
+    velocities = every > 1
+    recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
+    visit_each, pointer = lib.cpSpaceEachBody, model.space._space
+    step, space = model.stepper(raw)
+    visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
+    visit_each(pointer, visitor, after)
+    steps_between = range(every - 1)
+    begin = time.process_time()
+    for _ in repeat(None, samples):
+        if velocities:
+            for _ in steps_between:
+                step(space, dt)
+            visit_each(pointer, visitor, before)
+        step(space, dt)
+        visit_each(pointer, visitor, after)
+    stepping = time.process_time() - begin
+    states, earlier = recorder.read(samples, velocities)
+    with np.errstate(all="ignore"):  # a motion that blew up is a result
+        return Recording(*_of_mass_centres(model, states, earlier), stepping)
+
+
+def _of_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
+    """Move poses and velocities from the engine's origins to the centres of mass: cranks have theirs at the pin."""
+    pose, after, before = states[..., :3].copy(), states[..., 3:].copy(), earlier.copy()
+    for index in np.flatnonzero(np.any(model.origins != 0, axis=1)):
+        x, y = -model.origins[index]
+        for velocity, angle in (
+            (after[:, index], pose[:, index, 2]),
+            (before[:, index], pose[1:, index, 2]),
+        ):
+            velocity[:, 0] -= velocity[:, 2] * (np.sin(angle) * x + np.cos(angle) * y)
+            velocity[:, 1] += velocity[:, 2] * (np.cos(angle) * x - np.sin(angle) * y)
+        angle = pose[:, index, 2]
+        pose[:, index, 0] += np.cos(angle) * x - np.sin(angle) * y
+        pose[:, index, 1] += np.sin(angle) * x + np.cos(angle) * y
+    return pose, after, before
+
+
+def accelerations(model: Model, recording: Recording, dt: float) -> Array:
+    """Accelerations (times - 1, bodies, 3) of the centres of mass at the samples after the first."""
+    out = (recording.after[1:] - recording.before) / dt
+    for index in np.flatnonzero(np.any(model.origins != 0, axis=1)):
+        # A crank's rate is constant, and its centre turns about the pin.
+        x, y = -model.origins[index]
+        angle, rate = recording.pose[1:, index, 2], recording.after[1:, index, 2]
+        out[:, index, 0] = -(rate**2) * (np.cos(angle) * x - np.sin(angle) * y)
+        out[:, index, 1] = -(rate**2) * (np.sin(angle) * x + np.cos(angle) * y)
+        out[:, index, 2] = 0
+    return out
+
+
+def reactions(mechanism: Mechanism, pose: Array, acceleration: Array) -> Array:
+    """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
+    out = np.full((len(pose), mechanism.row_count), np.nan)
+    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
+    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
+    if mechanism.row_count and np.any(sane):
+        with np.errstate(all="ignore"):
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane])
+    return out
+
+
+class PymunkRun:
+    """One model, ready to be stepped once; see `engines.Run`."""
+
+    def __init__(
+        self, mechanism: Mechanism, dt: float, make: Callable[[Mechanism, int], Model], leapfrog: bool, iterations: int
+    ) -> None:
+        self._mechanism, self._dt, self._make, self._leapfrog = mechanism, dt, make, leapfrog
+        self._model: Model | None = self._started(iterations)
+        self.size: Size = self._model.size
+
+    def _started(self, iterations: int) -> Model:
+        model = self._make(self._mechanism, iterations)
+        if self._leapfrog:
+            model.kick(self._dt / 2)
+        return model
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        check_counts(samples, every)
+        if self._model is None:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        model, self._model = self._model, None
+        recording = record(model, self._dt, samples, every, raw=self._leapfrog)
+        pose, twist = recording.pose.copy(), recording.after.copy()
+        pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
+        with np.errstate(all="ignore"):
+            if self._leapfrog:
+                twist[1:] = (recording.before + recording.after[1:]) / 2
+            acceleration = accelerations(model, recording, self._dt)
+        reaction = np.concatenate(
+            [self._start_reaction()[None], reactions(self._mechanism, recording.pose[1:], acceleration)]
+        )
+        t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
+        return Trajectory(t, pose, twist, reaction, stepping=recording.stepping)
+
+    def _start_reaction(self) -> Array:
+        """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.
+
+        The twin makes enough sweeps that the cold start of the impulses does not matter. The force of its first step
+        will not do: it closes a gap for the first time, and so has up to half of the centripetal part too much; what is
+        left of this falls by one order of dt a step. As a user reads it, the third step's force stands here, first
+        order in dt. In a leapfrog the third and the fourth are extrapolated to zero: second order.
+        """
+        model = self._started(CONVERGED_ITERATIONS)
+        recording = record(model, self._dt, samples=4, every=1, raw=self._leapfrog)
+        with np.errstate(all="ignore"):
+            acceleration = accelerations(model, recording, self._dt)
+            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:])
+            return 4 * third - 3 * fourth if self._leapfrog else third

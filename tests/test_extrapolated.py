@@ -1,0 +1,170 @@
+"""Extrapolation to zero step, on toy engines whose error is known term by term."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from engines import Run, Size, Unsupported
+from engines.extrapolated import Extrapolated, combine, extrapolation_weights
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from tests.mechanisms import pendulum
+
+
+@dataclass(frozen=True)
+class Toy:
+    """Its pose is cos t plus coefficient * t * dt^power for every term; twist and reaction err by multiples of it."""
+
+    terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
+    broken_below: float = 0.0  # s, smaller steps give NaN from the second sample on
+    resets_below: float = 0.0  # s, smaller steps reset themselves
+    name: str = "toy"
+    variant: str = "plain"
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:
+        if len(mechanism.bodies) != 1:
+            raise Unsupported("a toy has one body")
+        return ToyRun(self, mechanism, dt)
+
+
+class ToyRun:
+    def __init__(self, toy: Toy, mechanism: Mechanism, dt: float) -> None:
+        self.toy, self.dt, self.rows = toy, dt, mechanism.row_count
+        self.size = Size(1, 3, 2, 2)
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        t = np.arange(samples + 1) * every * self.dt
+        error = t * sum(c * self.dt**power for power, c in self.toy.terms.items())
+        if self.dt < self.toy.broken_below:
+            error[1:] = np.nan
+        shape = np.ones((1, 1, 3))
+        reset = self.dt < self.toy.resets_below
+        return Trajectory(
+            t,
+            (np.cos(t) + error)[:, None, None] * shape,
+            (-np.sin(t) + 2 * error)[:, None, None] * shape,
+            (np.exp(-t) - 3 * error)[:, None] * np.ones(self.rows),
+            stepping=1e-3 * samples * every,
+            warnings=("reset", f"at step {self.dt:.3g}") if reset else (),
+            reset_at=self.dt * 100 if reset else None,
+        )
+
+
+def errors(trajectory: Trajectory) -> tuple[float, float, float]:
+    t = trajectory.t
+    return (
+        np.abs(trajectory.pose - np.cos(t)[:, None, None]).max(),
+        np.abs(trajectory.twist + np.sin(t)[:, None, None]).max(),
+        np.abs(trajectory.reaction - np.exp(-t)[:, None]).max(),
+    )
+
+
+def run(method: Extrapolated, dt: float = 0.1) -> Trajectory:
+    return method.build(pendulum(), dt)(10, 3)
+
+
+def test_the_weights_keep_a_constant_and_cancel_every_power():
+    for levels, powers in (((1, 2), (1,)), ((2, 3, 4, 6, 8), (2, 3, 4, 5)), ((1, 2, 4), (2, 4))):
+        weights = extrapolation_weights(levels, powers)
+        assert weights.sum() == pytest.approx(1, abs=1e-13)
+        for power in powers:
+            # Rounding only: the terms are at most |w| each, and |w| < 100 here.
+            assert weights @ (levels[0] / np.array(levels)) ** power == pytest.approx(0, abs=1e-13)
+
+
+def test_the_weights_of_two_levels_are_richardsons():
+    assert extrapolation_weights((1, 2), (2,)) == pytest.approx([-1 / 3, 4 / 3], abs=1e-15)
+
+
+def test_an_error_in_the_named_powers_vanishes_from_poses_twists_and_reactions():
+    inner = Toy().build(pendulum(), 0.1)(10, 3)
+    assert min(errors(inner)) > 1e-2
+    assert max(errors(run(Extrapolated(Toy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13  # rounding
+
+
+@pytest.mark.parametrize("powers", [(2, 4), (1, 3), (3, 4)])
+def test_powers_that_the_error_does_not_have_leave_it_there(powers):
+    # What (2, 4) leaves of 2 t dt^3 is 2 * 3 * 1e-3 / 60; of the others more remains.
+    assert min(errors(run(Extrapolated(Toy(), "extended", (1, 2, 3), powers)))) > 0.9e-4
+
+
+def test_the_remaining_error_has_the_order_of_the_first_power_that_was_not_removed():
+    method = Extrapolated(Toy({2: 1.0, 3: -2.0, 4: 1.0}), "extended", (1, 2, 3), (2, 3))
+    coarse = method.build(pendulum(), 0.2)(10, 1)
+    fine = method.build(pendulum(), 0.1)(10, 2)
+    assert errors(coarse)[0] / errors(fine)[0] == pytest.approx(2**4, rel=1e-6)
+
+
+def test_the_estimate_is_above_the_error_and_falls_with_the_step():
+    method = Extrapolated(Toy({2: 1.0, 3: -2.0, 4: 1.0}), "extended", (1, 2, 3), (2, 3))
+    coarse, fine = method.build(pendulum(), 0.1)(10, 3), method.build(pendulum(), 0.01)(10, 30)
+    for trajectory in (coarse, fine):
+        assert trajectory.estimate is not None
+        assert trajectory.estimate.shape == trajectory.pose.shape
+        assert errors(trajectory)[0] < trajectory.estimate.max()
+    assert fine.estimate.max() < 1e-2 * coarse.estimate.max()  # ten times finer, order three
+
+
+def test_the_estimate_shows_that_the_powers_are_wrong():
+    right = run(Extrapolated(Toy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
+    wrong = run(Extrapolated(Toy({1: 1.0}), "extended", (1, 2, 3, 4), (2, 3, 4)))
+    assert right.estimate is not None
+    assert wrong.estimate is not None
+    assert right.estimate.max() < 1e-13
+    assert wrong.estimate.max() > 1e-3
+
+
+def test_the_start_on_which_all_levels_agree_comes_out_exact():
+    trajectory = run(Extrapolated(Toy(), "extended", (2, 3, 4, 6, 8), (2, 3, 4, 5)))
+    assert np.array_equal(trajectory.pose[0], np.ones((1, 3)))
+    assert trajectory.t == pytest.approx(np.arange(11) * 0.3, rel=1e-15)
+
+
+def test_a_level_that_fails_makes_the_samples_not_a_number_and_is_not_dropped():
+    trajectory = run(Extrapolated(Toy(broken_below=0.04), "extended", (1, 2, 3), (2, 3)))
+    assert np.all(np.isfinite(trajectory.pose[0]))
+    for values in (trajectory.pose, trajectory.twist, trajectory.reaction, trajectory.estimate):
+        assert values is not None
+        assert np.all(np.isnan(values[1:]))
+
+
+def test_an_infinite_level_becomes_not_a_number():
+    combined = combine(np.array([[np.inf, 1.0], [1.0, 2.0]]), extrapolation_weights((1, 2), (1,)))
+    assert np.isnan(combined[0])
+    assert combined[1] == pytest.approx(3.0)
+
+
+def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
+    trajectory = run(Extrapolated(Toy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
+    assert trajectory.stepping == pytest.approx(1e-3 * 30 * (1 + 2 + 3))
+    assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
+    assert trajectory.warnings == ("reset", "at step 0.05", "at step 0.0333")
+    assert run(Extrapolated(Toy(), "extended", (1, 2), (2,))).reset_at is None
+
+
+def test_name_variant_size_and_refusals_are_the_inner_engines():
+    method = Extrapolated(Toy(), "extended", (1, 2), (2,))
+    assert (method.name, method.variant) == ("toy", "extended")
+    assert method.build(pendulum(), 0.1).size == Size(1, 3, 2, 2)
+    one = pendulum()
+    twins = Mechanism((one.bodies[0], one.bodies[0].__class__("other", 1.0, 1.0, (0.0, 0.0, 0.0))), ())
+    with pytest.raises(Unsupported, match="one body"):
+        method.build(twins, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("levels", "powers"),
+    [((1, 2), (2, 3)), ((1, 2, 3), (2,)), ((2, 1), (2,)), ((1, 1), (2,)), ((0, 1), (2,)), ((1, 2), (0,)), ((1,), ())],
+)
+def test_levels_and_powers_that_do_not_fit_are_refused(levels, powers):
+    with pytest.raises(ValueError, match="extrapolated: "):
+        Extrapolated(Toy(), "extended", levels, powers)
+
+
+@pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf")])
+def test_a_step_that_is_no_time_is_refused(dt):
+    with pytest.raises(ValueError, match="step dt"):
+        Extrapolated(Toy(), "extended", (1, 2), (2,)).build(pendulum(), dt)
