@@ -15,6 +15,7 @@ from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, bare_loop
+from reference.four_bar_scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy
@@ -240,6 +241,19 @@ def test_the_extended_four_bar_reaches_its_goal(which, mechanism):
         assert np.ptp(total) < 3e-11 * largest(total)
     assert trajectory.estimate is not None
     assert largest(trajectory.estimate) < 1e-9
+
+
+@pytest.mark.parametrize("scene", [FreeFourBar(), DrivenFourBar()], ids=lambda scene: scene.name)
+def test_over_the_whole_scene_tuned_and_extended_reach_their_goals(scene):
+    """Against the textbook's own motion: a closed form if driven, a minimal-coordinate equation if free."""
+    mechanism, truth = scene.mechanism(), scene.motion(np.arange(scene.samples + 1) * scene.spacing)
+    tuned = TUNED.build(mechanism, scene.spacing / 100)(scene.samples, 100)
+    assert largest(tuned.pose - truth.pose) < 2e-3
+    extended = EXTENDED.build(mechanism, scene.spacing / 10)(scene.samples, 10)
+    # As above, over twice the time.
+    assert largest(extended.pose - truth.pose) < 1e-11
+    assert largest(extended.twist - truth.twist) < 1e-9
+    assert largest(extended.reaction - truth.reaction) < 1e-8 * largest(truth.reaction)
 
 
 def test_extrapolating_in_even_powers_only_would_be_seen():
