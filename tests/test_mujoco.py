@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
-from engines.mujoco import DEFAULT, EXTENDED, METHODS, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
+from engines.mujoco import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
 from engines.mujoco.engine import refuse_wrong_version
 from engines.mujoco.solution import unsolved
 from reference.four_bar_scenes import DrivenFourBar, FreeFourBar
@@ -54,7 +54,7 @@ def arch(links: int, length: float = 0.02) -> Mechanism:
     return Mechanism(bodies, tuple(joints), (1.0, -9.81))
 
 
-@pytest.mark.parametrize("engine", METHODS, ids=lambda engine: engine.variant)
+@pytest.mark.parametrize("engine", METHODS + DRIVES, ids=lambda engine: engine.variant)
 @pytest.mark.parametrize("scene", [FREE, DRIVEN], ids=["free", "driven"])
 def test_the_start_is_the_mechanisms_own_to_rounding(engine: MuJoCo, scene: Any) -> None:
     mechanism = scene.mechanism()

@@ -1,6 +1,17 @@
 """MuJoCo as an engine under test: planar joints as a tree, loops as soft equality constraints."""
 
-from engines.mujoco.engine import DEFAULT, EXTENDED, METHODS, TUNED, MuJoCo, bare_loop
+from engines.mujoco.engine import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, MuJoCo, bare_loop
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 
-__all__ = ["DEFAULT", "EXTENDED", "METHODS", "TUNED", "Hardened", "MuJoCo", "Shipped", "TiedToStep", "bare_loop"]
+__all__ = [
+    "DEFAULT",
+    "DRIVES",
+    "EXTENDED",
+    "METHODS",
+    "TUNED",
+    "Hardened",
+    "MuJoCo",
+    "Shipped",
+    "TiedToStep",
+    "bare_loop",
+]

@@ -159,6 +159,9 @@ METHODS = (
     replace(TUNED, variant="stiff discrete", integrator="discrete"),
     replace(TUNED, variant="RK4 alone", stiffness=Shipped()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
+)
+# Other ways to prescribe a rate; where nothing is driven they are no methods of their own.
+DRIVES = (
     replace(TUNED, variant="tuned, servo", drive="servo"),
     replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),
 )
