@@ -28,3 +28,16 @@ def require_positive(owner: str, **values: float) -> None:
     for name, value in values.items():
         if not value > 0:
             raise InvalidMechanism(f"{owner}: {name} is {value!r}; it must be greater than zero")
+
+
+def sample_times(owner: str, t: Any) -> np.ndarray:
+    """Times (times,) [s] as an array; InvalidMechanism if one is not finite or lies before the start at 0."""
+    require_finite(owner, t=t)
+    times = np.atleast_1d(np.asarray(t, dtype=float))
+    if times.ndim != 1:
+        raise InvalidMechanism(f"{owner}: times have the shape {times.shape}; they must be one list of times")
+    if times.size and times.min() < 0:
+        raise InvalidMechanism(
+            f"{owner}: time {float(times.min())!r} s lies before the start; times must be 0 or later"
+        )
+    return times
