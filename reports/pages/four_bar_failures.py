@@ -114,7 +114,7 @@ FAILURES: tuple[Failure, ...] = (
     ),
     Failure(
         title="Steps far too large",
-        expected="At 10 rad/s a step of 0.1 s is a radian of the crank: no integrator can follow, but any could say so.",
+        expected="At 10 rad/s a step of 0.1 s is a radian of the crank: nobody can follow, but anyone could say so.",
         cells=tuple(cell for samples in (20, 10, 5) for cell in _cells(SpinningFourBar(), ALL, (1,), samples)),
         remark="A finite number is not an answer: most of these runs end with finite numbers, on a loop that is torn.",
     ),
