@@ -87,6 +87,8 @@ class Page:
 
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
     template's own variables, numbers taken from the rows.
+    orders: method ("pymunk tuned") -> the order that theory promises for an ideal constraint. known: (scene, method,
+    check) -> why that check of `tests/test_crosscheck.py` must fail; it begins "upstream:", "by design:" or "ours:".
     """
 
     name: str
@@ -98,7 +100,9 @@ class Page:
     maps: tuple[StabilityMap, ...] = ()
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
-    words: Callable[[Material], Mapping[str, Any]] = field(default=no_words)
+    words: Callable[[Material], Mapping[str, Any]] = no_words
+    orders: Mapping[str, int] = field(default_factory=dict, compare=False)
+    known: Mapping[tuple[str, str, str], str] = field(default_factory=dict, compare=False)
 
     def extra_cells(self) -> tuple[Cell, ...]:
         """The cells of failures and maps, beyond the sweep."""

@@ -30,6 +30,7 @@ class Verdict(StrEnum):
     FALLS = "falls"
     ROUNDING = "reaches rounding"
     PLATEAU = "plateau"
+    LEVELS = "levels off at the finest step"
     GROWS = "grows as the step shrinks"
     ERRATIC = "erratic"
     TOO_FEW = "not enough points"
@@ -93,7 +94,8 @@ def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> tup
         return Verdict.FALLS, order, points, spread, NAN
     if slopes[-1] < -FLAT and (len(slopes) == 1 or slopes[-2] < FLAT):
         return Verdict.GROWS, order, points, spread, NAN
-    return Verdict.ERRATIC, order, points, spread, NAN
+    # One flat interval alone may be a crossing of signs; two would have been a plateau.
+    return (Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC), order, points, spread, NAN
 
 
 def _longest_run(mask: np.ndarray) -> tuple[int, int]:

@@ -30,7 +30,7 @@ def test_a_pure_power_gives_its_order_on_every_point_above_rounding(order):
     assert verdict == (Verdict.ROUNDING if errors[-1] <= ROUNDING else Verdict.FALLS)
 
 
-@pytest.mark.parametrize(("order", "floor"), [(1, 1e-3), (2, 1e-5), (4, 1e-8)])
+@pytest.mark.parametrize(("order", "floor"), [(1, 1e-2), (2, 1e-5), (4, 1e-8)])
 def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, floor):
     verdict, found, points, _, plateau = fit(STEPS, (10 * STEPS) ** order + floor, ROUNDING)
     assert verdict is Verdict.PLATEAU
@@ -71,7 +71,7 @@ def test_coarse_steps_before_the_asymptotic_slope_do_not_bend_the_order():
         ([1e-2], [1e-3], Verdict.TOO_FEW, 0),
         ([1e-2, 1e-3], [1e-3, math.nan], Verdict.TOO_FEW, 0),
         ([1e-2, 1e-3], [1e-3, 1e-4], Verdict.FALLS, 2),
-        ([1e-2, 1e-3], [1e-3, 1e-3], Verdict.ERRATIC, 0),
+        ([1e-2, 1e-3], [1e-3, 1e-3], Verdict.LEVELS, 0),
         ([1e-2, 1e-3], [1e-14, 0.0], Verdict.ROUNDING, 0),
     ],
 )
