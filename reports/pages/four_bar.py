@@ -13,6 +13,7 @@ from reference.scenes import SCENES
 from reports import drawings
 from reports.cells import Cell
 from reports.page import Failure, Material, Page, StabilityMap
+from reports.pages.four_bar_known import KNOWN, ORDERS
 from reports.sweep import best_of, by_method, sweeps
 from reports.theme import svg
 
@@ -71,4 +72,6 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
+    orders=ORDERS,
+    known=KNOWN,
 )
