@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +16,7 @@ from reference.joints import Vector
 from reference.mechanism import Triple
 
 Array = NDArray[np.float64]
-Rate = float | Callable[[Array], Array]
+Rate = float | Callable[[Any], Any]
 
 COMPLEX_STEP = 1e-100
 
@@ -56,7 +57,7 @@ def pinned_pose(angle: ArrayLike, constants: Vector, point: Vector) -> Array:
     return np.stack([x, y, angle], axis=-1)
 
 
-def _derivative(function: Callable[[Array], Array], t: Array, name: str) -> Array:
+def _derivative(function: Callable[[Any], Any], t: Array, name: str) -> Array:
     """df/dt by complex step, checked against a central difference: a function with abs() in it would be wrong."""
     try:
         exact = np.broadcast_to(np.imag(function(t + 1j * COMPLEX_STEP)) / COMPLEX_STEP, t.shape)
