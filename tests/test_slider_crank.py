@@ -1,0 +1,167 @@
+"""The slider-crank: formulas against complex derivatives, forces against the Mechanism, time against a quadrature."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from reference.checks import InvalidMechanism
+from reference.joints import Slot
+from reference.slider_crank import SliderCrank
+from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.trajectory import energy, joint_gap, slip
+
+STEP = 1e-30
+THETA = np.linspace(0, 2 * math.pi, 37)
+SHAPES = [SliderCrank(0.3, 1.0), SliderCrank(0.3, 1.0, 0.2), SliderCrank(0.5, 0.9, -0.3, -1), SliderCrank(1.0, 1.01)]
+SCENES = [
+    DrivenSliderCrank(),
+    DrivenSliderCrank(offset=-0.3, assembly=-1, rate=-4.0),
+    FreeSliderCrank(),
+    FreeSliderCrank(offset=0.2, rate=3.0, assembly=-1),
+]
+
+
+def test_a_slot_row_is_the_derivative_of_its_gap() -> None:
+    generator = np.random.default_rng(3)
+    slot = Slot("guide", "a", "b", tuple(generator.normal(size=2)), 0.7, tuple(generator.normal(size=2)))
+    poses = generator.normal(size=6)
+    rows = slot.rows(poses[:3], poses[3:])[0]
+    for column in range(6):
+        moved = poses.astype(complex)
+        moved[column] += 1j * STEP
+        assert abs(slot.gap(moved[:3], moved[3:], 0.0)[0].imag / STEP - rows[column]) < 1e-15
+
+
+def test_a_slot_gap_is_the_distance_from_the_line_and_ignores_sliding() -> None:
+    slot = Slot("guide", None, "b", (1.0, 2.0), math.pi / 6, (0.5, 0.0))
+    along, left = np.array([math.cos(math.pi / 6), 0.5]), np.array([-0.5, math.cos(math.pi / 6)])
+    for slide in (-3.0, 0.0, 2.0):
+        point = np.array([1.0, 2.0]) + slide * along + 0.25 * left
+        pose = np.array([point[0] - 0.5 * math.cos(0.3), point[1] - 0.5 * math.sin(0.3), 0.3])
+        assert slot.gap(np.zeros(3), pose, 0.0)[0] == pytest.approx(0.25, abs=1e-15)
+    with pytest.raises(InvalidMechanism, match="line_angle"):
+        Slot("guide", None, "b", (0.0, 0.0), math.nan, (0.0, 0.0))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_velocity_and_acceleration_are_derivatives_of_position(shape: SliderCrank) -> None:
+    first, second = shape.position_rates(THETA)
+    scale = np.abs(second).max()  # grows like 1 / (rod - crank - |offset|)
+    assert np.abs(shape.position(THETA + 1j * STEP).imag / STEP - first).max() < 1e-13 * scale
+    assert np.abs(shape.position_rates(THETA + 1j * STEP)[0].imag / STEP - second).max() < 1e-12 * scale
+    once, twice = shape.rod_rates(THETA)
+    assert np.abs(shape.rod_sine(THETA + 1j * STEP).imag / STEP - np.cos(shape.rod_angle(THETA)) * once).max() < 1e-13
+    assert np.abs(shape.rod_rates(THETA + 1j * STEP)[0].imag / STEP - twice).max() < 1e-12 * np.abs(twice).max()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_loop_closes_in_both_assemblies(shape: SliderCrank) -> None:
+    for each in (shape, replace(shape, assembly=-shape.assembly)):
+        beta = each.rod_angle(THETA)
+        assert np.abs(each.crank * np.sin(THETA) + each.rod * np.sin(beta) - each.offset).max() < 1e-14
+        assert np.abs(each.crank * np.cos(THETA) + each.rod * np.cos(beta) - each.position(THETA)).max() < 1e-14
+        assert np.all(np.sign(np.cos(beta)) == each.assembly)
+
+
+@pytest.mark.parametrize("shape", [*SHAPES, SliderCrank(0.3, 1.0, 0.2, -1)])
+def test_the_slider_stands_still_at_the_dead_centres_and_the_stroke_lies_between(shape: SliderCrank) -> None:
+    stretched, folded = (shape.position(np.array(angle)) for angle in shape.dead_centres())
+    assert np.abs(shape.position_rates(np.array(shape.dead_centres()))[0]).max() < 1e-13
+    assert abs(abs(stretched - folded) - shape.stroke()) < 1e-14
+    fine = shape.position(np.linspace(0, 2 * math.pi, 200_001))
+    assert abs(np.ptp(fine) - shape.stroke()) < 1e-8  # a grid misses an extremum by the square of its spacing
+    assert abs(abs(stretched) - math.sqrt((shape.rod + shape.crank) ** 2 - shape.offset**2)) < 1e-14
+
+
+def test_the_in_line_stroke_is_twice_the_crank() -> None:
+    assert SliderCrank(0.3, 1.0).stroke() == pytest.approx(0.6, abs=1e-15)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_truth_satisfies_the_mechanism(scene: DrivenSliderCrank) -> None:
+    mechanism = scene.mechanism()
+    freedoms = 0 if scene.driven else 1
+    assert mechanism.degrees_of_freedom() == (freedoms, freedoms)
+    t = np.linspace(0, scene.duration, 101)
+    motion = scene.motion(t)
+    assert np.abs(joint_gap(mechanism, motion)).max() < 1e-14
+    assert np.abs(slip(mechanism, motion)).max() < 1e-13
+    assert np.all(scene.branch(motion.pose) == scene.assembly)
+    theta, rate, acceleration = scene.crank_motion(t)
+    pose, twist, change = scene._placement(theta, rate, acceleration)
+    left = (mechanism.rows(pose) @ change.reshape(len(t), -1, 1))[..., 0]
+    assert np.abs(left - mechanism.bias(pose, twist)).max() < 1e-12 * max(1, np.abs(change).max())
+    # Newton's law with the reactions; for the free one this proves the reduced equation of motion.
+    force = (np.swapaxes(mechanism.rows(pose), -1, -2) @ motion.reaction[..., None])[..., 0]
+    excess = (mechanism.inertias * (change - mechanism.free_fall)).reshape(len(t), -1)
+    assert np.abs(force - excess).max() < 1e-11 * np.abs(excess).max()
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_guide_force_and_drive_torque_by_hand_are_those_of_the_mechanism(scene: DrivenSliderCrank) -> None:
+    t = np.linspace(0, scene.duration, 41)
+    reaction = scene.motion(t).reaction
+    crank = scene.crank_motion(t)
+    names = scene.mechanism().row_names
+    guide = scene.moving.guide_force(*crank)
+    assert np.abs(guide - reaction[:, names.index("guide across")]).max() < 1e-12 * np.abs(reaction).max()
+    assert np.abs(reaction[:, names.index("level torque")]).max() < 1e-12
+    torque = scene.moving.torque(*crank)
+    if scene.driven:
+        assert np.abs(torque - reaction[:, names.index("drive torque")]).max() < 1e-12 * np.abs(reaction).max()
+        # Power in equals the change of energy.
+        fine = np.linspace(0, scene.duration, 4001)
+        work = np.trapezoid(scene.moving.torque(*scene.crank_motion(fine)) * scene.rate, fine)
+        gained = energy(scene.mechanism(), scene.motion([0.0, scene.duration]))
+        assert abs(work - (gained[1] - gained[0])) < 1e-5  # trapezoids of a smooth function
+    else:
+        assert np.abs(torque).max() < 1e-11
+
+
+def test_a_guide_force_of_the_wrong_sign_and_a_rod_too_long_are_caught() -> None:
+    scene = DrivenSliderCrank()
+    t = np.linspace(0, scene.duration, 11)
+    guide = scene.mechanism().row_names.index("guide across")
+    force = scene.motion(t).reaction[:, guide]
+    assert np.abs(-scene.moving.guide_force(*scene.crank_motion(t)) - force).max() > 1
+    longer = replace(scene, rod=1.001)
+    assert np.abs(joint_gap(scene.mechanism(), longer.motion(t))).max() > 1e-4
+
+
+@pytest.mark.parametrize("scene", SCENES[2:])
+def test_the_free_motion_conserves_energy_and_shows_its_error(scene: FreeSliderCrank) -> None:
+    t = np.linspace(0, scene.duration, 201)
+    total = energy(scene.mechanism(), scene.motion(t))
+    assert np.ptp(total) < 1e-12 * np.abs(total).max()
+    assert scene.error(t).max() < 1e-9
+
+
+def test_the_free_motion_takes_the_time_that_energy_says() -> None:
+    """dt = dtheta sqrt(J / 2(E - V)): a quadrature that integrates no equation of motion."""
+    scene = FreeSliderCrank()
+    moving = scene.moving
+    total = moving.inertia(scene.angle)[0] * scene.rate**2 / 2 + moving.potential(scene.angle)[0]
+
+    def slowness(theta: float) -> float:
+        return math.sqrt(moving.inertia(theta)[0] / (2 * (total - moving.potential(theta)[0])))
+
+    for end in (1.0, 1.7):
+        theta = float(scene.crank_motion(np.array([end]))[0][0])
+        edges = np.linspace(scene.angle, theta, 21)
+        time = sum(quad(slowness, a, b, epsabs=1e-14, epsrel=1e-14)[0] for a, b in pairwise(edges))
+        assert abs(time - end) < 1e-11
+
+
+def test_bad_slider_cranks_are_refused() -> None:
+    for offset in (0.7, 0.8, -0.75):
+        with pytest.raises(InvalidMechanism, match="offset is"):
+            DrivenSliderCrank(offset=offset)
+    for wrong in ({"crank": 0.0}, {"rod": math.nan}, {"slider_mass": 0.0}, {"assembly": 0}, {"rate": math.inf}):
+        with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
+            DrivenSliderCrank(**wrong)
