@@ -4,10 +4,24 @@ from __future__ import annotations
 
 import difflib
 
+from reference.cart import Cart
 from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.pinned_body import FreelyPinnedBody, PinnedBody
 from reference.scene import Scene
+from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.wheels import CarAndTrailer
 
-SCENES: tuple[Scene, ...] = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
+SCENES: tuple[Scene, ...] = (
+    DrivenFourBar(),
+    FreeFourBar(),
+    SpinningFourBar(),
+    ChaplyginSleigh(),
+    SleighBackwards(),
+    PinnedBody(),
+    FreelyPinnedBody(),
+    CarAndTrailer(),
+    Cart(),
+)
 
 
 def scene(name: str) -> Scene:
