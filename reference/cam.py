@@ -39,8 +39,8 @@ class Cam(Curve):
         if not low[0] > 1e-9 * self.radius:
             raise InvalidMechanism(
                 f"cam: its radius of curvature falls to {low[0]:.6g} m where the normal points to {low[1]:.6g} "
-                f"rad, so it is "
-                "not convex there; reduce the higher harmonics until radius + sum (1 - k^2) c_k stays positive"
+                "rad, so it is not convex there; reduce the higher harmonics until "
+                "radius + sum (1 - k^2) c_k stays positive"
             )
 
     @cached_property

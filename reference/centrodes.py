@@ -128,8 +128,7 @@ def centrodes(t: ArrayLike, pose: ArrayLike, twist: ArrayLike) -> Centrodes:
     if slow.size:
         raise InvalidMechanism(
             f"centrodes: the rotation rate vanishes at t = {t[slow[0]]:.6g} s (sample {slow[0]}), where the "
-            f"instant centre "
-            "goes to infinity; cut the motion before it"
+            "instant centre goes to infinity; cut the motion before it"
         )
     turned = np.flatnonzero(rate[1:] * rate[:-1] < 0)
     if turned.size:
@@ -181,8 +180,8 @@ def _assembled(pose: Array, space: Array, body: Array) -> Centrodes:
         where = int(np.argmax(np.diff(pose[:, 2]) <= 0))
         raise InvalidMechanism(
             f"centrodes: the angle doesn't grow between {pose[where, 2]:.9g} and {pose[where + 1, 2]:.9g} rad "
-            f"though the "
-            "rotation rate keeps its sign; poses and twists don't belong together, or the samples are too far apart"
+            "though the rotation rate keeps its sign; poses and twists don't belong together, or "
+            "the samples are too far apart"
         )
     span = float(np.ptp(pose[:, 2]))
     size = max(float(np.abs(body).max()), float(np.ptp(space, axis=0).max()))

@@ -81,7 +81,7 @@ class EllipticGears(Scene):
         receding = -(near**2) * e * np.sin(first) / bend * self.turning_rate
         return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
 
-    def _kinematics(self, t: Array) -> tuple[Array, Array, Array]:
+    def kinematics(self, t: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2, 3)."""
         first = self.start_angle + self.turning_rate * t
         rate, growth = self.second_rate(first)
@@ -99,7 +99,7 @@ class EllipticGears(Scene):
 
     def mechanism(self) -> Mechanism:
         shape = Ellipse(self.major, self._minor)
-        pose, twist, _ = self._kinematics(np.zeros(1))
+        pose, twist, _ = self.kinematics(np.zeros(1))
         inertia = self.mass * (self.major**2 + self._minor**2) / 4
         bodies = tuple(
             Body(name, self.mass, inertia, _triple(pose[0, gear]), _triple(twist[0, gear]))
@@ -119,7 +119,7 @@ class EllipticGears(Scene):
 
     def motion(self, t: ArrayLike) -> Trajectory:
         t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = self._kinematics(t)
+        pose, twist, acceleration = self.kinematics(t)
         mechanism = self.mechanism()
         reaction = mechanism.reaction(pose, acceleration)
         # Rows that take part in a set of forces in equilibrium by themselves: J^T null = 0.

@@ -145,8 +145,7 @@ class Rolling:
             worst = float(theta[(theta < low - slack) | (theta > high + slack)].flat[0])
             raise InvalidMechanism(
                 f"rolling: the body can't turn to {worst!r} rad; between {low:.9g} and {high:.9g} rad it rolls, "
-                f"and there a "
-                "curve ends or curvature_A + curvature_B falls to zero and the curves fit each other"
+                "and there a curve ends or curvature_A + curvature_B falls to zero and the curves fit each other"
             )
         return solve_increasing(
             self._rotation, -rotation, self._body_start - rotation * self._mean_slope, 1e-3, self._parameter_limits
@@ -200,8 +199,8 @@ class Rolling:
             raise InvalidMechanism(
                 f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
                 f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
-                f"{NEAR_CONFORMAL:g} of the "
-                "larger, else the curves cut into each other or fit so closely that the contact has no place"
+                f"{NEAR_CONFORMAL:g} of the larger, else the curves cut into each other or fit so closely "
+                "that the contact has no place"
             )
 
     def _refuse_overlap(self, theta: Array) -> None:
@@ -224,8 +223,8 @@ class Rolling:
             worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
             raise InvalidMechanism(
                 f"rolling: at theta = {float(theta[worst]):.9g} rad the curve inside the ring of radius "
-                f"{ring.radius:g} m "
-                f"reaches {float(excess[worst]):.3g} m beyond it; the ring must be larger than its roller everywhere"
+                f"{ring.radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
+                "the ring must be larger than its roller everywhere"
             )
 
     def contact(self, theta: ArrayLike) -> Contact:

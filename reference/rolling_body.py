@@ -86,7 +86,7 @@ class RollingBody:
         return states[:, 0], states[:, 1]
 
     def error(self, t: ArrayLike) -> Array:
-        """How far theta or theta' moves (times,) with a tolerance 100 times coarser: a bound on the truth's error."""
+        """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
         return error_of(self._rates, self.start, t)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
@@ -138,7 +138,7 @@ class RollingBody:
         if pull(low) * pull(high) > 0:
             raise InvalidMechanism(
                 f"rolling body: gravity doesn't change its sense between {low:.6g} and {high:.6g} rad, so it "
-                f"can't rest there"
+                "can't rest there"
             )
         return _root(pull, low, high)
 
@@ -155,8 +155,7 @@ class RollingBody:
         if not stiffness > 0:
             raise InvalidMechanism(
                 f"rolling body: at theta = {equilibrium:.9g} rad it rests on a top (V'' = {stiffness:.6g} N m), "
-                f"from which it "
-                "doesn't oscillate; give the bottom"
+                "from which it doesn't oscillate; give the bottom"
             )
         arm = self.rolling.contact(equilibrium).arm
         return math.sqrt(stiffness / (self.inertia + self.mass * float(arm @ arm)))

@@ -65,8 +65,7 @@ class Traced(Curve):
             where = int(np.argmax(np.sum(before * after, axis=-1) <= 0))
             raise InvalidMechanism(
                 f"traced curve: between points {where} and {where + 1} it turns by a quarter or more: a cusp or "
-                f"a corner, or "
-                "too few points; cut it there or give more"
+                "a corner, or too few points; cut it there or give more"
             )
 
     @cached_property
@@ -133,7 +132,7 @@ class Traced(Curve):
         if np.any((sense * angle < sense * angles[0]) | (sense * angle > sense * angles[-1])):
             raise InvalidMechanism(
                 f"traced curve: its tangent has angles from {angles[0]:.6g} to {angles[-1]:.6g} rad only; stay "
-                f"between them"
+                "between them"
             )
         return solve_increasing(
             lambda p: (sense * self.angle_of(p), sense * self.curvature_of(p) * self.speed_of(p)),
