@@ -171,7 +171,9 @@ def show(
 
 
 @app.command()
-def bench() -> None:
+def bench(
+    scene: Annotated[list[str] | None, typer.Argument(help="Scenes or pages; all of them if none is named.")] = None,
+) -> None:
     """Time `run` against bare stepping loops, and the reference against another library; prints, asserts nothing."""
     from engines.registry import ENGINES
     from reference.scenes import SCENES
@@ -180,15 +182,15 @@ def bench() -> None:
     from reports.tables import number
     from reports.terminal import print_table
 
-    for scene in SCENES:
-        costs = loop_costs(ENGINES, scene.mechanism(), scene.spacing / 10, scene.samples, 10)
+    for one in choose_scenes(scene or (), SCENES):
+        costs = loop_costs(ENGINES, one.mechanism(), one.spacing / 10, one.samples, 10)
         body = [
             (f"{c.engine.name} {c.engine.variant}", number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")
             for c in costs
         ]
         if body:
             header = ["method", "bare loop [us/step]", "run [us/step]", "ratio"]
-            print_table(console, f"{scene.name}: run over the bare loop", header, body, 1)
+            print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
             console.print()
     from reports.bench import four_bar
 

@@ -154,9 +154,8 @@ def sweeps(rows: Iterable[Measurement]) -> tuple[Sweep, ...]:
         usable = [row for row in members if Outcome(row.outcome).comparable]
         for quantity in QUANTITIES:
             values = [(row.step, getattr(row, quantity.name)) for row in usable]
-            verdict, order, points, spread, plateau = (
-                fit(*zip(*values, strict=True), quantity.rounding) if values else (Verdict.TOO_FEW, NAN, 0, NAN, NAN)
-            )
+            steps, errors = [step for step, _ in values], [error for _, error in values]
+            verdict, order, points, spread, plateau = fit(steps, errors, quantity.rounding)
             known = [(error, step) for step, error in values if math.isfinite(error)]
             best, best_step = min(known, default=(NAN, NAN))
             out.append(

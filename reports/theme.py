@@ -6,6 +6,7 @@ import io
 import re
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, fields
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -78,7 +79,8 @@ SETTINGS = {
 
 def settings() -> AbstractContextManager[None]:
     """Context in which every figure is made and saved, whatever the user's own configuration says."""
-    return matplotlib.rc_context({**matplotlib.rcParamsDefault, **SETTINGS})
+    plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **SETTINGS}
+    return matplotlib.rc_context(plain)
 
 
 def new_figure(height: float, theme: Theme, width: float = WIDTH) -> Figure:

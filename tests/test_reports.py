@@ -249,6 +249,7 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_maps_too()
         (["show", "driven_fourbar"], "driven_four_bar"),
         (["show", "driven_four_bar"], "crosscheck run"),
         (["report"], "crosscheck run"),
+        (["bench", "fuor_bar"], "four_bar"),
         (["rnu"], "rnu"),
         (["show"], "scene"),
         (["run", "--nonsense"], "--nonsense"),

@@ -40,8 +40,10 @@ KNOWN: dict[tuple[str, str, str], str] = {
         for check in ("error", "gap", "order")
     },
     **{
-        ("spinning_four_bar", f"lagrange euler {stabilisation}", check): EULER
+        ("spinning_four_bar", f"lagrange euler {stabilisation}", "outcome"): EULER
         for stabilisation in ("none", "projection")
-        for check in ("outcome", "reaction")
     },
+    ("driven_four_bar", "mujoco stiff discrete", "reaction"): (
+        "upstream: the force of the first sample alone is off by 7 %, whatever the step; why is not established"
+    ),
 }
