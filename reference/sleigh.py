@@ -122,9 +122,18 @@ class ChaplyginSleigh(Scene):
             return self.start[2] + self.turning_rate * t
         half = 0.5 * self.offset * self._top_speed / self._arm**2 * t
         middle = np.abs(self._phase + half)
-        ratio = np.exp(np.abs(half) - middle) * -np.expm1(-2 * np.abs(half)) / (1 + np.exp(-2 * middle))
+        # |half| - |phase + half|, without the cancellation of a late time.
+        same = half * (self._phase + half) >= 0
+        lead = np.sign(half) * np.where(same, -self._phase, self._phase + 2 * half)
+        ratio = np.exp(lead) * -np.expm1(-2 * np.abs(half)) / (1 + np.exp(-2 * middle))
         turned = 2 * self._arm / abs(self.offset) * np.arctan(ratio)
         return self.start[2] + math.copysign(1.0, self.turning_rate) * turned
+
+    @cached_property
+    def _settled(self) -> float:
+        """When it slides straight to far below rounding [s]: a stiff sleigh would else need panels without end."""
+        phase = math.copysign(45 + 2 * math.log1p(self._arm / abs(self.offset)), self.offset)
+        return max(0.0, (phase - self._phase) * self._arm**2 / (self.offset * self._top_speed))
 
     @cached_property
     def _moved(self) -> Antiderivative:
@@ -142,7 +151,9 @@ class ChaplyginSleigh(Scene):
             half = 0.5 * self.turning_rate * t
             moved = self.speed * t * np.sinc(half / np.pi) * np.exp(1j * (half + angle))
         else:
-            moved = self._moved(t) * np.exp(1j * angle)
+            early = np.minimum(t, self._settled)
+            straight = math.copysign(self._top_speed, self.offset) * (t - early) * np.exp(1j * (heading - angle))
+            moved = (self._moved(early) + straight) * np.exp(1j * angle)
         return np.stack([x + np.real(moved), y + np.imag(moved), heading], axis=-1)
 
     def lateral_force(self, t: ArrayLike) -> Array:

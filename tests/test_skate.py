@@ -293,6 +293,18 @@ def test_a_long_run_keeps_its_digits():
     assert np.hypot(*np.diff(motion.pose[:, 0, :2], axis=0)[0]) == pytest.approx(sleigh._top_speed, abs=2e-12)
 
 
+def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
+    for sleigh in (ChaplyginSleigh(speed=1e5), ChaplyginSleigh(offset=-1e-3, inertia=1e-9)):
+        long, settled = sleigh.skate_pose([1e-2 + sleigh._settled, 1000.0]), sleigh.total_heading_change()
+        gone = long[1] - long[0]
+        top = math.copysign(sleigh._top_speed * (1000 - 1e-2 - sleigh._settled), sleigh.offset)
+        assert np.abs(gone[:2] - top * np.array([math.cos(settled), math.sin(settled)])).max() < 1e-14 * abs(top)
+    # Before it settles the quadrature alone has the motion: the two halves agree.
+    sleigh = ChaplyginSleigh()
+    later = sleigh._settled + 1.0
+    assert abs(sleigh._moved(later) - sleigh.skate_pose(later)[0] @ [1, 1j, 0]) < 1e-13
+
+
 def test_backwards_a_small_turning_grows_at_the_linear_rate_and_the_sleigh_turns_round():
     sleigh = SleighBackwards(turning_rate=1e-9)
     turning = sleigh.rates([1.0, 2.0])[1]
