@@ -217,9 +217,10 @@ def main(arguments: list[str] | None = None) -> None:
         sys.exit(INTERRUPTED)
     except Exception as error:
         # Usage errors of the command line's own library: it would print several lines.
-        if not hasattr(error, "format_message"):
+        told = getattr(error, "format_message", None)
+        if told is None:
             raise
-        print(f"crosscheck: {error.format_message()}", file=sys.stderr)
+        print(f"crosscheck: {told()}", file=sys.stderr)
         sys.exit(2)
     sys.exit(status if isinstance(status, int) else 0)
 

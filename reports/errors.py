@@ -35,7 +35,7 @@ def turning_rows(mechanism: Mechanism) -> NDArray[np.bool_]:
 def usable_samples(trajectory: Trajectory) -> int:
     """How many samples from the start are finite throughout."""
     finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
-    return len(finite) if finite.all() else int(np.argmin(finite))
+    return len(trajectory.t) if np.all(finite) else int(np.argmin(finite))
 
 
 def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:

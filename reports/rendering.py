@@ -10,7 +10,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from reference.scene import Scene
-from reports import charts, tables
+from reports import charts, maps, tables
 from reports.machine import machine, today, versions
 from reports.measure import Measurement
 from reports.outcomes import Outcome
@@ -78,7 +78,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     if any(row.purpose == "sweep" and Outcome(row.outcome).comparable for row in rows):
         keep("work", svg(charts.work_precision(rows, page.featured), f"{page.title}: error against CPU time"))
         keep("steps", svg(charts.error_against_step(rows, page.featured), f"{page.title}: error against step"))
-    maps = [_told_map(page, picture, material, keep) for picture in page.maps]
+    told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
     scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name]) for scene in page.scenes]
@@ -90,7 +90,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
             scenes=scenes,
             pictures=pictures,
             failures=[_told_failure(failure, material) for failure in page.failures],
-            maps=[told for told in maps if told],
+            maps=[told for told in told_maps if told],
             outcomes=[outcome for outcome in Outcome if outcome in {row.outcome for row in material.rows.values()}],
             foot=foot(command),
             **page.words(material),
@@ -135,7 +135,7 @@ def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) 
     rows = [(value, material.rows[cell]) for value, cell in picture.cells if cell in material.rows]
     if not rows:
         return None
-    keep(picture.name, svg(charts.stability_map(rows, picture.parameter), picture.title))
+    keep(picture.name, svg(maps.stability_map(rows, picture.parameter), picture.title))
     return Told(picture.title, "", "", "", picture.remark, f"{page.name}_{picture.name}.svg")
 
 
