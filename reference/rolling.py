@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, require_finite
 from reference.contact import Contact, quarter_turned, turned
-from reference.curve import Array, Curve, Vector
+from reference.curve import Array, Curve, Placed, Vector
 from reference.curves import Line, Ring, Side
 from reference.monotone import solve_increasing
 
@@ -19,6 +19,16 @@ from reference.monotone import solve_increasing
 # of a double's sixteen digits are left in it, and a truth of fewer would be none.
 NEAR_CONFORMAL = 1e-9
 SCAN = 721  # places at which a pair that might be conformal somewhere is examined, once round
+
+
+def _hole(curve: Curve) -> tuple[Array, float] | None:
+    """Centre (2,) [m] and radius [m] of a ring, placed or not; None for any other curve."""
+    if isinstance(curve, Ring):
+        return np.asarray(curve.centre, dtype=float), curve.radius
+    inner = _hole(curve.curve) if isinstance(curve, Placed) else None
+    if inner is None or not isinstance(curve, Placed):
+        return None
+    return turned(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
 
 
 @dataclass(frozen=True)
@@ -205,25 +215,26 @@ class Rolling:
 
     def _refuse_overlap(self, theta: Array) -> None:
         """A closed curve inside a ring must lie inside it all round, not only at the contact."""
-        if isinstance(self.ground, Ring) and math.isfinite(self.body.length):
-            ring, other = self.ground, self.body
-        elif isinstance(self.body, Ring) and math.isfinite(self.ground.length):
-            ring, other = self.body, self.ground
+        around, within = _hole(self.ground), _hole(self.body)
+        if around is not None and within is None and math.isfinite(self.body.length):
+            (centre, radius), other = around, self.body
+        elif within is not None and around is None and math.isfinite(self.ground.length):
+            (centre, radius), other = within, self.ground
         else:
             return
         rim = other.point(np.linspace(0, other.length, SCAN))
         contact = self._contact_at(theta, self._body_parameter(theta))
         origin = contact.point + contact.arm
-        if ring is self.ground:
+        if other is self.body:
             world = turned(theta[..., None], rim) + origin[..., None, :]
         else:
             world = turned(-theta[..., None], rim - origin[..., None, :])
-        excess = np.linalg.norm(world - np.asarray(ring.centre), axis=-1).max(axis=-1) - ring.radius
-        if np.any(excess > 1e-9 * ring.radius):
+        excess = np.linalg.norm(world - centre, axis=-1).max(axis=-1) - radius
+        if np.any(excess > 1e-9 * radius):
             worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
             raise InvalidMechanism(
                 f"rolling: at theta = {float(theta[worst]):.9g} rad the curve inside the ring of radius "
-                f"{ring.radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
+                f"{radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
                 "the ring must be larger than its roller everywhere"
             )
 

@@ -5,8 +5,17 @@ from __future__ import annotations
 import difflib
 
 from reference.cart import Cart
+from reference.elliptic_gears import EllipticGears
 from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.rolling_scenes import (
+    RollingCam,
+    RollingDisc,
+    RollingDownhill,
+    RollingEllipse,
+    RollingInRing,
+    RollingOnCircle,
+)
 from reference.scene import Scene
 from reference.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.wheels import CarAndTrailer
@@ -21,6 +30,13 @@ SCENES: tuple[Scene, ...] = (
     FreelyPinnedBody(),
     CarAndTrailer(),
     Cart(),
+    RollingEllipse(),
+    RollingDisc(),
+    RollingCam(),
+    RollingDownhill(),
+    RollingInRing(),
+    RollingOnCircle(),
+    EllipticGears(),
 )
 
 
