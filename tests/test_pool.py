@@ -118,16 +118,17 @@ def test_after_a_kill_the_next_run_goes_on_where_it_stopped(tmp_path, how):
     (tmp_path / "script.py").write_text(SCRIPT)
     path = tmp_path / "cells.sqlite"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(
-        [sys.executable, tmp_path / "script.py", path],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
+    with (tmp_path / "stderr").open("wb") as stderr:
+        process = subprocess.Popen(
+            [sys.executable, tmp_path / "script.py", path],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=stderr,
+        )
     assert process.stdout is not None
     with process.stdout:
         for _ in range(4):
-            assert process.stdout.readline().strip()
+            assert process.stdout.readline().strip(), (tmp_path / "stderr").read_text()
     started = time.monotonic()
     process.send_signal(how)
     assert process.wait(timeout=20) != 0
