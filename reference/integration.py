@@ -21,6 +21,7 @@ Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 # Near the smallest that double precision can tell apart over a step; the coarser one shows the error.
 TOLERANCE = 3e-14
 COARSER = 10.0
+MOST_STEPS = 20_000  # a motion that needs more is creeping up to a singularity
 
 
 class IntegrationFailed(ArithmeticError):
@@ -58,8 +59,8 @@ def integrate(rates: Rates, start: ArrayLike, until: float, tolerance: float = T
     solver = DOP853(lambda _, y: rates(y), 0.0, state, until, rtol=tolerance, atol=tolerance)
     times, states = [0.0], [state]
     while solver.status == "running":
-        message = solver.step()
-        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+        message = solver.step() if len(times) < MOST_STEPS else f"it takes more than {MOST_STEPS} steps"
+        if message or not np.all(np.isfinite(solver.y)):
             raise IntegrationFailed(f"the motion stops at t = {solver.t:.6g} s: {message or 'a number is not finite'}")
         times.append(float(solver.t))
         states.append(solver.y.copy())
