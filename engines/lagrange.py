@@ -167,6 +167,11 @@ class Lagrange:
                 raise ValueError(f"lagrange: tolerance is {self.tolerance!r}; it must lie in [1e-14, 1)")
 
     @property
+    def step_cost(self) -> float:
+        """About what a step costs [s] with three bodies: the grid's fixed estimate, from evaluations of the rows."""
+        return {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3}[self.integrator]
+
+    @property
     def variant(self) -> str:
         return f"{self.integrator} {self.stabilisation}" + (" adaptive" if self.tolerance is not None else "")
 
