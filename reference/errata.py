@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import bisect
 
 from reference.link_chain import accelerations
 
@@ -146,7 +146,8 @@ def _closed_form() -> Values:
     def miss(angle: float) -> float:
         return math.hypot(bx + l2 * math.cos(angle) - l4, by + l2 * math.sin(angle)) - l3
 
-    found = float(brentq(miss, math.atan2(dy, dx), math.atan2(dy, dx) + math.pi, xtol=1e-15, rtol=1e-15))
+    low = math.atan2(dy, dx)
+    found: Any = bisect(miss, low, low + math.pi, xtol=1e-15)
     other = math.atan2(by + l2 * math.sin(found), bx + l2 * math.cos(found) - l4)
     return Values(solution, np.array([beta, phi]), np.array([found, other]))
 

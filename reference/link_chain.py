@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -126,7 +127,8 @@ class Chain:
         """
         difference = angle[:, None] - angle
         right = -(self.inertia_matrix * np.sin(difference)) @ rate**2 - self.stiffness * np.sin(angle)
-        return np.linalg.solve(self.inertia_matrix * np.cos(difference), right)
+        solution: Any = np.linalg.solve(self.inertia_matrix * np.cos(difference), right)
+        return solution
 
     def modes(self) -> tuple[Array, Array]:
         """Small oscillations about hanging: frequencies (links,) [rad/s] ascending, and shapes (links, modes) of

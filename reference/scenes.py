@@ -7,6 +7,10 @@ import difflib
 from reference.cart import Cart
 from reference.elliptic_gears import EllipticGears
 from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.pendulum import BarPendulum, PointPendulum
+from reference.person import OneFoot, TwoFeet
 from reference.pinned_body import FreelyPinnedBody, PinnedBody
 from reference.rolling_scenes import (
     RollingCam,
@@ -18,6 +22,7 @@ from reference.rolling_scenes import (
 )
 from reference.scene import Scene
 from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.wheels import CarAndTrailer
 
 SCENES: tuple[Scene, ...] = (
@@ -37,6 +42,18 @@ SCENES: tuple[Scene, ...] = (
     RollingInRing(),
     RollingOnCircle(),
     EllipticGears(),
+    BarPendulum(),
+    LinkPendulum(),
+    TenLinks(),
+    HundredLinks(),
+    PointPendulum(),
+    DrivenSliderCrank(),
+    FreeSliderCrank(),
+    NFourBar(),
+    TenFourBars(),
+    FortyFourBars(),
+    OneFoot(),
+    TwoFeet(),
 )
 
 
