@@ -15,6 +15,8 @@ import mujoco
 from engines import Size, Unsupported, check_step
 from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
 from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.skates import SkateBy
+from engines.mujoco.slots import SlotBy
 from engines.mujoco.solution import choose_solver
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from reference.mechanism import Mechanism
@@ -63,6 +65,8 @@ class MuJoCo:
     tolerance: float = 1e-8
     jacobian: Factorisation = "auto"
     islands: bool = True
+    slots: SlotBy = "tendon"
+    skates: SkateBy = "rows"
     name: ClassVar[str] = "mujoco"
 
     def __post_init__(self) -> None:
@@ -72,6 +76,8 @@ class MuJoCo:
             ("drive", get_args(DriveBy)),
             ("jacobian", get_args(Factorisation)),
             ("islands", (True, False)),
+            ("slots", get_args(SlotBy)),
+            ("skates", get_args(SkateBy)),
         ):
             if getattr(self, setting) not in valid:
                 raise ValueError(f"mujoco: {setting} is {getattr(self, setting)!r}; it must be one of {list(valid)}")
@@ -95,7 +101,7 @@ class MuJoCo:
         size = Size(
             bodies=model.compiled.nbody - 1,
             coordinates=model.compiled.nq,
-            rows=2 * len(model.tree.loops) + (len(model.driven) if self.drive != "overwrite" else 0),
+            rows=model.rows + (len(model.driven) if self.drive != "overwrite" else 0),
             solver_rows=data.nefc,
         )
         return MuJoCoRun(model, data, size)
@@ -122,6 +128,8 @@ class MuJoCo:
             drive=self.drive,
             armature=self.armature,
             servo_gain=self.servo_gain,
+            slots=self.slots,
+            skates=self.skates,
         )
         choose_solver(model, self.solvers)
         return model
@@ -149,6 +157,8 @@ EXTENDED = MuJoCo(
     tolerance=1e-28,
     jacobian="dense",
     islands=False,
+    slots="rows",
+    skates="rows",
 )
 METHODS = (
     DEFAULT,

@@ -1,4 +1,5 @@
-"""MuJoCo's model of a mechanism: a tree of planar joints, loops closed by `connect`, a driven joint; no shapes.
+"""MuJoCo's model of a mechanism: a tree of planar joints, loops closed by `connect`, a driven joint; shapes for contact
+alone.
 
 `connect` has three rows; out of the plane nothing can move, so the third row is empty and harmless.
 """
@@ -8,15 +9,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import mujoco
 
 from engines import Unsupported
+from engines.mujoco.construction import Building, Hooks, in_turn
+from engines.mujoco.skates import SkateBy, add_skates
+from engines.mujoco.slots import SlotBy, add_slots
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.tree import Tree, spanning_tree, world_offset
-from reference.joints import Drive, Pin
+from engines.mujoco.written_rows import add_placeholders, installed, row_writer, writing
+from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 
 Coordinates = Literal["tree", "free"]
@@ -41,6 +47,14 @@ class Model:
     address: list[int]  # where each tree coordinate stands in qpos, and in qvel
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
+    hooks: Hooks = field(default_factory=Hooks)
+    leapfrog: bool = False  # positions run half a step ahead of velocities
+    rows: int = 0  # scalar constraints held by forces, drives not counted
+    written: bool = False  # some of them by callback: the dual solver can't serve them
+
+    def hooked(self) -> AbstractContextManager[None]:
+        """The callbacks in place while this is entered: every step and every reading needs them."""
+        return installed(in_turn(self.hooks.control), in_turn(self.hooks.passive))
 
     def start(self) -> Any:
         """A fresh mujoco.MjData at the mechanism's start, its derived quantities computed."""
@@ -50,7 +64,10 @@ class Model:
             data.qvel[self.address[driven.column]] = driven.rate
         if self.drive == "servo":
             data.ctrl[:] = [driven.rate for driven in self.driven]
-        mujoco.mj_forward(self.compiled, data)
+        with self.hooked():
+            for prepare in self.hooks.before:
+                prepare(self.compiled, data)
+            mujoco.mj_forward(self.compiled, data)
         return data
 
 
@@ -65,19 +82,25 @@ def build_model(
     drive: DriveBy,
     armature: float,
     servo_gain: float,
+    slots: SlotBy,
+    skates: SkateBy,
 ) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    pins: list[Pin] = []
+    hanging: list[Pin | Slot] = []
     drives: list[Drive] = []
+    skating: list[Skate] = []
     for joint in mechanism.joints:
         match joint:
-            case Pin():
-                pins.append(joint)
+            case Pin() | Slot():
+                hanging.append(joint)
             case Drive():
                 drives.append(joint)
+            case Skate():
+                skating.append(joint)
             case _:
                 raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
-    tree = spanning_tree(mechanism, pins if coordinates == "tree" else ())
+    tree = spanning_tree(mechanism, hanging if coordinates == "tree" else ())
+    drives = [joint for joint in drives if joint not in tree.kept]
     driven = tuple(_driven_coordinate(tree, joint) for joint in drives)
     for index, one in enumerate(driven):
         if one.column in [other.column for other in driven[:index]]:
@@ -98,16 +121,35 @@ def build_model(
         for one in driven:
             actuator = spec.add_actuator(target=f"coordinate {one.column}", trntype=mujoco.mjtTrn.mjTRN_JOINT)
             actuator.set_to_velocity(servo_gain)
-    for pin in tree.loops:
+    pins = [joint for joint in tree.loops if isinstance(joint, Pin)]
+    for pin in pins:
         _add_loop(spec, mechanism, pin, stiffness.reference(mechanism, dt), stiffness.impedance)
+    building = Building(spec, mechanism, tree, dt, stiffness, tuple(one.column for one in driven))
+    add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], slots)
+    add_skates(building, skating, skates)
+    # The placeholders come last: what stands before them in the solver is then known.
+    add_placeholders(spec, tree, building.written, stiffness.impedance, building.driven)
+    if building.contact:
+        spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     try:
         compiled = spec.compile()
     except ValueError as error:
         raise Unsupported(f"MuJoCo refuses this mechanism: {' '.join(str(error).split())}") from error
     address = [compiled.joint(f"coordinate {column}").qposadr[0] for column in range(tree.coordinates)]
     _scale_tolerance_by_true_inertia(compiled, [int(address[one.column]) for one in driven])
-    compiled.body_invweight0[:] *= stiffness.softening
-    return Model(mechanism, tree, compiled, [int(a) for a in address], driven, drive)
+    for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
+        scale[:] *= stiffness.softening  # connects, joints, tendons
+    places = [int(a) for a in address]
+    hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
+    if building.written:
+        rows = row_writer(tree, places, building.written)
+        before = 3 * len(pins) + sum(int(kind != mujoco.mjtEq.mjEQ_CONNECT) for kind in compiled.eq_type)
+        before -= sum(joint.size for joint in building.written)
+        hooks += Hooks(control=(writing(rows, before, compiled.nv),))
+    held = 2 * len(pins) + building.size + sum(joint.size for joint in building.written)
+    return Model(
+        mechanism, tree, compiled, places, driven, drive, hooks, building.leapfrog, held, bool(building.written)
+    )
 
 
 def _driven_coordinate(tree: Tree, joint: Drive) -> DrivenCoordinate:
@@ -142,12 +184,13 @@ def _add_bodies(spec: Any, tree: Tree) -> None:
             explicitinertial=True,
         )
         placed[link.body] = added
-        if not link.hinged:
-            for column, axis in ((link.column, [1.0, 0.0, 0.0]), (link.column + 1, [0.0, 1.0, 0.0])):
-                added.add_joint(name=f"coordinate {column}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)
-        hinge = mujoco.mjtJoint.mjJNT_HINGE
-        anchor = [*link.anchor, 0.0]
-        added.add_joint(name=f"coordinate {link.rotation}", type=hinge, axis=[0.0, 0.0, 1.0], pos=anchor)
+        axes = {"free": [(1.0, 0.0), (0.0, 1.0)], "slot": [link.direction], "hinge": []}[link.kind]
+        for column, axis in zip(link.columns, axes, strict=False):
+            slide = mujoco.mjtJoint.mjJNT_SLIDE
+            added.add_joint(name=f"coordinate {column}", type=slide, axis=[*axis, 0.0])
+        if link.rotation is not None:
+            hinge, anchor = mujoco.mjtJoint.mjJNT_HINGE, [*link.anchor, 0.0]
+            added.add_joint(name=f"coordinate {link.rotation}", type=hinge, axis=[0.0, 0.0, 1.0], pos=anchor)
 
 
 def _add_loop(

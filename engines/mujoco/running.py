@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Size, check_counts
+from engines.mujoco.construction import in_turn
 from engines.mujoco.model import Model
 from engines.mujoco.solution import unsolved
 from reference.trajectory import Trajectory
@@ -71,7 +72,7 @@ class MuJoCoRun:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
         step = self.model.compiled.opt.timestep
         t = np.arange(samples + 1) * (every * step)
-        with _listening(self.data) as complaints:
+        with _listening(self.data) as complaints, self.model.hooked():
             position, velocity, clock, stepping = self._step(samples, every)
             # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
             behind = np.abs(clock - t) > step / 2
@@ -97,8 +98,15 @@ class MuJoCoRun:
         now_position, now_velocity, advance = data.qpos, data.qvel, mujoco.mj_step
         position[0], velocity[0], clock[0] = now_position, now_velocity, data.time
         overwrite = self.model.drive == "overwrite" and self.model.driven
+        before = in_turn(self.model.hooks.before)
         begin = time.process_time()
-        if overwrite:
+        if before:
+            for sample in range(1, samples + 1):
+                for _ in range(every):
+                    before(compiled, data)
+                    advance(compiled, data)
+                position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
+        elif overwrite:
             for sample in range(1, samples + 1):
                 for _ in range(every):
                     advance(compiled, data)
@@ -127,6 +135,8 @@ class MuJoCoRun:
         acceleration, worst = np.full_like(velocity, np.nan), 0.0
         for sample in np.flatnonzero(sound):
             data.qpos[:], data.qvel[:], data.time = position[sample], velocity[sample], t[sample]
+            for prepare in self.model.hooks.before:
+                prepare(compiled, data)
             mujoco.mj_forward(compiled, data)
             acceleration[sample] = data.qacc
             data.qacc_warmstart[:] = data.qacc

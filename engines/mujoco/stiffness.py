@@ -22,6 +22,10 @@ def _require_positive(owner: str, **values: float) -> None:
             raise ValueError(f"{owner}: {name} is {value!r}; it must be a finite number greater than zero")
 
 
+def _critical(constant: float) -> tuple[float, float]:
+    return 1 / constant**2, 2 / constant
+
+
 @dataclass(frozen=True)
 class Shipped:
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, impedance 0.9 to 0.95."""
@@ -31,6 +35,10 @@ class Shipped:
     def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
         """solref."""
         return 0.02, 1.0
+
+    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        return _critical(0.02)
 
     @property
     def impedance(self) -> tuple[float, float, float, float, float]:
@@ -55,6 +63,10 @@ class TiedToStep:
     def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
         """solref."""
         return self.steps * dt, 1.0
+
+    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        return _critical(max(self.steps, 2.0) * dt)
 
     @property
     def impedance(self) -> tuple[float, float, float, float, float]:
@@ -86,6 +98,10 @@ class Hardened:
         """solref in its direct form, -stiffness and -damping of a unit mass: this one MuJoCo doesn't clamp."""
         constant = self.time_constant(mechanism, dt)
         return -1 / constant**2, -2 / constant
+
+    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        return _critical(self.time_constant(mechanism, dt))
 
     @property
     def impedance(self) -> tuple[float, float, float, float, float]:

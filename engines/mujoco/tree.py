@@ -6,13 +6,15 @@ coordinates are zero at the start: the mechanism begins assembled, exactly, and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Pin, turn
+from reference.joints import Drive, Pin, Slot, turn
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -20,42 +22,58 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Link:
-    """A body in the tree: hinged on its parent by a pin, or moving freely (slide x, slide y, hinge) if it has none.
+    """A body in the tree: hinged on its parent by a pin, sliding in it by a slot, or moving freely if it has neither.
 
-    `parent` is a body's index, or None for the ground. Of a hinged body, `arm` is the hinge seen from the parent's
-    centre of mass (from the world's origin if that is the ground), and `anchor` the same point from its own, both
-    (x, y) [m] with world directions at t = 0. `column` is its first tree coordinate; `rotation` its last.
+    `parent` is a body's index, or None for the ground. `arm` is the joint seen from the parent's centre of mass (from
+    the world's origin if that is the ground), `anchor` the same point from the body's own, and `direction` the slot's
+    line, all (x, y) [m] with world directions at t = 0. `column` is its first tree coordinate. In order, a free body
+    has x, y and a rotation, a hinged one a rotation, one in a slot the way along it and, if it `turns`, a rotation.
     """
 
     body: int
     parent: int | None
-    hinged: bool
-    arm: tuple[float, float]
-    anchor: tuple[float, float]
+    kind: Literal["free", "hinge", "slot"]
     column: int
+    arm: tuple[float, float] = (0.0, 0.0)
+    anchor: tuple[float, float] = (0.0, 0.0)
+    direction: tuple[float, float] = (0.0, 0.0)
+    turns: bool = True
 
     @property
-    def rotation(self) -> int:
-        """The tree coordinate that turns this body."""
-        return self.column if self.hinged else self.column + 2
+    def slides(self) -> int:
+        """How many of its coordinates are lengths: they come first."""
+        return {"free": 2, "hinge": 0, "slot": 1}[self.kind]
+
+    @property
+    def columns(self) -> range:
+        """Its tree coordinates."""
+        return range(self.column, self.column + self.slides + self.turns)
+
+    @property
+    def rotation(self) -> int | None:
+        """The tree coordinate that turns this body against its parent, if it has one."""
+        return self.columns[-1] if self.turns else None
 
 
 @dataclass(frozen=True)
 class Tree:
-    """Links, parents before children, and the pins that no link stands for."""
+    """Links, parents before children, and the joints that no link stands for."""
 
     mechanism: Mechanism
     links: tuple[Link, ...]
-    loops: tuple[Pin, ...]
+    loops: tuple[Pin | Slot, ...]
+    kept: tuple[Drive, ...] = ()  # drives of rate zero that hold because the tree has no rotation there
 
     @property
     def coordinates(self) -> int:
-        return sum(1 if link.hinged else 3 for link in self.links)
+        return sum(len(link.columns) for link in self.links)
 
     def rotation_of(self, first: str | None, second: str | None) -> tuple[int, float] | None:
         """The tree coordinate of the second body's rotation against the first, and its sign; None if there is none."""
         index = {None: None, **{body.name: i for i, body in enumerate(self.mechanism.bodies)}}
         for link in self.links:
+            if link.rotation is None:
+                continue
             if (link.parent, link.body) == (index[first], index[second]):
                 return link.rotation, 1.0
             if (link.body, link.parent) == (index[first], index[second]):
@@ -65,11 +83,17 @@ class Tree:
     def start_rates(self) -> Array:
         """The tree velocities (coordinates,) [m/s, rad/s] of the mechanism's start."""
         twist, rates = self.mechanism.twist, np.zeros(self.coordinates)
+        ground = np.zeros(3)
         for link in self.links:
-            if not link.hinged:
-                rates[link.column : link.column + 2] = twist[link.body, :2]
-            base = 0.0 if link.parent is None else twist[link.parent, 2]
-            rates[link.rotation] = twist[link.body, 2] - base
+            own, base = twist[link.body], ground if link.parent is None else twist[link.parent]
+            if link.kind == "free":
+                rates[link.column : link.column + 2] = own[:2]
+            if link.kind == "slot":
+                (arm_x, arm_y), (x, y) = link.arm, link.anchor
+                moving = own[:2] + own[2] * np.array([-y, x]) - base[:2] - base[2] * np.array([-arm_y, arm_x])
+                rates[link.column] = moving @ np.array(link.direction)
+            if link.rotation is not None:
+                rates[link.rotation] = own[2] - base[2]
         return rates
 
     def motion(self, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
@@ -80,11 +104,10 @@ class Tree:
         turned = np.zeros((times, bodies + 1))
         for link in self.links:
             body, base, last = link.body, bodies if link.parent is None else link.parent, link.rotation
-            turned[:, body] = turned[:, base] + position[:, last]
+            for angles, motion in ((turned, position), (twist[..., 2], velocity), (change[..., 2], acceleration)):
+                angles[:, body] = angles[:, base] + (0.0 if last is None else motion[:, last])
             pose[:, body, 2] = start[body, 2] + turned[:, body]
-            twist[:, body, 2] = twist[:, base, 2] + velocity[:, last]
-            change[:, body, 2] = change[:, base, 2] + acceleration[:, last]
-            if not link.hinged:
+            if link.kind == "free":
                 plane = slice(link.column, link.column + 2)
                 pose[:, body, :2] = start[body, :2] + position[:, plane]
                 twist[:, body, :2] = velocity[:, plane]
@@ -95,6 +118,15 @@ class Tree:
             pose[:, body, :2] = pose[:, base, :2]
             twist[:, body, :2] = twist[:, base, :2]
             change[:, body, :2] = change[:, base, :2]
+            if link.kind == "slot":
+                way, way_rate, way_gain = (
+                    values[:, link.column, None] for values in (position, velocity, acceleration)
+                )
+                rate = twist[:, base, 2, None]
+                along = np.stack(turn(turned[:, base], np.array(link.direction)), axis=-1)
+                offsets[0] = (base, np.array(link.arm) + way * np.array(link.direction), 1.0)
+                twist[:, body, :2] += way_rate * along
+                change[:, body, :2] += way_gain * along + 2 * rate * way_rate * along[:, ::-1] * [-1.0, 1.0]
             for which, offset, sign in offsets:
                 x, y = turn(turned[:, which], offset)
                 rate, gain = twist[:, which, 2], change[:, which, 2]
@@ -104,42 +136,61 @@ class Tree:
         return pose[:, :bodies], twist[:, :bodies], change[:, :bodies]
 
 
-def spanning_tree(mechanism: Mechanism, pins: Iterable[Pin]) -> Tree:
-    """The tree that grows breadth first from the ground along the pins; a body that they don't reach moves freely.
+def spanning_tree(mechanism: Mechanism, joints: Iterable[Pin | Slot]) -> Tree:
+    """The tree that grows breadth first from the ground along the joints; a body that they don't reach moves freely.
 
-    With no `pins` every body moves freely; every pin of the mechanism that holds no link is a loop.
+    With no `joints` every body moves freely; every pin and slot of the mechanism that holds no link is a loop. A slot
+    holds a link where its slotted body comes first; pins are preferred. A drive of rate zero across it keeps the angle.
     """
-    usable, loops = list(pins), [joint for joint in mechanism.joints if isinstance(joint, Pin)]
+    usable = sorted(joints, key=lambda joint: isinstance(joint, Slot))
+    loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+    resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
     links: list[Link] = []
+    kept: list[Drive] = []
     placed: dict[str | None, int | None] = {None: None}
     frontier: list[str | None] = [None]
-    column = 0
 
-    def place(name: str, parent: str | None, hinge: tuple[tuple[float, float], tuple[float, float]] | None) -> None:
-        nonlocal column
+    def place(name: str, parent: str | None, joint: Pin | Slot | None) -> None:
         body = mechanism.body_index(name)
-        arm, anchor = hinge or ((0.0, 0.0), (0.0, 0.0))
-        links.append(Link(body, placed[parent], hinge is not None, arm, anchor, column))
-        column += 1 if hinge else 3
+        column = links[-1].columns.stop if links else 0
+        if joint is None:
+            links.append(Link(body, None, "free", column))
+        else:
+            point = joint.second_point if name == joint.second else joint.first_point
+            anchor = world_offset(mechanism, name, point)
+            base = np.zeros(2) if parent is None else mechanism.pose[mechanism.body_index(parent), :2]
+            at = mechanism.pose[body, :2] + anchor - base
+            arm = (float(at[0]), float(at[1]))
+            if isinstance(joint, Slot):
+                angle = joint.line_angle + (0.0 if parent is None else mechanism.bodies[placed[parent] or 0].pose[2])
+                holds = [drive for drive in resting if {drive.first, drive.second} == {parent, name}]
+                kept.extend(holds)
+                direction = (math.cos(angle), math.sin(angle))
+                links.append(Link(body, placed[parent], "slot", column, arm, anchor, direction, not holds))
+            else:
+                links.append(Link(body, placed[parent], "hinge", column, arm, anchor))
+            loops.remove(joint)
         placed[name] = body
         frontier.append(name)
+
+    def child_of(joint: Pin | Slot, parent: str | None) -> str | None:
+        """The body that the joint hangs on this parent, if it does."""
+        if isinstance(joint, Pin) and joint.second == parent:
+            return joint.first if joint.first not in placed else None
+        return joint.second if joint.first == parent and joint.second not in placed else None
 
     waiting = [body.name for body in mechanism.bodies]
     while waiting:
         while frontier:
             parent = frontier.pop(0)
-            for pin in usable:
-                if parent not in (pin.first, pin.second):
-                    continue
-                child, point = (pin.second, pin.second_point) if parent == pin.first else (pin.first, pin.first_point)
-                if child in placed or child is None:
-                    continue
-                place(child, parent, _hinge(mechanism, parent, child, point))
-                waiting.remove(child)
-                loops.remove(pin)
+            for joint in usable:
+                child = child_of(joint, parent)
+                if child is not None:
+                    place(child, parent, joint)
+                    waiting.remove(child)
         if waiting:
             place(waiting.pop(0), None, None)
-    return Tree(mechanism, tuple(links), tuple(loops))
+    return Tree(mechanism, tuple(links), tuple(loops), tuple(kept))
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
@@ -148,12 +199,3 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
         return point
     x, y = turn(mechanism.pose[mechanism.body_index(name), 2], np.array(point))
     return float(x), float(y)
-
-
-def _hinge(
-    mechanism: Mechanism, parent: str | None, child: str, point: tuple[float, float]
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    anchor = world_offset(mechanism, child, point)
-    base = np.zeros(2) if parent is None else mechanism.pose[mechanism.body_index(parent), :2]
-    arm = mechanism.pose[mechanism.body_index(child), :2] + anchor - base
-    return (float(arm[0]), float(arm[1])), anchor

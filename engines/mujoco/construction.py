@@ -1,0 +1,66 @@
+"""What a joint that MuJoCo lacks is built from: parts added to the model, and hooks that run while it is stepped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from engines.mujoco.stiffness import Stiffness
+from engines.mujoco.tree import Tree
+from engines.mujoco.written_rows import WrittenJoint
+from reference.mechanism import Mechanism
+
+Callback = Callable[[Any, Any], None]  # (mujoco.MjModel, mujoco.MjData)
+
+
+@dataclass(frozen=True)
+class Hooks:
+    """What runs while a model is stepped: callbacks in every stage, and actions (model, data) before every step."""
+
+    control: tuple[Callback, ...] = ()
+    passive: tuple[Callback, ...] = ()
+    before: tuple[Callback, ...] = ()
+
+    def __add__(self, other: Hooks) -> Hooks:
+        return Hooks(self.control + other.control, self.passive + other.passive, self.before + other.before)
+
+
+def in_turn(callbacks: Sequence[Callback]) -> Callback | None:
+    """One callback that runs all of them; None for none, which costs nothing."""
+    if len(callbacks) < 2:
+        return callbacks[0] if callbacks else None
+
+    def run(model: Any, data: Any) -> None:
+        for callback in callbacks:
+            callback(model, data)
+
+    return run
+
+
+# Given the compiled model and where each tree coordinate stands in qpos and qvel.
+Binder = Callable[[Any, Sequence[int]], Hooks]
+
+
+@dataclass
+class Building:
+    """A model while it is built. Constructions add to `spec`, to `written` (rows that callbacks will write, see
+    `written_rows`) and to `binders` (called with the compiled model for hooks); `contact` asks for MuJoCo's contacts,
+    `leapfrog` says that positions run half a step ahead of velocities.
+    """
+
+    spec: Any  # mujoco.MjSpec, in which body i is called "body i" and tree coordinate c is "coordinate c"
+    mechanism: Mechanism
+    tree: Tree
+    dt: float
+    stiffness: Stiffness
+    driven: tuple[int, ...]  # tree coordinates that turn at a prescribed rate
+    written: list[WrittenJoint] = field(default_factory=list)
+    binders: list[Binder] = field(default_factory=list)
+    contact: bool = False
+    leapfrog: bool = False
+    size: int = 0  # rows held by forces, those written not counted
+
+    def index(self, name: str | None) -> int | None:
+        """A body's index, None for the ground."""
+        return None if name is None else self.mechanism.body_index(name)

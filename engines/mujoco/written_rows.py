@@ -1,0 +1,237 @@
+"""Constraint rows of one's own in MuJoCo: placeholders, rewritten before the solver in every stage of the integrator.
+
+MuJoCo has no joint for a skate or for rolling, but its solver takes any row. A placeholder (a joint equality) reserves
+the row; `mjcb_control`, which runs after the references are computed and before the solve, in all four stages of RK4,
+overwrites its part of `efc_J` and `efc_aref`. It needs the dense Jacobian, no islands, and a primal solver (Newton or
+CG): the dual one has built its matrix from the placeholder by then.
+
+A row is written for the poses and twists of two bodies, J a = right, and is taken to the tree's coordinates here. Plain
+floats throughout: on rows this small, arrays cost more than the arithmetic.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+
+from engines.mujoco.tree import Tree
+
+# x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]; the ground's are all zero. Angles are never wrapped.
+State = tuple[float, float, float, float, float, float]
+# The first body's x, y, angle, the second body's, and the value of J a: -(dJ/dt) v and any stabilisation.
+Row = tuple[float, float, float, float, float, float, float]
+GROUND: State = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+Rows = Callable[[float, list[float], list[float]], tuple[list[float], list[float]]]
+
+
+@dataclass(frozen=True)
+class WrittenJoint:
+    """A joint held by written rows: `rows(t, first, second)` gives `size` of them at time t [s], for bodies' states.
+
+    `first` and `second` are indices of bodies, None for the ground.
+    """
+
+    first: int | None
+    second: int | None
+    size: int
+    rows: Callable[[float, State, State], Sequence[Row]]
+
+
+def add_placeholders(
+    spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impedance: Sequence[float], driven: Sequence[int] = ()
+) -> None:
+    """Reserve the joints' rows; to be called after every other equality, so that theirs come last."""
+    for joint in joints:
+        # The coordinate only sets the scale of the row's compliance: it should be one that the row can move, and not a
+        # driven one, whose inertia has nothing to do with the row's.
+        bodies = [body for body in (joint.second, joint.first) if body is not None]
+        links = [tree.links[index] for body in bodies for index in reversed(_ancestry(tree, [body]))]
+        own = [column for link in links for column in link.columns if column not in driven]
+        for _ in range(joint.size):
+            spec.add_equality(
+                type=mujoco.mjtEq.mjEQ_JOINT,
+                objtype=mujoco.mjtObj.mjOBJ_JOINT,
+                name1=f"coordinate {own[0] if own else 0}",
+                solimp=list(impedance),
+            )
+
+
+def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint]) -> Rows:
+    """The function (t, qpos, qvel) -> (efc_J flattened row by row, efc_aref) of the joints' rows.
+
+    `address` is where each tree coordinate stands in qpos and in qvel.
+    """
+    needed = _ancestry(tree, [body for joint in joints for body in (joint.first, joint.second) if body is not None])
+    place: dict[int | None, int] = {tree.links[index].body: own for own, index in enumerate(needed)}
+    place[None] = -1  # the ground stands last, and rests
+    steps = [_kinematics(tree, index, address, place) for index in needed]
+    bodies = tree.mechanism.pose.tolist()
+    width = tree.coordinates
+    start = [(0.0,) * 12] * (len(needed) + 1)
+    plan = []
+    for joint in joints:
+        ends = []
+        for body, offset in ((joint.first, 0), (joint.second, 3)):
+            if body is not None:
+                path = [place[tree.links[index].body] for index in _ancestry(tree, [body])]
+                ends.append((place[body], offset, path))
+        plan.append((joint.rows, place[joint.first], place[joint.second], ends))
+    columns = [_columns(tree, index, address) for index in needed]
+    angles = [bodies[tree.links[index].body][2] for index in needed]
+
+    def rows(t: float, q: list[float], v: list[float]) -> tuple[list[float], list[float]]:
+        moving = start.copy()
+        for own, step in enumerate(steps):
+            moving[own] = step(moving, q, v)
+        states: list[State] = [
+            (m[0], m[1], angle + m[2], m[3], m[4], m[5]) for m, angle in zip(moving, angles, strict=False)
+        ]
+        states.append(GROUND)
+        jacobian: list[float] = []
+        reference: list[float] = []
+        for law, first, second, ends in plan:
+            for row in law(t, states[first], states[second]):
+                line = [0.0] * width
+                right = row[6]
+                for end, offset, path in ends:
+                    along_x, along_y, turning = row[offset], row[offset + 1], row[offset + 2]
+                    at = moving[end]
+                    x, y = at[0], at[1]
+                    right -= along_x * at[6] + along_y * at[7]
+                    for own in path:
+                        slide_x, slide_y, slide, rotation = columns[own]
+                        m = moving[own]
+                        if slide_x is not None:
+                            line[slide_x] += along_x
+                            line[slide_y] += along_y
+                        elif slide is not None:
+                            line[slide] += along_x * m[10] + along_y * m[11]
+                        if rotation is not None:
+                            line[rotation] += turning + along_y * (x - m[8]) - along_x * (y - m[9])
+                jacobian += line
+                reference.append(right)
+        return jacobian, reference
+
+    return rows
+
+
+def writing(rows: Rows, first_row: int, width: int) -> Callable[[Any, Any], None]:
+    """The callback for `mjcb_control` that writes the rows from `first_row` on into a model of `width` velocities."""
+    begin = first_row * width
+
+    def write(_model: Any, data: Any) -> None:
+        try:
+            jacobian, reference = rows(data.time, data.qpos.tolist(), data.qvel.tolist())
+        except (ValueError, OverflowError, ZeroDivisionError):
+            # A motion that has blown up: MuJoCo finds accelerations that aren't numbers, and resets itself.
+            data.efc_aref[first_row:] = math.nan
+            return
+        data.efc_J[begin : begin + len(jacobian)] = jacobian
+        data.efc_aref[first_row : first_row + len(reference)] = reference
+
+    return write
+
+
+@contextmanager
+def installed(
+    control: Callable[[Any, Any], None] | None, passive: Callable[[Any, Any], None] | None = None
+) -> Iterator[None]:
+    """Callbacks in place, MuJoCo's global ones as they were afterwards, whatever happens."""
+    before = mujoco.get_mjcb_control(), mujoco.get_mjcb_passive()
+    mujoco.set_mjcb_control(control)
+    mujoco.set_mjcb_passive(passive)
+    try:
+        yield
+    finally:
+        mujoco.set_mjcb_control(before[0])
+        mujoco.set_mjcb_passive(before[1])
+
+
+def _ancestry(tree: Tree, bodies: Sequence[int]) -> list[int]:
+    """Indices of the links of these bodies and of all that they hang on, parents before children."""
+    own = {link.body: index for index, link in enumerate(tree.links)}
+    wanted: set[int] = set()
+    for body in bodies:
+        at: int | None = body
+        while at is not None:
+            wanted.add(own[at])
+            at = tree.links[own[at]].parent
+    return sorted(wanted)
+
+
+def _columns(tree: Tree, index: int, address: Sequence[int]) -> tuple[int | None, int, int | None, int | None]:
+    """Where the link's slides in x and y, its slide along a slot, and its rotation stand in qvel."""
+    link = tree.links[index]
+    columns = [address[column] for column in link.columns]
+    if link.kind == "free":
+        return columns[0], columns[1], None, columns[2]
+    if link.kind == "hinge":
+        return None, 0, None, columns[0]
+    return None, 0, columns[0], columns[1] if len(columns) > 1 else None
+
+
+def _kinematics(
+    tree: Tree, index: int, address: Sequence[int], place: Mapping[int | None, int]
+) -> Callable[..., tuple[float, ...]]:
+    """The link's motion from its parent's, as (x, y, turned, vx, vy, omega, ax, ay, px, py, dx, dy).
+
+    (ax, ay) is the acceleration of its centre of mass where no coordinate accelerates; (px, py) the point about which
+    its rotation turns it, (dx, dy) the direction of its slide.
+    """
+    link = tree.links[index]
+    start_x, start_y, _ = tree.mechanism.pose[link.body].tolist()
+    columns = [address[column] for column in link.columns]
+    if link.kind == "free":
+        column_x, column_y, rotation = columns
+
+        def free(_moving: Any, q: list[float], v: list[float]) -> tuple[float, ...]:
+            x, y = start_x + q[column_x], start_y + q[column_y]
+            return x, y, q[rotation], v[column_x], v[column_y], v[rotation], 0.0, 0.0, x, y, 0.0, 0.0
+
+        return free
+    arm_x, arm_y = link.arm
+    anchor_x, anchor_y = link.anchor
+    way_x, way_y = link.direction
+    parent = place[link.parent]
+    slide = columns[0] if link.kind == "slot" else None
+    turning = columns[-1] if link.turns else None
+    sine_of, cosine_of = math.sin, math.cos
+
+    def hung(moving: Any, q: list[float], v: list[float]) -> tuple[float, ...]:
+        base = moving[parent]
+        turned, omega = base[2], base[5]
+        cosine, sine = cosine_of(turned), sine_of(turned)
+        dx = dy = 0.0
+        x, y = cosine * arm_x - sine * arm_y, sine * arm_x + cosine * arm_y
+        vx, vy, ax, ay = base[3], base[4], base[6], base[7]
+        if slide is not None:
+            dx, dy = cosine * way_x - sine * way_y, sine * way_x + cosine * way_y
+            along, speed = q[slide], v[slide]
+            x, y = x + along * dx, y + along * dy
+            vx, vy = vx + speed * dx, vy + speed * dy
+            coriolis = 2 * omega * speed
+            ax, ay = ax - coriolis * dy, ay + coriolis * dx
+        vx, vy = vx - omega * y, vy + omega * x
+        square = omega * omega
+        ax, ay = ax - square * x, ay - square * y
+        x, y = base[0] + x, base[1] + y
+        if turning is not None:
+            turned, omega = turned + q[turning], omega + v[turning]
+            cosine, sine = cosine_of(turned), sine_of(turned)
+        own_x, own_y = cosine * anchor_x - sine * anchor_y, sine * anchor_x + cosine * anchor_y
+        square = omega * omega
+        return (
+            x - own_x, y - own_y, turned, vx + omega * own_y, vy - omega * own_x, omega,
+            ax + square * own_x, ay + square * own_y, x, y, dx, dy,
+        )  # fmt: skip
+
+    return hung
