@@ -10,7 +10,15 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from reports.choice import BadInput, choose_cells, choose_engines, choose_scenes, page_cells
+from reports.choice import (
+    BadInput,
+    choose_cells,
+    choose_engines,
+    choose_scenes,
+    grid_engines,
+    known_engines,
+    page_cells,
+)
 from reports.measure import Measurement
 
 RESULTS = Path(__file__).parent / "results"
@@ -69,7 +77,6 @@ def run(
     results: Folder = RESULTS,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
-    from engines.registry import ENGINES
     from reference.scenes import SCENES
     from reports.pages import PAGES
     from reports.running import missing, run_into
@@ -80,7 +87,7 @@ def run(
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
     cells = choose_cells(
         choose_scenes(scene or (), SCENES),
-        choose_engines(engine, variant, ENGINES),
+        choose_engines(engine, variant, known_engines(PAGES)),
         PAGES,
         full,
         every or (),
@@ -147,9 +154,9 @@ def show(
     results: Folder = RESULTS,
 ) -> None:
     """Print a scene's stored numbers."""
-    from engines.registry import ENGINES
     from reference.scenes import SCENES
     from reports.cells import FULL, sweep_cells
+    from reports.pages import PAGES
     from reports.quantities import QUANTITIES
     from reports.store import Store
     from reports.sweep import judged, sweeps
@@ -158,7 +165,9 @@ def show(
 
     chosen = choose_scenes([scene], SCENES)
     with Store(results / STORE) as store:
-        rows = judged(store.get(sweep_cells(chosen, choose_engines(engine, variant, ENGINES), FULL)).values())
+        engines = choose_engines(engine, variant, known_engines(PAGES))
+        cells = [c for one in chosen for c in sweep_cells((one,), grid_engines(one, engines, PAGES), FULL)]
+        rows = judged(store.get(cells).values())
     if not rows:
         raise BadInput(f"nothing is stored for {scene!r} and the present sources: crosscheck run {scene} comes first")
     for one in chosen:

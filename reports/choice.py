@@ -66,6 +66,22 @@ def steps_per_sample(scene: Scene, step: float) -> int:
     return every
 
 
+def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
+    """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
+    from engines.registry import ENGINES
+
+    everywhere = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
+    return tuple(dict.fromkeys([*ENGINES, *everywhere]))
+
+
+def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
+    """Of these engines those that the scene's page compares; the variants of every scene where no page teaches it."""
+    from engines.registry import VARIANTS
+
+    compared = next((page.engines for page in pages if page.name == scene.page), VARIANTS)
+    return tuple(engine for engine in engines if engine in compared)
+
+
 def choose_cells(
     scenes: Sequence[Scene],
     engines: Sequence[Engine],
@@ -85,9 +101,11 @@ def choose_cells(
         chosen: dict[Cell, None] = {}
         for scene in scenes:
             for count in dict.fromkeys([*every, *(steps_per_sample(scene, step) for step in steps)]):
-                chosen.update((Cell(scene, engine, count), None) for engine in engines)
+                chosen.update((Cell(scene, engine, count), None) for engine in grid_engines(scene, engines, pages))
         return tuple(chosen)
-    cells = list(sweep_cells(scenes, engines, FULL if full else QUICK))
+    cells: list[Cell] = []
+    for scene in scenes:
+        cells += sweep_cells((scene,), grid_engines(scene, engines, pages), FULL if full else QUICK)
     taught = {scene.page for scene in scenes}
     for page in pages:
         if page.name in taught:
