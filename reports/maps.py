@@ -40,7 +40,7 @@ def outcome_colour(outcome: Outcome, theme: Theme) -> str:
 
 
 def stability_map(
-    rows: Iterable[tuple[float, Measurement]], parameter: str, theme: Theme = LIGHT, columns: int = 3
+    rows: Iterable[tuple[float, Measurement]], parameter: str, theme: Theme = LIGHT, columns: int | None = None
 ) -> Figure:
     """Step against a parameter, one panel a method, each cell coloured, hatched and lettered by its outcome.
 
@@ -50,6 +50,7 @@ def stability_map(
     methods = list(dict.fromkeys(row.method for _, row in rows))
     values = sorted({value for value, _ in rows})
     steps = sorted({row.step for _, row in rows})
+    columns = columns or (2 if len(methods) in (2, 4) else 3)
     count = -(-len(methods) // columns) or 1
     with settings():
         figure = new_figure(count * (0.34 * len(steps) + 1.0) + 0.9, theme)

@@ -27,7 +27,8 @@ class Told:
 
     title: str
     expected: str
-    table: str
+    grid: str
+    details: str
     observations: str
     remark: str
     picture: str = ""
@@ -81,7 +82,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
-    scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name]) for scene in page.scenes]
+    scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name], page) for scene in page.scenes]
     files[f"{page.name}.md"] = (
         environment()
         .get_template(f"{page.name}.md")
@@ -99,20 +100,32 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     return files
 
 
-def _told_scene(scene: Scene, rows: list[Measurement]) -> dict[str, Any]:
+def _told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, Any]:
+    """The scene's tables: of the page's featured methods, and of `all` of them where there are others."""
     told = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
+    featured = [row for row in rows if page.featured(row)]
     return {
+        **_compared(featured),
+        "all": _compared(rows if len(featured) < len(rows) else []),
         "name": scene.name,
         "source": scene.source,
         "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
         "parameters": parameters(scene),
         "errors": tables.error_table(rows),
-        "orders": tables.order_table(sweeps(rows)),
-        "work": tables.work_table(rows),
-        "reactions": tables.reaction_table(rows),
         "sizes": tables.size_table(rows),
         "unsupported": [(row.method, row.sentence) for row in told if row.every == min(r.every for r in told)],
         "missing": not rows,
+    }
+
+
+def _compared(rows: list[Measurement]) -> dict[str, str]:
+    """The tables that compare methods; empty without rows."""
+    if not rows:
+        return {"orders": "", "work": "", "reactions": ""}
+    return {
+        "orders": tables.order_table(sweeps(rows)),
+        "work": tables.work_table(rows),
+        "reactions": tables.reaction_table(rows),
     }
 
 
@@ -125,7 +138,8 @@ def _told_failure(failure: Failure, material: Material) -> Told:
     return Told(
         failure.title,
         failure.expected,
-        tables.outcome_table(rows) if rows else "",
+        tables.outcome_grid(rows) if rows else "",
+        tables.outcome_table(rows) if any(row.sentence for row in rows) else "",
         observations if seen else "",
         failure.remark,
     )
@@ -136,7 +150,7 @@ def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) 
     if not rows:
         return None
     keep(picture.name, svg(maps.stability_map(rows, picture.parameter), picture.title))
-    return Told(picture.title, "", "", "", picture.remark, f"{page.name}_{picture.name}.svg")
+    return Told(picture.title, "", "", "", "", picture.remark, f"{page.name}_{picture.name}.svg")
 
 
 def foot(command: str) -> str:

@@ -114,21 +114,47 @@ def reaction_table(rows: Iterable[Measurement]) -> str:
 
 
 def size_table(rows: Iterable[Measurement]) -> str:
-    """Each model's size beside the mechanism's own."""
-    header = ["model", "bodies", "coordinates", "rows", "solver rows"]
-    body: list[list[str]] = []
+    """The models' sizes beside the mechanism's own; methods that model alike share a line."""
+    header = ["bodies", "coordinates", "rows", "solver rows", "modelled by"]
+    own: list[str] = []
+    sizes: dict[tuple[int, ...], dict[str, list[str]]] = {}
     for members in groups(rows).values():
         row = members[0]
-        if not body:
-            own = (row.own_bodies, row.own_coordinates, row.own_rows)
-            body.append([f"*the mechanism, {row.own_freedoms} freedom(s)*", *map(str, own), NOTHING])
+        if not own:
+            freedoms = f"*the mechanism itself, {row.own_freedoms} freedom{'' if row.own_freedoms == 1 else 's'}*"
+            own = [*map(str, (row.own_bodies, row.own_coordinates, row.own_rows)), NOTHING, freedoms]
         if row.bodies:
-            body.append([row.method, *map(str, (row.bodies, row.coordinates, row.rows, row.solver_rows))])
-    return markdown(header, body)
+            size = (row.bodies, row.coordinates, row.rows, row.solver_rows)
+            sizes.setdefault(size, {}).setdefault(row.engine, []).append(row.variant)
+    body = [
+        [*map(str, size), "; ".join(f"{engine} ({', '.join(variants)})" for engine, variants in by_engine.items())]
+        for size, by_engine in sizes.items()
+    ]
+    return markdown(header, [own, *body] if own else body, left=5)
+
+
+def outcome_grid(rows: Iterable[Measurement]) -> str:
+    """An experiment at a glance: a line a method, a column a step, the outcome and one number in each."""
+    rows = list(rows)
+    steps = sorted({row.step for row in rows}, reverse=True)
+    by_method_and_step: dict[str, dict[float, str]] = {}
+    for row in rows:
+        by_method_and_step.setdefault(row.method, {})[row.step] = _outcome_in_brief(row)
+    body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
+    return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1)
+
+
+def _outcome_in_brief(row: Measurement) -> str:
+    """The outcome with the number that says how bad it is: the gap of a torn loop, else the angle error."""
+    if Outcome(row.outcome).comparable:
+        return f"{number(row.angle)} rad"
+    if row.outcome == Outcome.TORN and math.isfinite(row.gap):
+        return f"**{row.outcome}** {number(max(row.gap, 0.0))} m"
+    return f"**{row.outcome}**"
 
 
 def outcome_table(rows: Iterable[Measurement]) -> str:
-    """What became of each cell of an experiment: method, step, outcome with its sentence, largest errors."""
+    """The same with each cell's own sentence: method, step, outcome, largest errors."""
     header = ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
     body = [
         [

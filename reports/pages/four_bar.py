@@ -12,7 +12,8 @@ from reference.four_bar_scenes import DrivenFourBar
 from reference.scenes import SCENES
 from reports import drawings
 from reports.cells import Cell
-from reports.page import Failure, Material, Page, StabilityMap
+from reports.page import Material, Page
+from reports.pages.four_bar_failures import FAILURES, MAPS
 from reports.pages.four_bar_known import KNOWN, ORDERS
 from reports.sweep import best_of, by_method, sweeps
 from reports.theme import svg
@@ -20,11 +21,9 @@ from reports.theme import svg
 NAME = "four_bar"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
 
-FAILURES: tuple[Failure, ...] = ()
-MAPS: tuple[StabilityMap, ...] = ()
-
-# The nine poses of Fig. 18.66 divide the revolution into nine, so the samples must.
-PICTURES = 9
+# The nine poses of Fig. 18.66 stand at the ends of eight equal parts: the last is the first again.
+PARTS = 8
+SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
 OVERLAID = {"pymunk default": ("pymunk", "--"), "mujoco default": ("mujoco", ":")}
 
 
@@ -32,14 +31,14 @@ def figures(material: Material) -> dict[str, str]:
     """The nine configurations, with each engine as shipped overlaid where it differs visibly."""
     scene = DrivenFourBar()
     cells = {
-        f"{engine.name} {engine.variant}": Cell(scene, engine, 1, samples=PICTURES * 7)
+        f"{engine.name} {engine.variant}": Cell(scene, engine, 1, samples=PARTS * SAMPLES_A_PART)
         for engine in ENGINES
         if f"{engine.name} {engine.variant}" in OVERLAID
     }
     found = material.trajectories(tuple(cells.values()))
-    truth = scene.motion(np.arange(PICTURES) * scene.duration / PICTURES)
+    truth = scene.motion(np.arange(PARTS + 1) * scene.duration / PARTS)
     others = {
-        f"{name}, step {cell.step:.2g} s": (found[cell].pose[::7][:PICTURES], *OVERLAID[name])
+        f"{name}, step {cell.step:.2g} s": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
         for name, cell in cells.items()
         if cell in found
     }

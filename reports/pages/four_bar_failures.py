@@ -14,6 +14,7 @@ from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBa
 from reference.scene import Scene
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap
+from reports.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
@@ -43,7 +44,7 @@ def rates_drift() -> list[Observation]:
             found.append(
                 Observation(
                     "RK45 on the printed rates",
-                    f"{turns}, rtol {rtol:.0e}",
+                    f"{turns}, rtol {number(rtol, 1)}",
                     f"beta off by {error:.2g} rad after {run.evaluations} evaluations{stopped}",
                 )
             )
@@ -144,14 +145,21 @@ RATIOS = (1e-4, 1e-2, 1.0, 1e2, 1e4)
 MAP_STEPS = (1, 3, 10, 30, 100)
 
 
-def _map(engine: Engine) -> StabilityMap:
-    scenes = ((ratio, FreeFourBar(density=(1.0, ratio, 1.0))) for ratio in RATIOS)
-    return StabilityMap(
-        name=f"stability_{engine.name}_{engine.variant}",
-        title=f"{engine.name} {engine.variant}: how heavy may the coupler be?",
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="stability",
+        title="How heavy may the coupler be, at which step?",
         parameter="mass of the coupler per metre, relative to the other bars'",
-        cells=tuple((ratio, Cell(scene, engine, every, "map")) for ratio, scene in scenes for every in MAP_STEPS),
-    )
-
-
-MAPS: tuple[StabilityMap, ...] = tuple(_map(engine) for engine in PUBLIC)
+        cells=tuple(
+            (ratio, Cell(FreeFourBar(density=(1.0, ratio, 1.0)), engine, every, "map"))
+            for engine in PUBLIC
+            for ratio in RATIOS
+            for every in MAP_STEPS
+        ),
+        remark=(
+            "A bar that is much lighter than its neighbours is what sweeps over the joints find hardest: each joint "
+            "undoes what the last one did, and with the whole gap closed in every step the error feeds on itself. "
+            "Softness hides it, reduced coordinates with one exact solve don't meet it."
+        ),
+    ),
+)
