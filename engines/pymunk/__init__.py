@@ -1,5 +1,7 @@
 """pymunk under test: impulses by Gauss-Seidel sweeps, as shipped, well set, started in step, and extrapolated.
 
+METHODS are for every scene. Other constructions of a joint are in `engines.pymunk.skates`, `.rolls` and `.slots`.
+
 What one step of Chipmunk does (cpSpaceStep): it drifts, p += v dt, with the old velocity; then, at the new positions,
 it kicks, and lets every joint correct the velocities in turn, `iterations` times, beginning with the impulses of the
 step before. So after n steps it holds p_n and a velocity that has felt the forces up to p_n in full. Two readings:
@@ -21,89 +23,58 @@ the order of dt remains; with error_bias 0 all of it is closed every step, and w
 
 from __future__ import annotations
 
-import math
 import time
-from dataclasses import dataclass
 from itertools import repeat
 
-import pymunk
-from pymunk.constraints import PivotJoint
-
-from engines import check_counts, check_step
+from engines import Engine, Unsupported, check_counts, check_step
 from engines.extrapolated import Extrapolated
-from engines.pymunk.model import Model, build_model
-from engines.pymunk.recorder import PymunkRun
+from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
+from engines.pymunk.extended import EXTENDED, LEAPFROG, Extended
+from engines.pymunk.outlines import Contact
 from reference.mechanism import Mechanism
 
-_space = pymunk.Space()
-_pivot = PivotJoint(_space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0))
-SHIPPED_ITERATIONS = _space.iterations  # 10
-SHIPPED_ERROR_BIAS = _pivot.error_bias  # 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second
-
-
-@dataclass(frozen=True)
-class Pymunk:
-    """An engine in the sense of `engines.Engine`.
-
-    `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
-    after one second; `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in
-    `Space.step`, which never apply to a model that does not change. Raises ValueError for other values: the engine
-    would abort the process.
-    """
-
-    variant: str
-    iterations: int = SHIPPED_ITERATIONS
-    error_bias: float = SHIPPED_ERROR_BIAS
-    leapfrog: bool = False
-
-    def __post_init__(self) -> None:
-        if not (isinstance(self.iterations, int) and 1 <= self.iterations < 2**31):
-            raise ValueError(f"pymunk: iterations is {self.iterations!r}; it must be a whole number from 1")
-        bias = self.error_bias
-        if not (isinstance(bias, int | float) and math.isfinite(bias) and 0 <= bias <= 1):
-            raise ValueError(
-                f"pymunk: error_bias is {bias!r}; it must be from 0 (close every gap in one step) to 1 (never)"
-            )
-
-    @property
-    def name(self) -> str:
-        return "pymunk"
-
-    def build(self, mechanism: Mechanism, dt: float) -> PymunkRun:
-        """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        check_step(dt)
-        return PymunkRun(mechanism, float(dt), self.model, self.leapfrog, self.iterations)
-
-    def model(self, mechanism: Mechanism, iterations: int) -> Model:
-        """The engine's objects for this mechanism, not yet stepped, with that many sweeps in a step."""
-        return build_model(mechanism, iterations, float(self.error_bias))
-
-
 DEFAULT = Pymunk("default")
-# Five sweeps are enough for a small loop, and half as dear: what they leave open is closed by the next step, warm.
-TUNED = Pymunk("tuned", iterations=5, error_bias=0.0)
-LEAPFROG = Pymunk("leapfrog", iterations=5, error_bias=0.0, leapfrog=True)
-# The leapfrog's error has all powers from the second, not only even ones.
-EXTENDED = Extrapolated(LEAPFROG, "extended", levels=(2, 3, 4, 6, 8), powers=(2, 3, 4, 5))
-METHODS = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
+# Contact: all of the overlap is left alone, because pushing bodies apart rolls them too.
+TUNED = Pymunk("tuned", "chain", "chain", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
+METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
 
-def bare_loop(engine: Pymunk | Extrapolated, mechanism: Mechanism, dt: float, steps: int) -> float:
+def bare_loop(engine: Engine, mechanism: Mechanism, dt: float, steps: int) -> float:
     """CPU seconds of `steps` steps of dt [s] with nothing recorded: the floor under the stepping of a run.
 
-    An extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels.
+    An extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels. Raises
+    ValueError for an engine that is not pymunk, and Unsupported for one that does not step a model of joints.
     """
+    if isinstance(engine, Extended):
+        engine = engine.chosen(mechanism)
     if isinstance(engine, Extrapolated):
-        if not isinstance(engine.engine, Pymunk):
-            raise ValueError(f"bare_loop: the extrapolated engine is {engine.engine.name}; it must be pymunk")
-        return sum(bare_loop(engine.engine, mechanism, dt / level, steps * level) for level in engine.levels)
+        inner = engine.engine
+        return sum(bare_loop(inner, mechanism, dt / level, steps * level) for level in engine.levels)
+    if engine.name != "pymunk":
+        raise ValueError(f"bare_loop: the engine is {engine.name}; it must be pymunk")
+    if not isinstance(engine, Pymunk):
+        raise Unsupported("bare_loop: a reflection has no model of joints to step")
     check_step(dt)
     check_counts(steps, 1)
-    step, space = engine.model(mechanism, engine.iterations).stepper(raw=engine.leapfrog)
+    model = engine.model(mechanism, dt)
+    step, space = model.stepper(raw=engine.leapfrog)
+    dt /= model.unit
     begin = time.process_time()
     for _ in repeat(None, steps):
         step(space, dt)
     return time.process_time() - begin
 
 
-__all__ = ["DEFAULT", "EXTENDED", "LEAPFROG", "METHODS", "TUNED", "Pymunk", "bare_loop"]
+__all__ = [
+    "DEFAULT",
+    "EXTENDED",
+    "LEAPFROG",
+    "METHODS",
+    "SHIPPED_ERROR_BIAS",
+    "SHIPPED_ITERATIONS",
+    "TUNED",
+    "Contact",
+    "Extended",
+    "Pymunk",
+    "bare_loop",
+]

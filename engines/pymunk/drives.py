@@ -1,4 +1,8 @@
-"""A prescribed rotation in pymunk: a kinematic body turning about its pin, or else a motor between two bodies."""
+"""A prescribed rotation in pymunk: a body of known motion where the ground drives it, or else a motor between two.
+
+Against the ground, a driven body that is also pinned to it is kinematic and turns about its pin; any other has an
+infinite moment of inertia: no impulse changes its rate, so it keeps its angle, or turns, exactly.
+"""
 
 from __future__ import annotations
 
@@ -35,9 +39,17 @@ def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
             own, ground = pin.second_point, pin.first_point
             if pin.second is None:
                 own, ground = ground, own
-            rate = joint.turning_rate if joint.first is None else -joint.turning_rate
-            cranks[name] = Crank(pin, joint, own, ground, rate)
+            cranks[name] = Crank(pin, joint, own, ground, _rate(joint))
     return cranks
+
+
+def find_turned(mechanism: Mechanism) -> dict[str, Drive]:
+    """The first drive against the ground of every body that has one, cranks or not, by the body's name."""
+    turned: dict[str, Drive] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and (name := _grounded(joint)) is not None:
+            turned.setdefault(name, joint)
+    return turned
 
 
 def _grounded(joint: Pin | Drive) -> str | None:
@@ -47,15 +59,30 @@ def _grounded(joint: Pin | Drive) -> str | None:
     return joint.first if joint.second is None else None
 
 
-def crank_body(crank: Crank, body: Body) -> pymunk.Body:
-    """A kinematic body whose origin is the pin: its drift keeps the pin in place and the angle linear, exactly."""
+def _rate(joint: Drive) -> float:
+    """Of a body driven against the ground, in the world [rad/s]."""
+    return joint.turning_rate if joint.first is None else -joint.turning_rate
+
+
+def crank_body(crank: Crank, body: Body, unit: float) -> pymunk.Body:
+    """A kinematic body whose origin is the pin: its drift keeps the pin in place and the angle linear, exactly.
+
+    `unit` [s] is the engine's unit of time.
+    """
     kinematic = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     kinematic.position, kinematic.angle = crank.ground_point, body.pose[2]
-    kinematic.angular_velocity = crank.turning_rate
+    kinematic.angular_velocity = crank.turning_rate * unit
     return kinematic
 
 
-def motor(joint: Drive, first: pymunk.Body, second: pymunk.Body) -> SimpleMotor:
+def turned_body(drive: Drive, body: Body, unit: float) -> pymunk.Body:
+    """A body that impulses move and cannot turn; its place and velocity are still to be set."""
+    turned = pymunk.Body(body.mass, float("inf"))
+    turned.angular_velocity = _rate(drive) * unit
+    return turned
+
+
+def motor(joint: Drive, first: pymunk.Body, second: pymunk.Body, unit: float) -> SimpleMotor:
     """One velocity row: it holds the rate and knows no angle, so what the sweeps leave adds up as a drift."""
     # pymunk drives omega_first - omega_second to the motor's rate.
-    return SimpleMotor(first, second, -joint.turning_rate)
+    return SimpleMotor(first, second, -joint.turning_rate * unit)

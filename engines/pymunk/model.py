@@ -1,4 +1,4 @@
-"""A mechanism as pymunk objects: one body for a body, no shapes, and for every joint what its own file makes of it."""
+"""A mechanism as pymunk objects: one body for a body, and for every joint what its own file makes of it."""
 
 from __future__ import annotations
 
@@ -10,16 +10,37 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
-from pymunk.constraints import Constraint, PivotJoint, SimpleMotor
+from pymunk.constraints import Constraint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
 
 from engines import Size, Unsupported
-from engines.pymunk.drives import Crank, crank_body, find_cranks, motor
+from engines.pymunk.blades import SkateConstruction, blade
+from engines.pymunk.drives import crank_body, find_cranks, find_turned, motor, turned_body
+from engines.pymunk.outlines import Contact, touching
 from engines.pymunk.pins import pin
-from reference.joints import Drive, Joint, Pin
+from engines.pymunk.rollers import MovedPivot, RollConstruction
+from engines.pymunk.slides import SlotConstruction, slide
+from reference.joints import Drive, Joint, Pin, Skate, Slot, Vector
 from reference.mechanism import Mechanism
+from reference.roll import Roll
 
 # Scalar constraints of each kind of pymunk constraint; its solver has no others.
-ROWS = {PivotJoint: 2, SimpleMotor: 1}
+ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a model is built with: sweeps, the part of a gap that is left after a unit of time, constructions.
+
+    `unit` [s] is the engine's second: its velocities, gravity and steps are counted in it.
+    """
+
+    iterations: int
+    error_bias: float
+    unit: float
+    skate: SkateConstruction
+    roll: RollConstruction
+    slot: SlotConstruction
+    contact: Contact
 
 
 @dataclass(frozen=True)
@@ -27,22 +48,46 @@ class Model:
     """A space and its bodies in the mechanism's order.
 
     The origin of an engine's body is `origins` (bodies, 2) [m] in the mechanism's body frame: zero, the centre of mass,
-    but for a crank, whose origin is its pin.
+    but for a crank, whose origin is its pin. `aims` are called with the length of the coming drift before every step,
+    `repairs` after it. Both, and the engine's velocities, are in the `unit` [s] of time.
     """
 
     space: pymunk.Space
     bodies: tuple[pymunk.Body, ...]
     origins: NDArray[np.float64]
     size: Size
+    unit: float = 1.0
+    aims: tuple[Callable[[float], None], ...] = ()
+    repairs: tuple[Callable[[], None], ...] = ()
 
     def stepper(self, raw: bool) -> tuple[Callable[[Any, float], None], Any]:
-        """(step, space) for `step(space, dt)`: the public `Space.step`, or the C function under it."""
-        if raw:
-            return lib.cpSpaceStep, self.space._space
-        return pymunk.Space.step, self.space
+        """(step, space) for `step(space, dt)`: the public `Space.step`, or the C function under it, with aims."""
+        step, space = (lib.cpSpaceStep, self.space._space) if raw else (pymunk.Space.step, self.space)
+        aims, repairs = self.aims, self.repairs
+        if not (aims or repairs):
+            return step, space
+        if len(aims) == 1 and not repairs:
+            aim = aims[0]
+
+            def aimed(space: Any, dt: float) -> None:
+                aim(dt)
+                step(space, dt)
+
+            return aimed, space
+
+        def handled(space: Any, dt: float) -> None:
+            for each in aims:
+                each(dt)
+            step(space, dt)
+            for each in repairs:
+                each()
+
+        return handled, space
 
     def kick(self, dt: float) -> None:
-        """Forces and joints of one step of dt [s] act on the velocities, and no body moves."""
+        """Forces and joints of one step of dt [units] act on the velocities, and no body moves."""
+        for aim in self.aims:
+            aim(0.0)
         for body in self.bodies:
             body.position_func = _stay  # pyright: ignore[reportAttributeAccessIssue]
         self.space.step(dt)
@@ -54,50 +99,123 @@ def _stay(body: pymunk.Body, dt: float) -> None:
     """A position function without a drift."""
 
 
-def build_model(mechanism: Mechanism, iterations: int, error_bias: float) -> Model:
+def build_model(mechanism: Mechanism, settings: Settings) -> Model:
     """The mechanism at t = 0; raises Unsupported."""
-    space = pymunk.Space()
-    space.gravity = mechanism.gravity
-    space.iterations = iterations
-    cranks = find_cranks(mechanism)
-    bodies, origins = {}, []
-    for description in mechanism.bodies:
-        if description.name in cranks:
-            bodies[description.name] = crank_body(cranks[description.name], description)
-            origins.append(cranks[description.name].own_point)
+    return _Builder(mechanism, settings).model()
+
+
+class _Builder:
+    """What the joints of one mechanism need of it while they are made."""
+
+    def __init__(self, mechanism: Mechanism, settings: Settings) -> None:
+        self.mechanism, self.settings = mechanism, settings
+        self.space = pymunk.Space()
+        self.space.gravity = tuple(value * settings.unit**2 for value in mechanism.gravity)
+        self.space.iterations = settings.iterations
+        self.cranks, self.turned = find_cranks(mechanism), find_turned(mechanism)
+        self.bodies = {description.name: self._body(description) for description in mechanism.bodies}
+        self.space.add(*self.bodies.values())
+        self.aims: list[Callable[[float], None]] = []
+        self.repairs: list[Callable[[], None]] = []
+        self.rows = self.solver_rows = 0
+        self.rolls = 0
+
+    def _body(self, description: Any) -> pymunk.Body:
+        name, unit = description.name, self.settings.unit
+        if name in self.cranks:
+            return crank_body(self.cranks[name], description, unit)
+        vx, vy, rate = (value * unit for value in description.twist)
+        if name in self.turned:
+            body = turned_body(self.turned[name], description, unit)
         else:
             body = pymunk.Body(description.mass, description.inertia)
-            body.position, body.angle = description.pose[:2], description.pose[2]
-            body.velocity, body.angular_velocity = description.twist[:2], description.twist[2]
-            bodies[description.name] = body
-            origins.append((0.0, 0.0))
-    space.add(*bodies.values())
-    for joint in mechanism.joints:
-        for constraint in _constraints(joint, space.static_body, bodies, cranks):
-            constraint.error_bias = error_bias
-            space.add(constraint)
-    rows = sum(ROWS[type(constraint)] for constraint in space.constraints)
-    size = Size(bodies=len(space.bodies), coordinates=3 * len(space.bodies), rows=rows, solver_rows=rows)
-    return Model(space, tuple(bodies.values()), np.array(origins), size)
+            body.angular_velocity = rate
+        body.position, body.angle = description.pose[:2], description.pose[2]
+        body.velocity = (vx, vy)
+        return body
 
-
-def _constraints(
-    joint: Joint, ground: pymunk.Body, bodies: dict[str, pymunk.Body], cranks: dict[str, Crank]
-) -> list[Constraint]:
-    """What stands for one joint: nothing, where the motion of a crank already contains it."""
-    if any(joint in (crank.pin, crank.drive) for crank in cranks.values()):
-        return []
-    first = ground if joint.first is None else bodies[joint.first]
-    second = ground if joint.second is None else bodies[joint.second]
-    if pymunk.Body.DYNAMIC not in (first.body_type, second.body_type):
-        raise Unsupported(
-            f"joint {joint.name!r} joins two bodies whose motion is already prescribed; "
-            "a pymunk constraint needs one that forces can move"
+    def model(self) -> Model:
+        for joint in self.mechanism.joints:
+            for constraint in self._constraints(joint):
+                constraint.error_bias = self.settings.error_bias
+                self.space.add(constraint)
+                self.rows += ROWS[type(constraint)]
+                self.solver_rows += ROWS[type(constraint)]
+        count = len(self.bodies)
+        size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
+        origins = np.array([self._origin(name) for name in self.bodies])
+        unit = self.settings.unit
+        return Model(
+            self.space, tuple(self.bodies.values()), origins, size, unit, tuple(self.aims), tuple(self.repairs)
         )
-    match joint:
-        case Pin():
-            return [pin(joint, first, second, cranks)]
-        case Drive():
-            return [motor(joint, first, second)]
-        case _:
-            raise Unsupported(f"joint {joint.name!r}: pymunk has no construction for a {type(joint).__name__} here")
+
+    def _origin(self, name: str | None) -> Vector:
+        return self.cranks[name].own_point if name in self.cranks else (0.0, 0.0)
+
+    def _own(self, name: str | None, point: Vector) -> Vector:
+        """A point of the mechanism's body frame [m], from the engine's origin."""
+        x, y = self._origin(name)
+        return (point[0] - x, point[1] - y)
+
+    def _constraints(self, joint: Joint) -> list[Constraint]:
+        """What stands for one joint: nothing, where a prescribed motion already contains it."""
+        if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
+            return []
+        ground = self.space.static_body
+        first = ground if joint.first is None else self.bodies[joint.first]
+        second = ground if joint.second is None else self.bodies[joint.second]
+        self._refuse_prescribed(joint, first, second)
+        settings = self.settings
+        match joint:
+            case Pin():
+                anchors = self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
+                return [pin(first, second, *anchors)]
+            case Drive():
+                return [motor(joint, first, second, settings.unit)]
+            case Slot():
+                points = self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
+                scale = self.mechanism.length_scale
+                constraints, aims = slide(joint, settings.slot, first, second, *points, scale)
+                self.aims += aims
+                return constraints
+            case Skate():
+                constraints, aims, repairs = blade(joint, settings.skate, first, second)
+                self.aims += aims
+                self.repairs += repairs
+                self.rows += 0 if constraints else 1  # held by hand
+                return constraints
+            case Roll():
+                return self._roll(joint, first, second)
+            case _:
+                raise Unsupported(f"joint {joint.name!r}: pymunk has no construction for a {type(joint).__name__} here")
+
+    def _roll(self, joint: Roll, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
+        if self.settings.roll != "contact":
+            origins = self._origin(joint.first), self._origin(joint.second)
+            pivot = MovedPivot(joint, first, second, origins, predicted=self.settings.roll == "pivot")
+            self.aims.append(pivot)
+            return [pivot.constraint]
+        contact = self.settings.contact
+        self.space.collision_slop, self.space.collision_bias = contact.slop, contact.bias**self.settings.unit
+        sides = tuple(
+            (body, lambda p, n=name: self._own(n, p)) for body, name in ((first, joint.first), (second, joint.second))
+        )
+        shapes = touching(joint, contact, self.rolls, sides)  # pyright: ignore[reportArgumentType]
+        self.space.add(*shapes)
+        self.rolls += 1
+        self.rows += 2
+        # Every contact point has a row along its normal and one along its tangent; a side has two points.
+        flat = sum(isinstance(shape, pymunk.Circle) for shape in shapes) == 0
+        self.solver_rows += 4 if flat else 2
+        return []
+
+    def _refuse_prescribed(self, joint: Joint, first: pymunk.Body, second: pymunk.Body) -> None:
+        if isinstance(joint, Drive):
+            free = any(name is not None and name not in self.turned for name in (joint.first, joint.second))
+        else:
+            free = pymunk.Body.DYNAMIC in (first.body_type, second.body_type)
+        if not free:
+            raise Unsupported(
+                f"joint {joint.name!r} joins two bodies whose motion is already prescribed; "
+                "a pymunk constraint needs one that forces can move"
+            )

@@ -79,6 +79,7 @@ class Recording:
     after: Array  # (times, bodies, 3) the engine's velocities with p(t): those of t, or of t + dt/2 in a leapfrog
     before: Array  # (times - 1, bodies, 3) its velocities a step earlier, from the second sample on
     stepping: float  # s
+    stopped: str = ""  # why the stepping ended early, if it did: from there on everything is NaN
 
 
 def record(model: Model, dt: float, samples: int, every: int, raw: bool) -> Recording:
@@ -87,21 +88,28 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool) -> Reco
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
     visit_each, pointer = lib.cpSpaceEachBody, model.space._space
     step, space = model.stepper(raw)
+    dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
     visit_each(pointer, visitor, after)
     steps_between = range(every - 1)
+    stopped = ""
     begin = time.process_time()
-    for _ in repeat(None, samples):
-        if velocities:
-            for _ in steps_between:
-                step(space, dt)
-            visit_each(pointer, visitor, before)
-        step(space, dt)
-        visit_each(pointer, visitor, after)
+    try:
+        for _ in repeat(None, samples):
+            if velocities:
+                for _ in steps_between:
+                    step(space, dt)
+                visit_each(pointer, visitor, before)
+            step(space, dt)
+            visit_each(pointer, visitor, after)
+    except (ValueError, ArithmeticError) as reason:  # what is aimed by hand has no place to be aimed at any more
+        stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
     stepping = time.process_time() - begin
     states, earlier = recorder.read(samples, velocities)
     with np.errstate(all="ignore"):  # a motion that blew up is a result
-        return Recording(*_of_mass_centres(model, states, earlier), stepping)
+        states[..., 3:] /= model.unit
+        earlier = earlier / model.unit if velocities else states[:-1, :, 3:]
+        return Recording(*_of_mass_centres(model, states, earlier), stepping, stopped)
 
 
 def _of_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
@@ -158,7 +166,7 @@ class PymunkRun:
     def _started(self, iterations: int) -> Model:
         model = self._make(self._mechanism, iterations)
         if self._leapfrog:
-            model.kick(self._dt / 2)
+            model.kick(self._dt / model.unit / 2)
         return model
 
     def __call__(self, samples: int, every: int) -> Trajectory:
@@ -178,7 +186,8 @@ class PymunkRun:
             [self._start_reaction()[None], reactions(self._mechanism, recording.pose[1:], acceleration)]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        return Trajectory(t, pose, twist, reaction, stepping=recording.stepping)
+        warnings = (recording.stopped,) if recording.stopped else ()
+        return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
 
     def _start_reaction(self) -> Array:
         """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.

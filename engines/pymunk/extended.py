@@ -1,0 +1,54 @@
+"""What pymunk can do at best: extrapolation to zero step, of the method whose error it knows, by kind of mechanism."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from engines import Run
+from engines.extrapolated import Extrapolated
+from engines.pymunk.engine import Pymunk
+from engines.pymunk.reflection import Reflected, reflectable
+from reference.joints import Skate
+from reference.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Extended:
+    """An engine in the sense of `engines.Engine` that takes one of three others, by the mechanism's joints alone.
+
+    `single`: bodies each on one skate or contact of their own. `skates`: skates among other joints, held at the end of
+    a step instead of around it, so of first order. `pins`: all others.
+    """
+
+    variant: str
+    single: Extrapolated
+    skates: Extrapolated
+    pins: Extrapolated
+
+    @property
+    def name(self) -> str:
+        return "pymunk"
+
+    def chosen(self, mechanism: Mechanism) -> Extrapolated:
+        """The engine that this one takes for a mechanism."""
+        if reflectable(mechanism):
+            return self.single
+        if any(isinstance(joint, Skate) for joint in mechanism.joints):
+            return self.skates
+        return self.pins
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:
+        """Raises whatever the chosen engine raises."""
+        return self.chosen(mechanism).build(mechanism, dt)
+
+
+LEAPFROG = Pymunk("leapfrog", "chain", "chain", leapfrog=True, skate="groove", roll="pivot")
+# The leapfrog's error has all powers from the second, not only even ones; with a skate from the first.
+FIVE = (2, 3, 4, 6, 8)
+EXTENDED = Extended(
+    "extended",
+    # Even numbers of steps only, as a reflection asks for.
+    single=Extrapolated(Reflected("reflection"), "extended", levels=(2, 4, 6, 8), powers=(2, 4, 6)),
+    skates=Extrapolated(LEAPFROG, "extended", levels=FIVE, powers=(1, 2, 3, 4)),
+    pins=Extrapolated(LEAPFROG, "extended", levels=FIVE, powers=(2, 3, 4, 5)),
+)

@@ -1,0 +1,100 @@
+"""A Roll by contact and friction in pymunk: its two curves as shapes, as a user would make them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from engines import Unsupported
+from reference.curve import Curve, Placed, Vector
+from reference.curves import Circle, Line
+from reference.roll import Roll
+
+_space = pymunk.Space()
+SHIPPED_SLOP = _space.collision_slop  # 0.1
+SHIPPED_BIAS = _space.collision_bias  # 0.9 ** 60
+REACH = 1e3  # m, half the length of flat ground
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How contact is set: `slop` [m] of overlap is left alone, the fraction `bias` of the rest is left after a second.
+
+    `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round. Raises ValueError
+    for other values: the engine would abort the process, or give NaN.
+    """
+
+    slop: float = SHIPPED_SLOP
+    bias: float = SHIPPED_BIAS
+    friction: float = 10.0  # a product of 100: no rolling here ever needs so much
+    vertices: int = 64
+
+    def __post_init__(self) -> None:
+        for name, low, high in (("slop", 0.0, math.inf), ("bias", 0.0, 1.0), ("friction", 0.0, math.inf)):
+            value = getattr(self, name)
+            if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
+                raise ValueError(f"pymunk contact: {name} is {value!r}; it must be a number from {low:g} to {high:g}")
+        if not (isinstance(self.vertices, int) and 3 <= self.vertices <= 10000):
+            raise ValueError(
+                f"pymunk contact: vertices is {self.vertices!r}; it must be a whole number from 3 to 10000"
+            )
+
+
+SHIPPED_CONTACT = Contact()
+
+
+def touching(
+    joint: Roll,
+    contact: Contact,
+    index: int,
+    sides: tuple[tuple[pymunk.Body, Callable[[Vector], Vector]], tuple[pymunk.Body, Callable[[Vector], Vector]]],
+) -> list[pymunk.Shape]:
+    """The shapes of both curves, that see each other only; `index` counts the mechanism's Rolls from 0.
+
+    `sides` are the first and second body, each with what gives a point from the engine's origin.
+    """
+    if index >= 32:
+        raise Unsupported(f"joint {joint.name!r}: pymunk's shape filter tells 32 pairs apart, and this is one more")
+    shapes = [
+        _shape(joint, curve, body, own, contact.vertices)
+        for curve, (body, own) in zip((joint.rolling.ground, joint.rolling.body), sides, strict=True)
+    ]
+    for shape in shapes:
+        shape.friction = contact.friction
+        shape.filter = pymunk.ShapeFilter(categories=1 << index, mask=1 << index)
+    return shapes
+
+
+def _shape(
+    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], vertices: int
+) -> pymunk.Shape:
+    inner, turn, shift = curve, 0.0, np.zeros(2)
+    while isinstance(inner, Placed):
+        raise_by = _turned(turn, inner.shift)
+        inner, turn, shift = inner.curve, turn + inner.turn, shift + raise_by
+    if isinstance(inner, Circle):
+        x, y = _turned(turn, inner.centre) + shift
+        return pymunk.Circle(body, inner.radius, own((float(x), float(y))))
+    if isinstance(inner, Line):
+        through, heading = _turned(turn, inner.through) + shift, turn + inner.heading
+        reach = REACH * np.array([math.cos(heading), math.sin(heading)])
+        back, front = (own((float(x), float(y))) for x, y in (through - reach, through + reach))
+        return pymunk.Segment(body, back, front, 0.0)
+    if curve.curvature_range[0] < 0:
+        raise Unsupported(
+            f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: a hole of "
+            "many segments would be another ground"
+        )
+    if not math.isfinite(curve.length):
+        raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} has no end, and a polygon closes")
+    corners = curve.point(np.linspace(0.0, curve.length, vertices, endpoint=False))
+    return pymunk.Poly(body, [own((float(x), float(y))) for x, y in corners])
+
+
+def _turned(angle: float, point: Vector) -> np.ndarray:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])

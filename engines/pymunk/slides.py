@@ -1,0 +1,50 @@
+"""What stands for a Slot in pymunk: a groove joint where it is exact, and a link across the line elsewhere.
+
+- "exact": a `GrooveJoint` if the groove is in a body of known motion and its anchor at the centre of mass of the second
+  body, or that body can't turn: then pushing along the normal moves the anchor along the normal. Else a `Link`.
+- "groove": a `GrooveJoint` wherever the point is, as a user would. Off the centre of mass of a body that turns, its
+  impulse is not the one that stops the motion across the groove: it settles at a wrong one, at any step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, isinf, sin
+from typing import Literal, get_args
+
+import pymunk
+from pymunk.constraints import Constraint, GrooveJoint
+
+from engines.pymunk.links import Link
+from reference.joints import Slot, Vector
+
+SlotConstruction = Literal["exact", "groove"]
+CONSTRUCTIONS: tuple[str, ...] = get_args(SlotConstruction)
+
+# A groove ends, a slot does not: this many lengths of the mechanism from the middle. Rounding grows in proportion.
+REACH = 1e3
+
+
+def slide(
+    joint: Slot,
+    construction: SlotConstruction,
+    first: pymunk.Body,
+    second: pymunk.Body,
+    first_point: Vector,
+    second_point: Vector,
+    length: float,
+) -> tuple[list[Constraint], list[Callable[[float], None]]]:
+    """Constraints and what to do before each step; points from the engine's origins, `length` [m] of the mechanism."""
+    known = first.body_type != pymunk.Body.DYNAMIC
+    if construction == "groove" or (known and groove_is_exact(second, second_point)):
+        along_x, along_y = REACH * length * cos(joint.line_angle), REACH * length * sin(joint.line_angle)
+        back = (first_point[0] - along_x, first_point[1] - along_y)
+        front = (first_point[0] + along_x, first_point[1] + along_y)
+        return [GrooveJoint(first, second, back, front, second_point)], []
+    link = Link(joint, first, second, second_point, first_point, reach=10 * length)
+    return [link.constraint], [link]
+
+
+def groove_is_exact(body: pymunk.Body, point: Vector) -> bool:
+    """Whether every normal is an eigenvector of the body's inverse mass at this point."""
+    return point == (0.0, 0.0) or isinf(body.moment)
