@@ -20,8 +20,10 @@ from reports.choice import (
     page_cells,
 )
 from reports.measure import Measurement
+from reports.shapes_command import shapes
 
 RESULTS = Path(__file__).parent / "results"
+README = Path(__file__).parents[1] / "README.md"
 STORE = "cells.sqlite"
 INTERRUPTED = 130  # what a shell expects of a program ended by Ctrl-C
 
@@ -128,7 +130,7 @@ def report(results: Folder = RESULTS) -> None:
     """Write pages, charts, errors.csv and timings.csv from what is stored."""
     from reports.page import Material
     from reports.pages import PAGES
-    from reports.rendering import render_all
+    from reports.rendering import render_all, render_readme
     from reports.running import trajectories
     from reports.store import Store
 
@@ -142,6 +144,8 @@ def report(results: Folder = RESULTS) -> None:
     for name, text in files.items():
         (results / name).write_text(text, encoding="utf-8", newline="\n")
     console.print(f"{len(files)} files written to {results}")
+    if results == RESULTS:
+        README.write_text(render_readme(README.read_text(encoding="utf-8"), material), encoding="utf-8", newline="\n")
     if found < total:
         console.print(f"{total - found} of {total} cells of the full grid are not stored: crosscheck run --full")
 
@@ -213,6 +217,9 @@ def bench(
     else:
         console.print(f"  pylinkage {other['pylinkage']:.3f} s, {other['ratio']:.1f} times ours")
     console.print(f"{versions()}; {machine()}")
+
+
+app.command("shapes")(shapes)
 
 
 def main(arguments: list[str] | None = None) -> None:

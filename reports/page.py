@@ -87,6 +87,7 @@ class Page:
 
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
     template's own variables, numbers taken from the rows.
+    quantity: the error by which methods are compared and charted, a name in `reports.quantities`.
     orders: method ("pymunk tuned") -> the order that theory promises for an ideal constraint. known: (scene, method,
     check) -> why that check of `tests/test_crosscheck.py` must fail; it begins "upstream:", "by design:" or "ours:".
     """
@@ -98,6 +99,7 @@ class Page:
     engines: tuple[Engine, ...]
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
+    quantity: str = "angle"
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words

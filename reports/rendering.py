@@ -14,6 +14,7 @@ from reports import charts, maps, tables
 from reports.machine import machine, today, versions
 from reports.measure import Measurement
 from reports.outcomes import Outcome
+from reports.overview import overview, with_overview
 from reports.page import Failure, Material, Page, StabilityMap
 from reports.sweep import judged, sweeps
 from reports.theme import svg
@@ -77,8 +78,14 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         pictures[name] = f"{page.name}_{name}.svg"
 
     if any(row.purpose == "sweep" and Outcome(row.outcome).comparable for row in rows):
-        keep("work", svg(charts.work_precision(rows, page.featured), f"{page.title}: error against CPU time"))
-        keep("steps", svg(charts.error_against_step(rows, page.featured), f"{page.title}: error against step"))
+        keep(
+            "work",
+            svg(charts.work_precision(rows, page.featured, page.quantity), f"{page.title}: error against CPU time"),
+        )
+        keep(
+            "steps",
+            svg(charts.error_against_step(rows, page.featured, page.quantity), f"{page.title}: error against step"),
+        )
     told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
@@ -105,8 +112,8 @@ def _told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, 
     told = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
     featured = [row for row in rows if page.featured(row)]
     return {
-        **_compared(featured),
-        "all": _compared(rows if len(featured) < len(rows) else []),
+        **_compared(featured, page.quantity),
+        "all": _compared(rows if len(featured) < len(rows) else [], page.quantity),
         "name": scene.name,
         "source": scene.source,
         "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
@@ -118,13 +125,13 @@ def _told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, 
     }
 
 
-def _compared(rows: list[Measurement]) -> dict[str, str]:
+def _compared(rows: list[Measurement], quantity: str) -> dict[str, str]:
     """The tables that compare methods; empty without rows."""
     if not rows:
         return {"orders": "", "work": "", "reactions": ""}
     return {
         "orders": tables.order_table(sweeps(rows)),
-        "work": tables.work_table(rows),
+        "work": tables.work_table(rows, quantity),
         "reactions": tables.reaction_table(rows),
     }
 
@@ -159,14 +166,24 @@ def foot(command: str) -> str:
 
 
 def render_index(pages: Iterable[tuple[Page, Material]], command: str) -> str:
-    """The index: a table a scene, a line a method that its page features."""
-    told = []
-    for page, material in pages:
-        rows = [row for row in judged(material.sweep(page.scenes)) if page.featured(row)]
-        names = [scene.name for scene in page.scenes]
-        summaries = {name: tables.summary_table([row for row in rows if row.scene == name]) for name in names}
-        told.append({"page": page, "summaries": summaries, "missing": not rows})
-    return environment().get_template("index.md").render(pages=told, outcomes=list(Outcome), foot=foot(command))
+    """The index: every scene in a line, then every page with its lesson."""
+    pages = list(pages)
+    return (
+        environment()
+        .get_template("index.md")
+        .render(
+            pages=[page for page, _ in pages],
+            overview=overview((page, judged(material.sweep(page.scenes))) for page, material in pages),
+            outcomes=list(Outcome),
+            foot=foot(command),
+        )
+    )
+
+
+def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
+    """The readme with the line of each page's first scene in it; raises ValueError where its marks are missing."""
+    firsts = [(page, judged(material.sweep(page.scenes[:1]))) for page, material in pages.items()]
+    return with_overview(text, overview(firsts, "reports/results/"))
 
 
 def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:

@@ -11,7 +11,7 @@ from dataclasses import fields
 from reports.errors import NAN
 from reports.measure import TIMINGS, Measurement
 from reports.outcomes import Outcome
-from reports.quantities import QUANTITIES
+from reports.quantities import QUANTITIES, quantity
 from reports.sweep import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
 
 NOTHING = "-"
@@ -169,14 +169,17 @@ def outcome_table(rows: Iterable[Measurement]) -> str:
     return markdown(header, body, left=3)
 
 
-def work_table(rows: Iterable[Measurement], targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)) -> str:
-    """The least CPU time with which each method gets below an angle error [ms per simulated second]."""
+def work_table(
+    rows: Iterable[Measurement], name: str = "angle", targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
+) -> str:
+    """The least CPU time with which each method gets below an error [ms per simulated second]."""
     body = []
     for members in groups(rows).values():
         usable = [row for row in members if Outcome(row.outcome).comparable]
-        cost = [min((row.cpu for row in usable if row.angle <= target), default=NAN) for target in targets]
+        cost = [min((row.cpu for row in usable if getattr(row, name) <= target), default=NAN) for target in targets]
         body.append([members[0].method, *map(milliseconds, cost)])
-    return markdown(["method", *(f"{target:.0e} rad".replace("e-0", "e-") for target in targets)], body)
+    unit = quantity(name).unit
+    return markdown(["method", *(f"{number(target, 1)} {unit}" for target in targets)], body)
 
 
 SUMMARY_HEADER = ("method", "angle error [rad]", "at step [s]", "CPU [ms/s]", "order", "stays at [rad]", "outcomes")
@@ -197,11 +200,6 @@ def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
         outcomes = ", ".join(dict.fromkeys(row.outcome for row in members))
         out.append([members[0].method, *map(number, numbers), order, end, outcomes])
     return out
-
-
-def summary_table(rows: Iterable[Measurement]) -> str:
-    """One line a method of one scene, as Markdown."""
-    return markdown(SUMMARY_HEADER, summary_rows(rows))
 
 
 def as_csv(rows: Iterable[Measurement], timings: bool, header: str = "") -> str:
