@@ -27,7 +27,8 @@ class Failure:
     """An experiment in which methods are expected to fail.
 
     `expected` says what the reference says should happen. `cells` have the purpose "failure". `observations` is called
-    when the page is written, for methods that are not engines.
+    when the page is written, for methods that are not engines. `columns` are the quantities (`reports.quantities`)
+    whose largest errors are told of every cell; without any, a grid of methods and steps tells the angle's.
     """
 
     title: str
@@ -35,6 +36,7 @@ class Failure:
     cells: tuple[Cell, ...] = ()
     observations: Callable[[], Sequence[Observation]] | None = None
     remark: str = ""  # what the outcomes teach
+    columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

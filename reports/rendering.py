@@ -142,10 +142,11 @@ def _told_failure(failure: Failure, material: Material) -> Told:
     observations = tables.markdown(
         ["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3
     )
+    grid = tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)
     return Told(
         failure.title,
         failure.expected,
-        tables.outcome_grid(rows) if rows else "",
+        grid if rows else "",
         tables.outcome_table(rows) if any(row.sentence for row in rows) else "",
         observations if seen else "",
         failure.remark,

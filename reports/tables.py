@@ -153,6 +153,16 @@ def _outcome_in_brief(row: Measurement) -> str:
     return f"**{row.outcome}**"
 
 
+def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
+    """A line a cell: method, step, outcome, the largest errors of these quantities."""
+    told = [quantity(name) for name in columns]
+    body = [
+        [row.method, number(row.step), f"**{row.outcome}**", *(number(getattr(row, q.name)) for q in told)]
+        for row in rows
+    ]
+    return markdown(["method", "step [s]", "outcome", *(f"{q.label} [{q.unit}]" for q in told)], body, left=3)
+
+
 def outcome_table(rows: Iterable[Measurement]) -> str:
     """The same with each cell's own sentence: method, step, outcome, largest errors."""
     header = ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
