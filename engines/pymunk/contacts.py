@@ -217,32 +217,28 @@ class Touch:
         self._rolling = rolling
         self._ground, self._body = _boundary(rolling.ground), _boundary(rolling.body)
         straight = isinstance(_unplaced(rolling.ground), Line)
-        round_ground = isinstance(_unplaced(rolling.ground), Circle | Ring)
-        body_bends = not isinstance(_unplaced(rolling.body), Line)
-        self._parameter: Callable[[float], float] | None = None
-        if self._ground is not None and self._body is not None and body_bends:
-            self._start = float(rolling.body.parameter(rolling.body_arc))
-            self._start_angle = self._body.angle(self._start)
-            if straight:
-                self._parameter = self._on_a_line
-            elif round_ground:
-                self._parameter = self._on_a_round
-                self._bend = self._ground.curvature(0.0)
-                self._last = (rolling.theta, self._start)
+        bends = not isinstance(_unplaced(rolling.body), Line)
+        self._parameters: Callable[[float], tuple[float, float | None]] | None = None
+        if self._ground is not None and self._body is not None and bends:
+            start = float(rolling.body.parameter(rolling.body_arc)), float(rolling.ground.parameter(rolling.ground_arc))
+            self._start_angles = self._body.angle(start[0]), self._ground.angle(start[1])
+            self._last = (rolling.theta, *start)
+            self._parameters = self._on_a_line if straight else self._on_a_bend
 
     def on_body(self, theta: float) -> Point:
         """The contact in the body's frame [m]."""
-        if self._parameter is None or self._body is None:
+        if self._parameters is None or self._body is None:
             return self._asked(theta)[1]
-        return self._body.point(self._parameter(theta))
+        return self._body.point(self._parameters(theta)[0])
 
     def on_both(self, theta: float) -> tuple[Point, Point]:
         """The contact in the ground's frame, and in the body's [m]."""
-        if self._parameter is None or self._body is None or self._ground is None:
+        if self._parameters is None or self._body is None or self._ground is None:
             return self._asked(theta)
-        p = self._parameter(theta)
-        arc = self._rolling.ground_arc + (self._rolling.body_arc - self._body.arc(p))
-        return self._ground.point(arc), self._body.point(p)
+        p, q = self._parameters(theta)
+        if q is None:
+            q = self._rolling.ground_arc + (self._rolling.body_arc - self._body.arc(p))
+        return self._ground.point(q), self._body.point(p)
 
     def _asked(self, theta: float) -> tuple[Point, Point]:
         contact = self._rolling.contact(theta)
@@ -250,26 +246,36 @@ class Touch:
         x, y = (-float(value) for value in contact.arm)
         return (float(contact.point[0]), float(contact.point[1])), (cosine * x + sine * y, cosine * y - sine * x)
 
-    def _on_a_line(self, theta: float) -> float:
+    def _on_a_line(self, theta: float) -> tuple[float, float | None]:
+        """The body's parameter, by its angle; that of the line, the arc, is left to who needs it."""
         body: Any = self._body
-        return body.parameter_at(self._start_angle - (theta - self._rolling.theta))
+        return body.parameter_at(self._start_angles[0] - (theta - self._rolling.theta)), None
 
-    def _on_a_round(self, theta: float) -> float:
-        """Newton from the last contact: -(theta - start) = bend (arc - start) + (angle - start), all of the body."""
+    def _on_a_bend(self, theta: float) -> tuple[float, float]:
+        """Both parameters, by Newton from the last contact: the arcs' sum is kept, the angles' difference is theta."""
         body: Any = self._body
-        rolling, bend = self._rolling, self._bend
-        last, p = self._last
-        turned = rolling.theta - theta
-        p -= (theta - last) / ((bend + body.curvature(p)) * body.speed(p))
+        ground: Any = self._ground
+        rolling = self._rolling
+        last, p, q = self._last
+        total, turned = rolling.ground_arc + rolling.body_arc, theta - rolling.theta
+        body_start, ground_start = self._start_angles
+        miss_arc, miss_angle = 0.0, last - theta
         for _ in range(20):
-            slope = (bend + body.curvature(p)) * body.speed(p)
-            if not slope > 0:
+            body_speed, ground_speed = body.speed(p), ground.speed(q)
+            body_bend, ground_bend = body.curvature(p), ground.curvature(q)
+            bend = body_bend + ground_bend
+            if not bend > 0:
                 break
-            miss = bend * (body.arc(p) - rolling.body_arc) + body.angle(p) - self._start_angle - turned
-            p -= miss / slope
-            # Quadratic: below this, the step just taken has brought it to rounding.
-            if abs(miss) < 1e-9:
-                self._last = (theta, p)
-                return p
+            p -= (ground_bend * miss_arc - miss_angle) / (bend * body_speed)
+            q -= (body_bend * miss_arc + miss_angle) / (bend * ground_speed)
+            miss_arc = body.arc(p) + ground.arc(q) - total
+            miss_angle = (ground.angle(q) - ground_start) - (body.angle(p) - body_start) - turned
+            # Rounding of the arcs themselves; from a step away the second correction is there.
+            if abs(miss_arc) < 1e-14 * (1 + abs(total) + abs(q)) and abs(miss_angle) < 1e-14 * (1 + abs(turned)):
+                self._last = (theta, p, q)
+                return p, q
+        self._last = (theta, p, q)
+        if abs(miss_arc) < 1e-12 and abs(miss_angle) < 1e-12:
+            return p, q
         rolling.contact(theta)  # says where and why, if it is the pair's fault
         raise InvalidMechanism(f"rolling: no contact was found at theta = {theta!r} rad from that at {last!r} rad")

@@ -24,17 +24,25 @@ REACH = 1e3  # m, half the length of flat ground
 class Contact:
     """How contact is set: `slop` [m] of overlap is left alone, the fraction `bias` of the rest is left after a second.
 
-    `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round. Raises ValueError
-    for other values: the engine would abort the process, or give NaN.
+    `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round, equally far apart
+    along its rim; `thickness` [m] of flat ground, as the radius of a segment that lies this deep. On ground without
+    thickness a polygon of some hundred corners is at times given a wrong normal: it is thrown, or stops dead. Raises
+    ValueError for other values: the engine would abort the process, or give NaN.
     """
 
     slop: float = SHIPPED_SLOP
     bias: float = SHIPPED_BIAS
     friction: float = 10.0  # a product of 100: no rolling here ever needs so much
     vertices: int = 64
+    thickness: float = 0.1
 
     def __post_init__(self) -> None:
-        for name, low, high in (("slop", 0.0, math.inf), ("bias", 0.0, 1.0), ("friction", 0.0, math.inf)):
+        for name, low, high in (
+            ("slop", 0.0, math.inf),
+            ("bias", 0.0, 1.0),
+            ("friction", 0.0, math.inf),
+            ("thickness", 0.0, math.inf),
+        ):
             value = getattr(self, name)
             if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
                 raise ValueError(f"pymunk contact: {name} is {value!r}; it must be a number from {low:g} to {high:g}")
@@ -60,7 +68,7 @@ def touching(
     if index >= 32:
         raise Unsupported(f"joint {joint.name!r}: pymunk's shape filter tells 32 pairs apart, and this is one more")
     shapes = [
-        _shape(joint, curve, body, own, contact.vertices)
+        _shape(joint, curve, body, own, contact)
         for curve, (body, own) in zip((joint.rolling.ground, joint.rolling.body), sides, strict=True)
     ]
     for shape in shapes:
@@ -70,20 +78,22 @@ def touching(
 
 
 def _shape(
-    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], vertices: int
+    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], contact: Contact
 ) -> pymunk.Shape:
     inner, turn, shift = curve, 0.0, np.zeros(2)
     while isinstance(inner, Placed):
-        raise_by = _turned(turn, inner.shift)
-        inner, turn, shift = inner.curve, turn + inner.turn, shift + raise_by
+        moved = _turned(turn, inner.shift)
+        inner, turn, shift = inner.curve, turn + inner.turn, shift + moved
     if isinstance(inner, Circle):
         x, y = _turned(turn, inner.centre) + shift
         return pymunk.Circle(body, inner.radius, own((float(x), float(y))))
     if isinstance(inner, Line):
-        through, heading = _turned(turn, inner.through) + shift, turn + inner.heading
+        heading = turn + inner.heading
+        below = contact.thickness * np.array([-math.sin(heading), math.cos(heading)])  # material is to the left
+        through = _turned(turn, inner.through) + shift + below
         reach = REACH * np.array([math.cos(heading), math.sin(heading)])
         back, front = (own((float(x), float(y))) for x, y in (through - reach, through + reach))
-        return pymunk.Segment(body, back, front, 0.0)
+        return pymunk.Segment(body, back, front, contact.thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
             f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: a hole of "
@@ -91,7 +101,7 @@ def _shape(
         )
     if not math.isfinite(curve.length):
         raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} has no end, and a polygon closes")
-    corners = curve.point(np.linspace(0.0, curve.length, vertices, endpoint=False))
+    corners = curve.point(np.linspace(0.0, curve.length, contact.vertices, endpoint=False))
     return pymunk.Poly(body, [own((float(x), float(y))) for x, y in corners])
 
 
