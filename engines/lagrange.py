@@ -11,12 +11,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853, solve_ivp
-from scipy.linalg.lapack import dposv
+from scipy.linalg import get_lapack_funcs
 
 from engines import Size, check_counts, check_step
 from reference.mechanism import RANK_TOLERANCE, Mechanism
@@ -29,6 +29,8 @@ Stabilisation = Literal["none", "baumgarte", "projection"]
 # Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
 BAUMGARTE_STEPS = 5.0
 PROJECTION_ITERATIONS = 8
+
+(_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
 
 _RK4 = (
     np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]),
@@ -54,7 +56,7 @@ class _Dynamics:
     def _solve(self, rows: Array, right: Array) -> Array:
         matrix = (rows * self.weight) @ rows.T
         if not self.redundant:
-            _, solution, failed = dposv(matrix, right, lower=True)
+            _, solution, failed = _solve_positive(matrix, right, lower=True)
             if not failed:
                 return solution
         if not np.all(np.isfinite(matrix)):
@@ -149,8 +151,6 @@ class Lagrange:
     stabilisation: Stabilisation = "projection"
     tolerance: float | None = None
 
-    name: ClassVar[str] = "lagrange"
-
     def __post_init__(self) -> None:
         for field, value, valid in (
             ("integrator", self.integrator, get_args(Integrator)),
@@ -165,6 +165,10 @@ class Lagrange:
                 )
             if not 1e-14 <= self.tolerance < 1:
                 raise ValueError(f"lagrange: tolerance is {self.tolerance!r}; it must lie in [1e-14, 1)")
+
+    @property
+    def name(self) -> str:
+        return "lagrange"
 
     @property
     def step_cost(self) -> float:
@@ -217,7 +221,7 @@ class _LagrangeRun:
                     break
                 poses[sample + 1], twists[sample + 1] = pose, twist
             stepping = time.process_time() - started
-            t = np.arange(samples + 1) * (every * self._dt)
+            t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
             return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping)
 
     def _reactions(self, t: Array, poses: Array, twists: Array) -> Array:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Drive, Joint, Vector
 
@@ -211,7 +212,7 @@ class Mechanism:
     def bias(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
-        return -(self.rows(pose + 1j * step * twist).imag @ _column(twist))[..., 0] / step
+        return -(np.imag(self.rows(pose + 1j * step * twist)) @ _column(twist))[..., 0] / step
 
     def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
@@ -219,6 +220,15 @@ class Mechanism:
         pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
         have applied. Unique when the rows are independent; of redundant rows it gives the smallest.
         """
+        if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
+            found = banded_reaction(self, pose, acceleration)
+            dependent = np.isnan(found).any(axis=1)
+            if dependent.any():
+                found[dependent] = self._dense_reaction(pose[dependent], acceleration[dependent])
+            return found
+        return self._dense_reaction(pose, acceleration)
+
+    def _dense_reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
         rows = self.rows(pose)
         weighted = rows / self.inertias.reshape(-1)
         excess = _column(acceleration - self.free_fall)
@@ -269,16 +279,16 @@ def _rank(rows: NDArray[np.float64]) -> int:
     if rows.size == 0:
         return 0
     singular = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(singular > RANK_TOLERANCE * max(singular[0], 1.0)))
+    return int(np.sum(singular > RANK_TOLERANCE * singular[0]))
 
 
 def solve_rows(matrix: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Solve the symmetric row system (..., rows, rows) x = (..., rows, 1); the smallest solution if it is singular."""
     try:
-        solution = np.linalg.solve(matrix, right)
+        solution: NDArray[np.float64] = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
         # An LU that meets exact dependence may still end, with garbage of the order of 1/eps.
         if np.all(np.isfinite(solution)) and np.all(np.linalg.cond(matrix) < 1 / RANK_TOLERANCE):
             return solution
     except np.linalg.LinAlgError:
         pass
-    return np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right
+    return np.asarray(np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right, dtype=np.float64)
