@@ -64,9 +64,11 @@ def poses_from_csv(text: str) -> tuple[Array, Array]:
     for number, row in enumerate(reader, start=2):
         try:
             rows.append([float(row[name]) for name in COLUMNS])
+            if not np.isfinite(rows[-1]).all():
+                raise ValueError
         except (TypeError, ValueError):
             raise InvalidMechanism(
-                f"poses: line {number} is {list(row.values())}; t, x, y, angle must be numbers"
+                f"poses: line {number} is {list(row.values())}; t, x, y, angle must be finite numbers"
             ) from None
     table = np.array(rows).reshape(-1, 4)
     return table[:, 0], table[:, 1:]
