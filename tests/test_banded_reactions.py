@@ -1,0 +1,48 @@
+"""Reactions of long chains by their band: the same as by the dense system, and the dense one where rows depend."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from reference.banded_reactions import banded_reaction
+from reference.joints import Pin
+from reference.link_chain_scenes import HundredLinks, TenLinks
+from reference.mechanism import Mechanism
+from reference.n_four_bar import TenFourBars
+
+
+def displaced(mechanism: Mechanism) -> tuple[Any, Any]:
+    random = np.random.default_rng(0)
+    pose = mechanism.pose + 0.1 * random.normal(size=(3, *mechanism.pose.shape))
+    return pose, random.normal(size=pose.shape)
+
+
+@pytest.mark.parametrize("scene", [HundredLinks(), TenFourBars()], ids=["open chain", "closed chain"])
+def test_the_band_gives_the_forces_that_make_the_accelerations(scene: Any) -> None:
+    mechanism = scene.mechanism()
+    pose, _ = displaced(mechanism)
+    # Made from forces that are known: M a = f + J^T reaction, read backwards again.
+    given = np.random.default_rng(1).normal(size=(3, mechanism.row_count))
+    pull = np.einsum("trc,tr->tc", mechanism.rows(pose), given).reshape(pose.shape)
+    found = banded_reaction(mechanism, pose, mechanism.free_fall + pull / mechanism.inertias)
+    # The condition of a hundred links' system is about 1e4: that many roundings.
+    assert np.abs(found - given).max() < 1e-11
+    assert np.array_equal(mechanism.reaction(pose, mechanism.free_fall + pull / mechanism.inertias), found)
+
+
+def test_a_pin_given_twice_falls_back_to_the_smallest_forces() -> None:
+    mechanism = TenLinks().mechanism()
+    last = mechanism.joints[-1]
+    assert isinstance(last, Pin)
+    again = [replace(last, name="again"), replace(last, name="and again")]
+    redundant = replace(mechanism, joints=(*mechanism.joints, *again))
+    pose, acceleration = displaced(redundant)
+    assert np.isnan(banded_reaction(redundant, pose, acceleration)).any(axis=1).all()
+    once, shared = mechanism.reaction(pose, acceleration), redundant.reaction(pose, acceleration)
+    # Of three equal rows each carries a third; the smallest singular values are cut at 1e-9.
+    assert np.abs(shared[:, -2:] - shared[:, -6:-4]).max() < 1e-8 * np.abs(once).max()
+    assert np.abs(3 * shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
