@@ -35,7 +35,7 @@ from reference.mechanism import Mechanism
 
 DEFAULT = Pymunk("default")
 # Contact: all of the overlap is left alone, because pushing bodies apart rolls them too.
-TUNED = Pymunk("tuned", "chain", "chain", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
+TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
 

@@ -260,22 +260,20 @@ class Touch:
         total, turned = rolling.ground_arc + rolling.body_arc, theta - rolling.theta
         body_start, ground_start = self._start_angles
         miss_arc, miss_angle = 0.0, last - theta
+        close = False
         for _ in range(20):
-            body_speed, ground_speed = body.speed(p), ground.speed(q)
             body_bend, ground_bend = body.curvature(p), ground.curvature(q)
             bend = body_bend + ground_bend
             if not bend > 0:
                 break
-            p -= (ground_bend * miss_arc - miss_angle) / (bend * body_speed)
-            q -= (body_bend * miss_arc + miss_angle) / (bend * ground_speed)
-            miss_arc = body.arc(p) + ground.arc(q) - total
-            miss_angle = (ground.angle(q) - ground_start) - (body.angle(p) - body_start) - turned
-            # Rounding of the arcs themselves; from a step away the second correction is there.
-            if abs(miss_arc) < 1e-14 * (1 + abs(total) + abs(q)) and abs(miss_angle) < 1e-14 * (1 + abs(turned)):
+            p -= (ground_bend * miss_arc - miss_angle) / (bend * body.speed(p))
+            q -= (body_bend * miss_arc + miss_angle) / (bend * ground.speed(q))
+            if close:
                 self._last = (theta, p, q)
                 return p, q
-        self._last = (theta, p, q)
-        if abs(miss_arc) < 1e-12 and abs(miss_angle) < 1e-12:
-            return p, q
+            miss_arc = body.arc(p) + ground.arc(q) - total
+            miss_angle = (ground.angle(q) - ground_start) - (body.angle(p) - body_start) - turned
+            # Quadratic: from here the next correction leaves nothing but rounding.
+            close = abs(miss_arc) * bend < 1e-9 and abs(miss_angle) < 1e-9
         rolling.contact(theta)  # says where and why, if it is the pair's fault
         raise InvalidMechanism(f"rolling: no contact was found at theta = {theta!r} rad from that at {last!r} rad")

@@ -11,7 +11,7 @@ from pymunk.constraints import PivotJoint
 
 from engines import check_step
 from engines.pymunk import blades, rollers, slides
-from engines.pymunk.chains import gain, longest_chain, sweeps
+from engines.pymunk.contraction import contraction, gain, sweeps
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.outlines import SHIPPED_CONTACT, Contact
 from engines.pymunk.recorder import PymunkRun
@@ -21,7 +21,7 @@ _space = pymunk.Space()
 _pivot = PivotJoint(_space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0))
 SHIPPED_ITERATIONS = _space.iterations  # 10
 SHIPPED_ERROR_BIAS = _pivot.error_bias  # 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second
-CHAIN = "chain"
+CONTRACTION = "contraction"
 
 
 @dataclass(frozen=True)
@@ -29,20 +29,20 @@ class Pymunk:
     """An engine in the sense of `engines.Engine`.
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
-    after one second; either may be "chain": by the mechanism's longest chain of joints (`engines.pymunk.chains`).
+    after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.blades`, `.rollers`, `.slides`), `contact` how contact is set where it stands for a Roll.
 
     A `gain` below 1 in every step would be an error_bias ** dt; that power underflows to 0 at small steps, which is a
-    gain of 1. Models by "chain" are therefore built in a unit of time in which the step is 1, whenever that matters.
+    gain of 1. Models by "contraction" are therefore built in a unit of time in which the step is 1, where that matters.
 
     Raises ValueError for other values: the engine would abort the process.
     """
 
     variant: str
-    iterations: int | Literal["chain"] = SHIPPED_ITERATIONS
-    error_bias: float | Literal["chain"] = SHIPPED_ERROR_BIAS
+    iterations: int | Literal["contraction"] = SHIPPED_ITERATIONS
+    error_bias: float | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
     skate: blades.SkateConstruction = "centre"
     roll: rollers.RollConstruction = "contact"
@@ -51,13 +51,15 @@ class Pymunk:
 
     def __post_init__(self) -> None:
         counted = isinstance(self.iterations, int) and 1 <= self.iterations < 2**31
-        if not (counted or self.iterations == CHAIN):
-            raise ValueError(f"pymunk: iterations is {self.iterations!r}; it must be a whole number from 1, or 'chain'")
+        if not (counted or self.iterations == CONTRACTION):
+            raise ValueError(
+                f"pymunk: iterations is {self.iterations!r}; it must be a whole number from 1, or 'contraction'"
+            )
         bias = self.error_bias
-        if bias != CHAIN and not (isinstance(bias, int | float) and math.isfinite(bias) and 0 <= bias <= 1):
+        if bias != CONTRACTION and not (isinstance(bias, int | float) and math.isfinite(bias) and 0 <= bias <= 1):
             raise ValueError(
                 f"pymunk: error_bias is {bias!r}; it must be from 0 (close every gap in one step) to 1 (never), "
-                "or 'chain'"
+                "or 'contraction'"
             )
         for name, known in (("skate", blades), ("roll", rollers), ("slot", slides)):
             value = getattr(self, name)
@@ -83,14 +85,14 @@ class Pymunk:
 
     def sweeps(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism."""
-        return self.iterations if isinstance(self.iterations, int) else sweeps(longest_chain(mechanism))
+        return self.iterations if isinstance(self.iterations, int) else sweeps(contraction(mechanism))
 
     def model(self, mechanism: Mechanism, dt: float, iterations: int | None = None) -> Model:
         """The engine's objects for steps of dt [s], not yet stepped; with other iterations than its own if given."""
         own = self.sweeps(mechanism)
         bias, unit = self.error_bias, 1.0
         if not isinstance(bias, int | float):
-            closed = gain(longest_chain(mechanism), own)
+            closed = gain(contraction(mechanism), own)
             bias, unit = 1 - closed, (1.0 if closed == 1 else dt)
         settings = Settings(
             own if iterations is None else iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact

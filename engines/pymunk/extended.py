@@ -42,7 +42,7 @@ class Extended:
         return self.chosen(mechanism).build(mechanism, dt)
 
 
-LEAPFROG = Pymunk("leapfrog", "chain", "chain", leapfrog=True, skate="groove", roll="pivot")
+LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
 AIMED = Pymunk("aimed", 40, 0.0, skate="groove", roll="pivot")
 # The leapfrog's error has all powers from the second, not only even ones; with a skate from the first.

@@ -9,8 +9,8 @@ from engines.pymunk.extended import FIVE
 
 # On a slider of its own, with the groove at its centre, both are the same; on the end of a rod the first is a trap.
 GROOVE = Pymunk("slot: groove at the point", slot="groove")
-GROOVE_TUNED = Pymunk("slot: groove at the point, tuned", "chain", "chain", slot="groove")
-EXACT = Pymunk("slot: exact row", "chain", "chain", leapfrog=True)
+GROOVE_TUNED = Pymunk("slot: groove at the point, tuned", "contraction", "contraction", slot="groove")
+EXACT = Pymunk("slot: exact row", "contraction", "contraction", leapfrog=True)
 GROOVE_EXTRAPOLATED = Extrapolated(
     Pymunk("slot: groove at the point", 10, 0.0, leapfrog=True, slot="groove"),
     "slot: groove at the point, extrapolated",
