@@ -10,7 +10,9 @@ from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBa
 from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.pendulum import BarPendulum, PointPendulum
-from reference.person import OneFoot, TwoFeet
+from reference.person import OneFoot
+from reference.person_swaying import SwayingOnOneFoot
+from reference.person_two_feet import TwoFeet
 from reference.pinned_body import FreelyPinnedBody, PinnedBody
 from reference.rolling_scenes import (
     RollingCam,
@@ -52,6 +54,7 @@ SCENES: tuple[Scene, ...] = (
     NFourBar(),
     TenFourBars(),
     FortyFourBars(),
+    SwayingOnOneFoot(),
     OneFoot(),
     TwoFeet(),
 )

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 from engines import Engine
+from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.fingerprint import fingerprint
 
@@ -22,10 +23,13 @@ FULL = (1, 3, 10, 30, 100, 300, 1000)
 # A step of the full grid is left out when one run would take about this long [s]. The estimate is fixed, not measured,
 # so that the grid (and errors.csv) is the same on every machine.
 COST_LIMIT = 2.0
+# A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
+QUICK_LIMIT = 10.0
 
 # About what one step costs [s] with three bodies: an engine may say better in `step_cost` (a number or property).
 STEP_COST = {"pymunk": 2e-6, "mujoco": 12e-6, "lagrange": 400e-6}
 UNKNOWN_STEP_COST = 50e-6
+SWEEP_COST = 13e-9  # of one joint in one sweep, for engines that tell how many `sweeps` a mechanism takes
 
 
 @dataclass(frozen=True)
@@ -78,23 +82,31 @@ class Cell:
         return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
 
 
-def step_cost(engine: Any) -> float:
+def step_cost(engine: Any, mechanism: Mechanism | None = None) -> float:
     """About how long one step of the cell takes [s] with three bodies.
 
-    An engine that wraps another (`engine`) and runs it at several `levels` takes that many of its steps.
+    An engine that wraps another (`engine`) and runs it at several `levels` takes that many of its steps; one that
+    chooses by the mechanism (`chosen`) costs what it has `chosen`; sweeps over many joints are counted.
     """
     own = getattr(engine, "step_cost", None)
     if own is not None:
         return float(own)
+    if mechanism is not None and hasattr(engine, "chosen"):
+        return step_cost(engine.chosen(mechanism), mechanism)
     if hasattr(engine, "levels") and hasattr(engine, "engine"):
-        return sum(engine.levels) * step_cost(engine.engine)
-    return STEP_COST.get(engine.name, UNKNOWN_STEP_COST)
+        return sum(engine.levels) * step_cost(engine.engine, mechanism)
+    cost = STEP_COST.get(engine.name, UNKNOWN_STEP_COST)
+    if mechanism is not None and hasattr(engine, "sweeps"):
+        threes = max(1.0, len(mechanism.bodies) / 3)
+        cost += SWEEP_COST * len(mechanism.joints) * engine.sweeps(mechanism) / threes
+    return cost
 
 
 def estimated_cost(cell: Cell) -> float:
     """About how long one run takes [s], growing with the number of bodies; deliberately not a measurement."""
-    bodies = len(cell.scene.mechanism().bodies)
-    return cell.sample_count * cell.every * step_cost(cell.engine) * max(1.0, bodies / 3)
+    mechanism = cell.scene.mechanism()
+    size = max(1.0, len(mechanism.bodies) / 3)
+    return cell.sample_count * cell.every * step_cost(cell.engine, mechanism) * size
 
 
 def sweep_cells(
@@ -102,7 +114,8 @@ def sweep_cells(
 ) -> tuple[Cell, ...]:
     """Every scene in every engine at every number of steps per sample, cheap steps first.
 
-    QUICK steps are always there; finer ones only while their estimated cost stays below the limit.
+    The coarsest step is always there, the other QUICK ones but for very dear ones; finer steps only while their
+    estimated cost stays below the limit.
     """
     engines, scenes = tuple(engines), tuple(scenes)
     return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
@@ -115,5 +128,6 @@ def _sweep(
         for scene in scenes:
             for engine in engines:
                 cell = Cell(scene, engine, every)
-                if every <= max(QUICK) or estimated_cost(cell) <= cost_limit:
+                limit = max(cost_limit, QUICK_LIMIT) if every <= max(QUICK) else cost_limit
+                if every == min(steps) or estimated_cost(cell) <= limit:
                     yield cell
