@@ -29,7 +29,7 @@ from reference.mechanism import RANK_TOLERANCE, Mechanism
 Array = NDArray[np.float64]
 
 LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose
-MARGIN = 0.5  # of the stable gain, where the sweeps don't reach that
+MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
 FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a smaller step brings
 DENSE = 400  # rows up to which all eigenvalues are found
 
@@ -40,21 +40,25 @@ def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
     if _latest and _latest[0][0] is mechanism:
         return _latest[0][1]
-    matrix, starts = _joint_matrix(mechanism)
+    try:
+        rho = _spectral_radius(*_joint_matrix(mechanism))
+    except (np.linalg.LinAlgError, RuntimeError):  # masses so far apart that no number is left
+        rho = 0.0
+    _latest[:] = [(mechanism, min(max(rho, 0.0), 1 - 1e-12))]
+    return _latest[0][1]
+
+
+def _spectral_radius(matrix: Array, starts: list[int]) -> float:
+    if not starts:
+        return 0.0
     lower = np.zeros_like(matrix)
     for start, end in zip(starts, [*starts[1:], len(matrix)], strict=True):
         lower[start:end, :end] = matrix[start:end, :end]
-    if len(matrix) == 0:
-        rho = 0.0
-    elif len(matrix) <= DENSE:
-        # What dependent rows can't agree on is no mode of the motion: there A is zero, and a sweep changes nothing.
-        changed = np.linalg.eigvals(np.linalg.pinv(lower) @ matrix)
-        left = np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE])
-        rho = float(left.max(initial=0.0))
-    else:
-        rho = 1 - _smallest(matrix, lower)
-    _latest[:] = [(mechanism, min(max(rho, 0.0), 1 - 1e-12))]
-    return _latest[0][1]
+    if len(matrix) > DENSE:
+        return 1 - _smallest(matrix, lower)
+    # What dependent rows can't agree on is no mode of the motion: there A is zero, and a sweep changes nothing.
+    changed = np.linalg.eigvals(np.linalg.pinv(lower) @ matrix)
+    return float(np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE]).max(initial=0.0))
 
 
 def _joint_matrix(mechanism: Mechanism) -> tuple[Array, list[int]]:

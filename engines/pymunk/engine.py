@@ -75,13 +75,23 @@ class Pymunk:
         """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
         check_step(dt)
         dt = float(dt)
+        own = self.sweeps(mechanism)
         return PymunkRun(
             mechanism,
             dt,
             lambda mechanism, iterations: self.model(mechanism, dt, iterations),
             self.leapfrog,
-            self.sweeps(mechanism),
+            own,
+            self._unconverged(mechanism, own),
         )
+
+    def _unconverged(self, mechanism: Mechanism, own: int) -> str:
+        if self.error_bias != CONTRACTION:
+            return ""
+        rho = contraction(mechanism)
+        if gain(rho, own) == 1:
+            return ""
+        return f"ours: not converged, {own} sweeps leave {rho**own:.0%} of the slowest mode"
 
     def sweeps(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism."""

@@ -110,7 +110,7 @@ class _Builder:
     def __init__(self, mechanism: Mechanism, settings: Settings) -> None:
         self.mechanism, self.settings = mechanism, settings
         self.space = pymunk.Space()
-        self.space.gravity = tuple(value * settings.unit**2 for value in mechanism.gravity)
+        self.space.gravity = tuple(value * settings.unit * settings.unit for value in mechanism.gravity)
         self.space.iterations = settings.iterations
         self.cranks, self.turned = find_cranks(mechanism), find_turned(mechanism)
         self.bodies = {description.name: self._body(description) for description in mechanism.bodies}

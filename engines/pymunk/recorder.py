@@ -157,9 +157,16 @@ class PymunkRun:
     """One model, ready to be stepped once; see `engines.Run`."""
 
     def __init__(
-        self, mechanism: Mechanism, dt: float, make: Callable[[Mechanism, int], Model], leapfrog: bool, iterations: int
+        self,
+        mechanism: Mechanism,
+        dt: float,
+        make: Callable[[Mechanism, int], Model],
+        leapfrog: bool,
+        iterations: int,
+        warning: str = "",
     ) -> None:
         self._mechanism, self._dt, self._make, self._leapfrog = mechanism, dt, make, leapfrog
+        self._warning = warning
         self._model: Model | None = self._started(iterations)
         self.size: Size = self._model.size
 
@@ -186,7 +193,7 @@ class PymunkRun:
             [self._start_reaction()[None], reactions(self._mechanism, recording.pose[1:], acceleration)]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        warnings = (recording.stopped,) if recording.stopped else ()
+        warnings = tuple(filter(None, (self._warning, recording.stopped)))
         return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
 
     def _start_reaction(self) -> Array:

@@ -1,0 +1,197 @@
+"""A skate in pymunk: which constructions hold it, which only look as if they did, and to what order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.lagrange import Lagrange
+from engines.pymunk import EXTENDED, TUNED, Pymunk, skates
+from engines.pymunk.reflection import Reflected
+from reference.joints import Skate
+from reference.mechanism import Body, Mechanism
+from reference.sleigh import ChaplyginSleigh
+from reference.trajectory import Trajectory, energy
+from reference.wheels import CarAndTrailer
+
+SLEIGH, CAR = ChaplyginSleigh(), CarAndTrailer()
+SLED = SLEIGH.mechanism()
+
+
+def largest(values) -> float:
+    return float(np.abs(values).max())
+
+
+def run(engine, scene, every: int) -> tuple[Trajectory, Trajectory]:
+    """What the engine makes of the scene at `every` steps of a sample of 0.01 s, and the truth."""
+    trajectory = engine.build(scene.mechanism(), 0.01 / every)(scene.samples, every)
+    return trajectory, scene.motion(trajectory.t)
+
+
+def position_error(engine, scene, every: int) -> float:
+    trajectory, truth = run(engine, scene, every)
+    return largest(trajectory.pose - truth.pose)
+
+
+def slip(scene, trajectory: Trajectory) -> float:
+    return largest(scene.mechanism().slip(trajectory.pose, trajectory.twist))
+
+
+@pytest.mark.parametrize(
+    "engine", [skates.PROJECTED, skates.GROOVE, skates.STALE_GROOVE], ids=lambda each: each.variant
+)
+def test_a_row_held_at_the_end_of_each_step_is_of_first_order(engine):
+    coarse, fine = (position_error(engine, SLEIGH, every) for every in (10, 40))
+    assert np.log2(coarse / fine) / 2 == pytest.approx(1, abs=0.1)  # the next power of the step is 1e-2 of this
+
+
+def test_a_reflection_is_of_second_order_and_keeps_the_energy_to_rounding():
+    coarse, fine = (position_error(skates.REFLECTED, SLEIGH, every) for every in (10, 40))
+    assert np.log2(coarse / fine) / 2 == pytest.approx(2, abs=0.1)
+    trajectory, _ = run(skates.REFLECTED, SLEIGH, 10)
+    assert largest(energy(SLED, trajectory) / SLEIGH.energy - 1) < 1e-12  # 3000 roundings of 1e-16
+
+
+def test_no_slip_proves_nothing_the_shifted_velocity_is_another_motion_at_any_step():
+    for every in (10, 40):
+        trajectory, truth = run(skates.POINT, SLEIGH, every)
+        assert slip(SLEIGH, trajectory) < 1e-14
+        assert largest(trajectory.pose[..., :2] - truth.pose[..., :2]) > 1  # m, of a path of 6 m
+        # It pumps energy in: the sleigh ends many times livelier than it began.
+        assert energy(SLED, trajectory)[-1] > 5 * SLEIGH.energy
+
+
+def test_zeroing_the_centres_velocity_is_another_motion_unless_the_skate_is_there():
+    assert position_error(skates.CENTRE, SLEIGH, 40) > 1
+    there = ChaplyginSleigh(offset=0.0)
+    assert position_error(skates.CENTRE, there, 40) < 5e-3  # a circle, first order
+
+
+def test_the_predicted_groove_slips_by_rounding_only_and_the_stale_one_by_a_step():
+    predicted, _ = run(TUNED, SLEIGH, 10)
+    stale, _ = run(skates.STALE_GROOVE, SLEIGH, 10)
+    assert slip(SLEIGH, predicted) < 1e-10
+    assert 1e-4 < slip(SLEIGH, stale) < 1e-1
+
+
+@pytest.mark.parametrize(
+    "scene", [SLEIGH, ChaplyginSleigh(offset=-0.2), ChaplyginSleigh(offset=0.0), ChaplyginSleigh(turning_rate=-1.0)]
+)
+def test_the_extended_sleigh_reaches_its_goal(scene):
+    trajectory, truth = run(EXTENDED, scene, 1)
+    assert largest(trajectory.pose - truth.pose) < 1e-11
+    assert slip(scene, trajectory) < 1e-11
+    scale = largest(truth.reaction)
+    assert largest(trajectory.reaction - truth.reaction) < 1e-8 * max(scale, 1e-3)
+
+
+def test_a_groove_extrapolated_is_as_good_and_both_powers_are_right():
+    # Were the powers of the error others, five levels would leave 1e-5 and more.
+    assert position_error(skates.GROOVE_EXTRAPOLATED, SLEIGH, 1) < 1e-11
+    assert position_error(replace(skates.GROOVE_EXTRAPOLATED, powers=(2, 3, 4, 5)), SLEIGH, 1) > 1e-7
+
+
+def test_runs_of_odd_and_even_step_counts_must_not_be_mixed_in_a_reflection():
+    trajectory, truth = run(replace(skates.REFLECTED_EXTRAPOLATED, levels=(2, 3, 4, 5)), SLEIGH, 1)
+    assert largest(trajectory.twist - truth.twist) > 1e-8  # what the row lacks changes sign with every step
+    trajectory, truth = run(skates.REFLECTED_EXTRAPOLATED, SLEIGH, 1)
+    assert largest(trajectory.twist - truth.twist) < 1e-10
+
+
+@cache
+def towed() -> tuple[Trajectory, Trajectory]:
+    return run(EXTENDED, CAR, 1)
+
+
+def test_the_extended_car_and_trailer_reach_their_goal():
+    trajectory, truth = towed()
+    assert largest(trajectory.pose - truth.pose) < 1e-10
+    assert largest(trajectory.twist - truth.twist) < 1e-8
+    assert slip(CAR, trajectory) < 1e-8
+    # The first force is extrapolated from the steps after it, on top of the extrapolation in the step.
+    assert largest(trajectory.reaction[1:] - truth.reaction[1:]) < 1e-4 * largest(truth.reaction)
+
+
+def test_a_blade_anywhere_on_its_axle_is_the_same_blade():
+    """A groove at the wheel itself, off the line of the centre of mass, would give a wrong impulse."""
+    for own in ((-0.5, 0.4), (-0.5, -1.0)):
+        moved = replace(SLED, joints=(Skate("skate", None, "sleigh", own),))
+        trajectory = TUNED.build(moved, 1e-3)(20, 10)
+        plain = TUNED.build(SLED, 1e-3)(20, 10)
+        assert largest(trajectory.pose - plain.pose) < 1e-14
+
+
+def test_a_blade_set_at_an_angle_is_turned_with_the_body():
+    turned = Mechanism(
+        (replace(SLED.bodies[0], twist=(np.cos(0.3), np.sin(0.3) + 0.0, 0.0)),),
+        (Skate("skate", None, "sleigh", (-0.5 * np.cos(0.3), -0.5 * np.sin(0.3)), 0.3),),
+    )
+    for engine in (TUNED, EXTENDED, skates.PROJECTED):
+        trajectory = engine.build(turned, 1e-2)(50, 1)
+        # Without turning it slides straight along the blade.
+        path = trajectory.pose[:, 0, :2] - turned.pose[0, :2]
+        assert largest(path - trajectory.t[:, None] * [np.cos(0.3), np.sin(0.3)]) < 1e-12
+
+
+def board_and_blade() -> Mechanism:
+    """A blade that runs on a board which is itself free: two bodies, nothing holds them but the row."""
+    board = Body("board", 3.0, 2.0, (0.0, 0.0, 0.2), (0.1, 0.0, 0.5))
+    # The blade, 0.5 behind its body's centre, touches at that moment the board's material at (0.5, 0) [m].
+    touch = np.array([0.5, 0.0])
+    heading = 0.4
+    ahead = np.array([np.cos(heading), np.sin(heading)])
+    material = np.array([0.1, 0.0]) + 0.5 * np.array([-touch[1], touch[0]])
+    rate = 2.0
+    own = material + 1.0 * ahead + 0.5 * rate * np.array([-ahead[1], ahead[0]])
+    centre = touch + 0.5 * ahead
+    body = Body("sleigh", 2.0, 0.3, (*centre.tolist(), heading), (*own.tolist(), rate))
+    return Mechanism((board, body), (Skate("skate", "board", "sleigh", (-0.5, 0.0)),))
+
+
+def test_a_skate_on_a_body_that_moves_is_held_too():
+    mechanism = board_and_blade()
+    truth = Lagrange("dop853", "projection", 1e-12).build(mechanism, 1e-2)(50, 1)
+    trajectory = EXTENDED.build(mechanism, 1e-2)(50, 1)
+    assert largest(trajectory.pose - truth.pose) < 1e-9
+    assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-8
+    for engine in (skates.CENTRE, skates.PROJECTED, skates.STALE_GROOVE):
+        with pytest.raises(Unsupported, match="on the ground only"):
+            engine.build(mechanism, 1e-2)
+
+
+def test_friction_makes_no_skate_and_says_why():
+    with pytest.raises(Unsupported, match="no normal force to multiply"):
+        skates.FRICTION.build(SLED, 1e-3)
+
+
+def test_a_reflection_refuses_bodies_that_are_joined():
+    with pytest.raises(Unsupported, match="one skate or contact"):
+        skates.REFLECTED.build(CAR.mechanism(), 1e-3)
+
+
+def test_a_construction_that_does_not_exist_is_refused_with_those_that_do():
+    with pytest.raises(ValueError, match="'stale groove', 'groove'"):
+        Pymunk("mine", skate="velcro")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("engine", skates.METHODS, ids=lambda each: each.variant)
+def test_a_sleigh_that_is_thrown_too_far_is_a_result_and_not_an_exception(engine):
+    wild = replace(SLED, bodies=(replace(SLED.bodies[0], twist=(1e200, 0.0, 0.0)),))
+    try:
+        trajectory = engine.build(wild, 1e200)(10, 2)
+    except Unsupported:
+        return
+    assert trajectory.pose.shape == (11, 1, 3)
+
+
+def test_a_reflected_run_is_one_shot_and_starts_at_the_start():
+    run_once = Reflected("mine").build(SLED, 1e-2)
+    trajectory = run_once(3, 1)
+    assert np.array_equal(trajectory.pose[0], SLED.pose)
+    assert np.array_equal(trajectory.twist[0], SLED.twist)
+    with pytest.raises(RuntimeError, match="one shot"):
+        run_once(3, 1)
