@@ -59,6 +59,7 @@ class Building:
     binders: list[Binder] = field(default_factory=list)
     contact: bool = False
     leapfrog: bool = False
+    rewritten: bool = False  # rows of equalities that stand here already are changed by callbacks
     size: int = 0  # rows held by forces, those written not counted
 
     def index(self, name: str | None) -> int | None:

@@ -13,7 +13,9 @@ from typing import ClassVar, Literal, get_args
 import mujoco
 
 from engines import Size, Unsupported, check_step
-from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
+from engines.mujoco.model import Coordinates, DriveBy, Model, RollBy, build_model
+from engines.mujoco.roll_contact import RollContact
+from engines.mujoco.roll_rows import RollRows
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.skates import SkateBy
 from engines.mujoco.slots import SlotBy
@@ -49,7 +51,7 @@ class MuJoCo:
     it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
     `servo_gain` [N m s/rad]; or because its state is overwritten after every step, as users do. `solvers` are tried at
-    the start in this order, and the first that solves it is taken.
+    the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -67,6 +69,7 @@ class MuJoCo:
     islands: bool = True
     slots: SlotBy = "tendon"
     skates: SkateBy = "rows"
+    rolls: RollBy = field(default_factory=RollContact)
     name: ClassVar[str] = "mujoco"
 
     def __post_init__(self) -> None:
@@ -84,6 +87,9 @@ class MuJoCo:
         if not self.solvers or any(solver not in get_args(Solver) for solver in self.solvers):
             valid = list(get_args(Solver))
             raise ValueError(f"mujoco: solvers is {self.solvers!r}; it must be a tuple of at least one of {valid}")
+        if not isinstance(self.rolls, RollBy):
+            valid = "RollContact, CompletedContact, RollRows or RollEquality"
+            raise ValueError(f"mujoco: rolls is {self.rolls!r}; it must be {valid}")
         if not isinstance(self.stiffness, Stiffness):
             raise ValueError(f"mujoco: stiffness is {self.stiffness!r}; it must be Shipped, TiedToStep or Hardened")
         if not (isinstance(self.iterations, int) and self.iterations > 0):
@@ -130,6 +136,7 @@ class MuJoCo:
             servo_gain=self.servo_gain,
             slots=self.slots,
             skates=self.skates,
+            rolls=self.rolls,
         )
         choose_solver(model, self.solvers)
         return model
@@ -146,7 +153,14 @@ def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: float, steps: int) -> fl
 
 
 DEFAULT = MuJoCo("default")
-TUNED = MuJoCo("tuned", "RK4", TiedToStep(), jacobian="dense", islands=False)
+TUNED = MuJoCo(
+    "tuned",
+    "RK4",
+    TiedToStep(),
+    jacobian="dense",
+    islands=False,
+    rolls=RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic"),
+)
 EXTENDED = MuJoCo(
     "extended",
     "RK4",
@@ -159,6 +173,7 @@ EXTENDED = MuJoCo(
     islands=False,
     slots="rows",
     skates="rows",
+    rolls=RollRows(),
 )
 METHODS = (
     DEFAULT,
@@ -167,7 +182,7 @@ METHODS = (
     replace(TUNED, variant="stiff Euler", integrator="Euler"),
     replace(TUNED, variant="stiff implicitfast", integrator="implicitfast"),
     replace(TUNED, variant="stiff discrete", integrator="discrete"),
-    replace(TUNED, variant="RK4 alone", stiffness=Shipped()),
+    replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
 )
 # Other ways to prescribe a rate; where nothing is driven they are no methods of their own.

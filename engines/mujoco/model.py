@@ -17,6 +17,8 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
+from engines.mujoco.roll_contact import CompletedContact, RollContact
+from engines.mujoco.roll_rows import RollEquality, RollRows
 from engines.mujoco.skates import SkateBy, add_skates
 from engines.mujoco.slots import SlotBy, add_slots
 from engines.mujoco.stiffness import Stiffness
@@ -24,9 +26,11 @@ from engines.mujoco.tree import Tree, spanning_tree, world_offset
 from engines.mujoco.written_rows import add_placeholders, installed, row_writer, writing
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reference.roll import Roll
 
 Coordinates = Literal["tree", "free"]
 DriveBy = Literal["inertia", "servo", "overwrite"]
+RollBy = RollContact | CompletedContact | RollRows | RollEquality
 
 
 @dataclass(frozen=True)
@@ -84,11 +88,13 @@ def build_model(
     servo_gain: float,
     slots: SlotBy,
     skates: SkateBy,
+    rolls: RollBy,
 ) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
     hanging: list[Pin | Slot] = []
     drives: list[Drive] = []
     skating: list[Skate] = []
+    rolling: list[Roll] = []
     for joint in mechanism.joints:
         match joint:
             case Pin() | Slot():
@@ -97,6 +103,8 @@ def build_model(
                 drives.append(joint)
             case Skate():
                 skating.append(joint)
+            case Roll():
+                rolling.append(joint)
             case _:
                 raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
     tree = spanning_tree(mechanism, hanging if coordinates == "tree" else ())
@@ -127,6 +135,8 @@ def build_model(
     building = Building(spec, mechanism, tree, dt, stiffness, tuple(one.column for one in driven))
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], slots)
     add_skates(building, skating, skates)
+    if rolling:
+        rolls.add(building, rolling)
     # The placeholders come last: what stands before them in the solver is then known.
     add_placeholders(spec, tree, building.written, stiffness.impedance, building.driven)
     if building.contact:
@@ -147,9 +157,8 @@ def build_model(
         before -= sum(joint.size for joint in building.written)
         hooks += Hooks(control=(writing(rows, before, compiled.nv),))
     held = 2 * len(pins) + building.size + sum(joint.size for joint in building.written)
-    return Model(
-        mechanism, tree, compiled, places, driven, drive, hooks, building.leapfrog, held, bool(building.written)
-    )
+    written = bool(building.written) or building.rewritten
+    return Model(mechanism, tree, compiled, places, driven, drive, hooks, building.leapfrog, held, written)
 
 
 def _driven_coordinate(tree: Tree, joint: Drive) -> DrivenCoordinate:

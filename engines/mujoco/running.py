@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from engines import Size, check_counts
 from engines.mujoco.construction import in_turn
 from engines.mujoco.model import Model
+from engines.mujoco.roll_doubts import roll_doubts
 from engines.mujoco.solution import unsolved
 from reference.trajectory import Trajectory
 
@@ -88,6 +89,7 @@ class MuJoCoRun:
         reaction[read] = self.model.mechanism.reaction(pose[read], change[read])
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
+        warnings += roll_doubts(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
     def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:
