@@ -26,7 +26,8 @@ from reference.roll import Roll
 Cone = Literal["pyramidal", "elliptic"]
 # A pair that just touches must collide whatever its distance is rounded to: this part of the mechanism's length.
 TOUCH = 1e-12
-# Curved on curved is a search that stops here; it leaves an ellipse on a hill 2e-9 rad however small the step.
+# The contact of convex on convex is searched to MuJoCo's tolerance. The shipped 1e-6 leaves an ellipse on a hill 7e-7
+# rad in half a second however small the step, and anything finer ends at 2e-9 by itself.
 CONVEX = 1e-14
 
 
