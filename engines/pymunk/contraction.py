@@ -2,7 +2,8 @@
 
 A Gauss-Seidel sweep over the joints solves A x = b, A = J M^-1 J^T, joint by joint; what is left of the slowest mode
 falls by a factor rho in a sweep, the spectral radius of 1 - L^-1 A with L the lower block triangle of A. It is near 1
-for long chains (1 - rho falls as 1/N^2) and for heavy bodies that hang on light ones (as the ratio of the masses).
+for long chains (N equal links: 1 - rho = pi^2/(4 N^2)) and for heavy bodies that hang on light ones (1 - rho = 1/100
+for a hundredfold mass).
 
 Impulses are kept for the next step, those that closed a gap too, and the next step's sweeps have to take these back.
 For one mode with gap g, velocity v and kept impulse l, of which k sweeps leave r = rho^k, a step of length 1 is
@@ -31,7 +32,7 @@ Array = NDArray[np.float64]
 LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose
 MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
 FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a smaller step brings
-DENSE = 400  # rows up to which all eigenvalues are found
+DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 
 _latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
 
@@ -42,7 +43,7 @@ def contraction(mechanism: Mechanism) -> float:
         return _latest[0][1]
     try:
         rho = _spectral_radius(*_joint_matrix(mechanism))
-    except (np.linalg.LinAlgError, RuntimeError):  # masses so far apart that no number is left
+    except np.linalg.LinAlgError:  # masses so far apart that no number is left
         rho = 0.0
     _latest[:] = [(mechanism, min(max(rho, 0.0), 1 - 1e-12))]
     return _latest[0][1]
@@ -55,7 +56,10 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
     for start, end in zip(starts, [*starts[1:], len(matrix)], strict=True):
         lower[start:end, :end] = matrix[start:end, :end]
     if len(matrix) > DENSE:
-        return 1 - _smallest(matrix, lower)
+        try:
+            return 1 - _smallest(matrix, lower)
+        except RuntimeError:  # exactly singular
+            pass
     # What dependent rows can't agree on is no mode of the motion: there A is zero, and a sweep changes nothing.
     changed = np.linalg.eigvals(np.linalg.pinv(lower) @ matrix)
     return float(np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE]).max(initial=0.0))

@@ -1,0 +1,228 @@
+"""Rolling in pymunk: by a moved pivot, by reflection, by contact; what each reaches and where it stops."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, rolls
+from engines.pymunk.contacts import Touch
+from reference.curve import Placed
+from reference.curves import Circle, Line, Side
+from reference.ellipse import Ellipse
+from reference.elliptic_gears import EllipticGears
+from reference.mechanism import Body, Mechanism
+from reference.roll import Roll
+from reference.rolling import Rolling
+from reference.rolling_scenes import (
+    RollingCam,
+    RollingDisc,
+    RollingDownhill,
+    RollingEllipse,
+    RollingInRing,
+    RollingOnCircle,
+)
+from reference.scene import Scene
+from reference.trajectory import Trajectory, energy
+
+ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()
+SCENES = (ELLIPSE, DISC, RING, HILL, RollingCam(), RollingDownhill())
+every_scene = pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+
+
+def largest(values) -> float:
+    return float(np.abs(values).max())
+
+
+def run(engine, scene: Scene, every: int) -> Trajectory:
+    return engine.build(scene.mechanism(), scene.spacing / every)(scene.samples, every)
+
+
+@cache
+def truth(scene: Scene) -> Trajectory:
+    return scene.motion(np.arange(scene.samples + 1) * scene.spacing)
+
+
+def angle_error(engine, scene: Scene, every: int) -> float:
+    return largest(run(engine, scene, every).pose[..., 2] - truth(scene).pose[..., 2])
+
+
+def order(engine, scene: Scene, every: int) -> float:
+    coarse, fine = (angle_error(engine, scene, n) for n in (every, 4 * every))
+    return float(np.log2(coarse / fine) / 2)
+
+
+def roll_of(scene: Scene) -> Roll:
+    return next(joint for joint in scene.mechanism().joints if isinstance(joint, Roll))
+
+
+# Where they touch
+
+
+@pytest.mark.parametrize("scene", [*SCENES, EllipticGears()], ids=lambda scene: scene.name)
+def test_the_contact_in_plain_floats_is_the_references(scene):
+    rolling = roll_of(scene).rolling
+    touch = Touch(rolling)
+    for theta in rolling.theta + np.concatenate([np.linspace(0, 9, 91), [7.3, -2.0, 4.0]]):  # and back in leaps
+        contact = rolling.contact(theta)
+        ground, own = touch.on_both(float(theta))
+        arm = -np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]) @ own
+        assert largest(ground - contact.point) < 1e-13  # m: rounding of an arc of a few metres
+        assert largest(arm - contact.arm) < 1e-13
+        assert touch.on_body(float(theta)) == pytest.approx(own, abs=1e-14)
+
+
+def test_a_pair_that_plain_floats_do_not_know_asks_the_reference():
+    rolling = Rolling.at_angle(Circle(0.1), Ellipse(0.5, 0.3), 0.0, 0.2)
+    known, asked = Touch(rolling), Touch(rolling)
+    asked._parameters = None
+    for theta in (0.0, 1.0, 4.0):
+        assert np.allclose(known.on_both(theta), asked.on_both(theta), atol=1e-13)
+
+
+# By constraint
+
+
+@every_scene
+def test_extended_rolling_is_exact_to_rounding_with_forces(scene):
+    trajectory = run(EXTENDED, scene, 1)
+    exact = truth(scene)
+    assert largest(trajectory.pose - exact.pose) < 1e-11
+    mechanism = scene.mechanism()
+    assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-12
+    assert largest(trajectory.reaction - exact.reaction) < 1e-8 * largest(exact.reaction)
+
+
+@every_scene
+def test_a_pivot_at_the_predicted_contact_is_of_second_order(scene):
+    assert order(rolls.PIVOT, scene, 10) == pytest.approx(2, abs=0.2)  # in the ring the next power still shows
+
+
+@pytest.mark.parametrize("scene", [ELLIPSE, DISC, RING], ids=lambda scene: scene.name)
+def test_a_reflection_is_of_second_order_and_keeps_the_energy(scene):
+    # The contact of round pairs is exact, so that only the power two remains.
+    assert order(rolls.REFLECTED, scene, 10) == pytest.approx(2, abs=0.1)
+    mechanism, trajectory = scene.mechanism(), run(rolls.REFLECTED, scene, 10)
+    kinetic = 0.5 * np.sum(mechanism.inertias * truth(scene).twist ** 2, axis=(1, 2)).max()
+    # Half drifts and half kicks do not commute: the energy wavers by h^2 of gravity's work, and does not drift.
+    assert np.ptp(energy(mechanism, trajectory)) < 1e-4 * kinetic
+
+
+def test_a_pivot_at_the_contact_of_now_loses_half_of_the_rolling_acceleration_of_a_step():
+    assert angle_error(rolls.STALE_PIVOT, ELLIPSE, 10) > 100 * angle_error(rolls.PIVOT, ELLIPSE, 10)
+    assert order(rolls.STALE_PIVOT, ELLIPSE, 30) == pytest.approx(1, abs=0.2)
+
+
+def test_two_gears_that_move_roll_on_each_other():
+    scene = EllipticGears()
+    trajectory = run(LEAPFROG, scene, 30)
+    assert largest(trajectory.pose - truth(scene).pose) < 1e-3
+    # Pins and contact say one thing twice (four rows for three freedoms); they are held together all the same.
+    assert largest(scene.mechanism().gap(trajectory.pose, trajectory.t)) < 1e-3
+
+
+# By contact
+
+
+def test_a_round_body_by_contact_is_of_first_order_whatever_the_settings():
+    for engine in (DEFAULT, TUNED):
+        assert order(engine, DISC, 10) == pytest.approx(1, abs=0.1)
+    assert angle_error(DEFAULT, DISC, 100) < 6e-3  # rad at a tenth of a millisecond
+
+
+def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_step():
+    plateaus = {}
+    for engine in rolls.FACETED:
+        coarse, fine = (angle_error(engine, ELLIPSE, every) for every in (10, 30))
+        plateaus[engine.contact.vertices] = fine
+        if engine.contact.vertices in (32, 128):
+            assert fine == pytest.approx(coarse, rel=0.1)  # the step is not what is wrong
+    assert plateaus[8] > plateaus[32] > plateaus[128] > plateaus[512] > 0.03
+    assert plateaus[512] < 0.2
+
+
+def test_upstream_on_ground_without_thickness_a_fine_polygon_stops_dead():
+    """At some contact the wrong normal is found; on a segment with a radius, whose surface is the same, it never is."""
+    thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (rolls.THIN_GROUND, rolls.FACETED[-1]))
+    assert abs(thin) < 0.1
+    assert thick == pytest.approx(truth(ELLIPSE).twist[5, 0, 2], rel=0.05)
+
+
+def test_a_round_body_leaves_the_hill_where_the_contact_would_have_to_pull():
+    trajectory = run(TUNED, HILL, 30)
+    gap = np.abs(HILL.mechanism().gap(trajectory.pose, trajectory.t))[:, 1]
+    before, after = trajectory.t < HILL.hop - 0.02, trajectory.t > HILL.hop + 0.1
+    assert gap[before].max() < 2e-3
+    assert gap[after].min() > 2e-3
+
+
+def test_low_friction_lets_the_body_slide():
+    held = run(Pymunk("mine", contact=Contact()), DISC, 10)
+    slides = run(Pymunk("mine", contact=Contact(friction=0.1)), DISC, 10)
+    mechanism = DISC.mechanism()
+    assert largest(mechanism.slip(held.pose, held.twist)[:, 0]) < 1e-6
+    assert largest(mechanism.slip(slides.pose, slides.twist)[:, 0]) > 0.1
+
+
+def test_a_hole_has_no_shape_and_is_refused_in_a_sentence():
+    for engine in (DEFAULT, TUNED):
+        with pytest.raises(Unsupported, match="a Ring is hollow"):
+            engine.build(RING.mechanism(), 1e-3)
+
+
+def test_shapes_of_different_contacts_do_not_see_each_other():
+    """Two discs on one line, overlapping each other: each rolls as if alone."""
+    disc = Rolling.at_angle(Circle(0.4), Line(), 0.0, 0.0)
+    x, y, _ = (float(value) for value in disc.pose(0.0))
+    bodies = tuple(
+        Body(name, 1.0, 0.08, (x, y, 0.0), (-0.4 * rate, 0.0, rate)) for name, rate in (("a", 1.0), ("b", 2.0))
+    )
+    joints = tuple(Roll(f"{body.name} rolls", None, body.name, disc) for body in bodies)
+    mechanism = Mechanism(bodies, joints, (0.0, -9.81))
+    for engine in METHODS:
+        trajectory = engine.build(mechanism, 1e-3)(10, 10)
+        assert largest(trajectory.twist[:, :, 2] - [1.0, 2.0]) < 1e-2
+
+
+# What it refuses
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"slop": -0.1}, {"slop": float("nan")}, {"bias": 1.5}, {"friction": -1.0}, {"vertices": 2}, {"thickness": -1.0}],
+)
+def test_contact_settings_that_would_abort_the_process_are_refused(given):
+    with pytest.raises(ValueError, match=next(iter(given))):
+        Contact(**given)
+
+
+@pytest.mark.parametrize("engine", [*METHODS, rolls.REFLECTED], ids=lambda each: each.variant)
+@pytest.mark.parametrize("scene", [ELLIPSE, HILL], ids=lambda scene: scene.name)
+def test_rolling_that_blows_up_is_a_result_and_not_an_exception(engine, scene):
+    trajectory = engine.build(scene.mechanism(), 1e200)(10, 2)
+    assert trajectory.pose.shape == (11, 1, 3)
+
+
+def test_a_pair_that_cannot_roll_on_is_stopped_with_a_warning():
+    """A flat side under a disc ends: beyond its corner there is no contact to aim a pivot at."""
+    rolling = Rolling.at_arcs(Circle(0.4), Placed(Side(1.0), turn=math.pi), 0.0, 0.0)
+    x, y, angle = (float(value) for value in rolling.pose(rolling.theta))
+    vx, vy = (float(value) for value in rolling.velocity(rolling.theta, 4.0))
+    disc = Body("disc", 1.0, 0.08, (x, y, angle), (vx, vy, 4.0))
+    mechanism = Mechanism((disc,), (Roll("rolls", None, "disc", rolling),))
+    for engine in (LEAPFROG, EXTENDED):
+        trajectory = engine.build(mechanism, 1e-2)(50, 1)
+        there = np.isfinite(trajectory.pose[:, 0, 0])
+        # It rolls at 1.6 m/s and the corner is 0.5 m away.
+        assert trajectory.t[there].max() == pytest.approx(0.5 / 1.6, abs=0.02)
+        assert largest(trajectory.pose[there, 0, 2] - angle - 4.0 * trajectory.t[there]) < 1e-9
+        assert any("could no longer be placed" in warning for warning in trajectory.warnings)
+
+
+def test_a_rotation_that_is_not_finite_has_no_contact():
+    with pytest.raises((ValueError, ArithmeticError)):
+        Touch(roll_of(RING).rolling).on_both(float("inf"))
