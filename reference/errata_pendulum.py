@@ -32,8 +32,7 @@ Formula = Callable[[BarState], Array]
 
 def right(bar: BarState) -> Array:
     """l (phi'' cos phi - phi'^2 sin phi, phi'' sin phi + phi'^2 cos phi) (2,) [m/s^2]."""
-    pair = ((bar.angle,) * 2, (bar.rate,) * 2, (bar.turn,) * 2)
-    return accelerations(bar.length, *pair).a
+    return accelerations(bar.length, (bar.angle, 0.0), (bar.rate, 0.0), (bar.turn, 0.0)).a
 
 
 def omega_in_the_first_term(bar: BarState) -> Array:
@@ -81,7 +80,7 @@ def _second_note() -> Values:
 
 
 SOLUTION = "problem 18.5.2, solution"
-BAR_END = "the position of the bar's end, twice"
+BAR_END = "the position of the bar's end, differentiated twice"
 
 
 def _of_r(bar: str, omega: str) -> str:
@@ -117,7 +116,7 @@ PENDULUM_ERRATA = (
         "rad/s^2",
         r"\underline{\omega}_{O1} = \ddot{\phi}_1 \hat{k}",
         r"\dot{\underline{\omega}}_{O1} = \ddot{\phi}_1 \hat{k}",
-        "the angle of the bar, twice",
+        "the angle of the bar, differentiated twice",
         True,
         _second_note,
     ),

@@ -57,7 +57,7 @@ SKATE_ERRATA = (
         "m/s^2",
         r"\dot{v}_C \hat{i}' + v_C \dot{\hat{j}}'",
         r"\dot{v}_C \hat{i}' + v_C \dot{\hat{i}}' = \dot{v}_C \hat{i}' + v_C \dot{\theta} \hat{j}'",
-        "the velocity of G",
+        "the velocity of G, differentiated",
         False,
         _acceleration_of_g,
     ),

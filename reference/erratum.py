@@ -35,7 +35,7 @@ class Erratum:
     """One slip: its number in the list of errata, where it is, what is printed, what is right, and why; `values()`.
 
     quoted: the printed formula as the chapter sets it (LaTeX), or its words; corrected: the same without the slip.
-    deciding: what is differentiated, in words. dimensions: whether they alone show that something is wrong.
+    deciding: what decides, in words. dimensions: whether they alone show that something is wrong.
     """
 
     number: int

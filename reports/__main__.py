@@ -19,6 +19,7 @@ from reports.choice import (
     known_engines,
     page_cells,
 )
+from reports.errata_command import errata
 from reports.measure import Measurement
 from reports.shapes_command import shapes
 
@@ -220,6 +221,7 @@ def bench(
 
 
 app.command("shapes")(shapes)
+app.command("errata")(errata)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from reports.page import Page
-from reports.pages import four_bar
+from reports.pages import four_bar, skate, wheels
 
-PAGES: tuple[Page, ...] = (four_bar.PAGE,)
+PAGES: tuple[Page, ...] = (four_bar.PAGE, skate.PAGE, wheels.PAGE)

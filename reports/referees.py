@@ -1,0 +1,170 @@
+"""Engines as referees: they know bodies, joints and forces and none of the chapter's formulas, so they may decide too.
+
+Each runs a mechanism for a while; an acceleration is then what its own velocities differ by between samples. Nothing
+but linear relations of positions is put in: the end of a bar is twice as far from its pin as its centre.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from engines import Engine, Unsupported, mujoco, pymunk
+from engines.lagrange import Lagrange
+from reference import errata_pendulum as pendulum
+from reference.errata_four_bar import closed_form, integrated
+from reference.errata_four_bar import rates as printed_rates
+from reference.errata_skate import acceleration_of_g
+from reference.erratum import Array, Values
+from reference.four_bar_scenes import DrivenFourBar
+from reference.joints import Pin
+from reference.link_chain import Chain
+from reference.mechanism import Body, Mechanism
+from reference.rolling_scenes import RollingOnCircle
+from reference.sleigh import ChaplyginSleigh
+
+REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+
+# 1 ms: the differences of order eight below, and the rounding that they magnify, are then far below an engine's errors.
+SPACING = 1e-3
+SAMPLES = 300  # the motion is well away from its start
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+POINTS, MIDDLE = len(FIRST), len(FIRST) // 2
+
+
+@dataclass(frozen=True)
+class Window:
+    """POINTS samples in a row of one engine's motion; what is asked is asked at the middle one."""
+
+    pose: Array  # (POINTS, bodies, 3)
+    twist: Array  # (POINTS, bodies, 3)
+
+    def change(self, values: Array) -> Array:
+        """The derivative in time of values (POINTS, ...) at the middle one, per second."""
+        return np.tensordot(FIRST, values, axes=1) / SPACING
+
+
+Reading = Callable[[Window], dict[int, Values]]
+CONFIRMED = 0  # the key of (18.70) and (18.71), which are right as printed
+
+
+def double_pendulum() -> Mechanism:
+    """Two uniform bars of the errata's lengths, angles and rates, 1 kg each, under gravity."""
+    chain = Chain((pendulum.BAR,) * 2, (1.0, 1.0))
+    angle, rate = np.array(pendulum.PHI), np.array(pendulum.PHI_RATE)
+    pose, twist, _ = chain.placement(angle, rate, np.zeros(2))
+    bodies = tuple(
+        Body(name, 1.0, float(chain.inertia[i]), tuple(pose[i].tolist()), tuple(twist[i].tolist()))
+        for i, name in enumerate(("OA", "AB"))
+    )
+    half = pendulum.BAR / 2
+    joints = (Pin("O", None, "OA", (0.0, 0.0), (-half, 0.0)), Pin("A", "OA", "AB", (half, 0.0), (-half, 0.0)))
+    return Mechanism(bodies, joints, (0.0, -chain.gravity))
+
+
+def _pendulum(window: Window) -> dict[int, Values]:
+    """r_A = 2 r_G1 and r_B/A = 2 (r_G2 - r_A): linear, so the accelerations of the ends follow without a formula."""
+    velocity = window.twist[:, :, :2]
+    ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
+    measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
+    angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]  # a bar's x axis points down it
+    # The right side of the note is phi1'' itself; the angles, differentiated twice, decide.
+    twice = np.atleast_1d(SECOND @ window.pose[:, 0, 2]) / SPACING**2
+    found = {24: Values(rate[:1], turning[:1], twice)}
+    for number, (bar, printed) in pendulum.PENDULUM_SLIPS.items():
+        state = pendulum.BarState(pendulum.BAR, float(angle[bar]), float(rate[bar]), float(turning[bar]))
+        found[number] = Values(printed(state), pendulum.right(state), measured[bar])
+    return found
+
+
+def _rolling(window: Window) -> dict[int, Values]:
+    """The disc's centre lies on the contact's normal, so the contact is where the ray to it meets the hill."""
+    scene = RollingOnCircle()
+    pose, twist = window.pose[:, 0], window.twist[:, 0]
+    arm = scene.eccentricity * np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
+    centre = pose[:, :2] + arm
+    direction = centre / np.linalg.norm(centre, axis=-1, keepdims=True)
+    contact = scene.hill * direction
+    normal, rate = direction[MIDDLE], twist[MIDDLE, 2]
+    tangent = np.array([-normal[1], normal[0]])
+    advance = scene.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
+    speed = rate / (1 / scene.hill + 1 / scene.radius)
+
+    def material(point: Array) -> Array:
+        """The velocity of the body's point at a place in space."""
+        x, y = point - pose[MIDDLE, :2]
+        return twist[MIDDLE, :2] + rate * np.array([-y, x])
+
+    return {
+        1: Values(advance * tangent, speed * tangent, window.change(contact)),
+        # A pole is a point without velocity: the origin of the ground is not, the contact is.
+        2: Values(material(np.zeros(2)), material(contact[MIDDLE]), np.zeros(2)),
+    }
+
+
+def _skate(window: Window) -> dict[int, Values]:
+    scene = ChaplyginSleigh()
+    pose, twist = window.pose[:, 0], window.twist[:, 0]
+    along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
+    speed = np.sum(twist[:, :2] * along, axis=-1)  # of C too: G is straight ahead of it
+    push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
+    state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (scene.offset, 0.0))
+    return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
+
+
+def _four_bar(window: Window) -> dict[int, Values]:
+    theta, beta, phi = (float(angle) for angle in window.pose[MIDDLE, :, 2])
+    crank, *others = window.twist[MIDDLE, :, 2]
+    rates = crank * np.array(printed_rates(theta, beta, phi))
+    return {
+        19: Values(integrated(theta), np.array(closed_form(theta)), np.array([beta, phi])),
+        CONFIRMED: Values(rates, rates, np.array(others)),
+    }
+
+
+@dataclass(frozen=True)
+class Question:
+    """A mechanism, and what its motion says of which slips."""
+
+    mechanism: Callable[[], Mechanism]
+    read: Reading
+    about: str
+
+
+QUESTIONS = (
+    Question(lambda: RollingOnCircle().mechanism(), _rolling, "a disc rolls off a round hill"),
+    Question(lambda: ChaplyginSleigh().mechanism(), _skate, "a sleigh on one skate coasts"),
+    Question(lambda: DrivenFourBar().mechanism(), _four_bar, "the crank of sample 18.15 turns at 10 rad/s"),
+    Question(double_pendulum, _pendulum, "the double pendulum falls"),
+)
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """What one engine says of one slip: `values.decides` is its own; after 0.3 s of `about`."""
+
+    number: int
+    method: str
+    about: str
+    values: Values
+
+
+def rulings(referees: Iterable[Engine] = REFEREES) -> tuple[Ruling, ...]:
+    """Every referee's answer to every question, by number; an engine that has no such joint says nothing."""
+    found = []
+    referees = tuple(referees)
+    for question in QUESTIONS:
+        mechanism = question.mechanism()
+        for engine in referees:
+            try:
+                motion = engine.build(mechanism, SPACING)(SAMPLES, 1)
+            except Unsupported:
+                continue
+            window = Window(motion.pose[-POINTS:], motion.twist[-POINTS:])
+            method = f"{engine.name} {engine.variant}"
+            found += [Ruling(number, method, question.about, v) for number, v in question.read(window).items()]
+    return tuple(sorted(found, key=lambda ruling: ruling.number))
