@@ -41,7 +41,7 @@ def slide(
         back = (first_point[0] - along_x, first_point[1] - along_y)
         front = (first_point[0] + along_x, first_point[1] + along_y)
         return [GrooveJoint(first, second, back, front, second_point)], []
-    link = Link(joint, first, second, second_point, first_point, reach=10 * length)
+    link = Link(joint, first, second, second_point, first_point, reach=length)
     return [link.constraint], [link]
 
 
