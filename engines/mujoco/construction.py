@@ -14,16 +14,31 @@ from reference.mechanism import Mechanism
 Callback = Callable[[Any, Any], None]  # (mujoco.MjModel, mujoco.MjData)
 
 
+Reading = Callable[[Any, Any], tuple[Any, Any, Any]]
+
+
 @dataclass(frozen=True)
 class Hooks:
-    """What runs while a model is stepped: callbacks in every stage, and actions (model, data) before every step."""
+    """What runs while a model is stepped: callbacks in every stage, actions before every step, and one at the start.
+
+    `read`, where the numbers at a sample don't mean one instant: from (model, data) as sampled it gives the positions,
+    velocities and accelerations that belong to the sample's time.
+    """
 
     control: tuple[Callback, ...] = ()
     passive: tuple[Callback, ...] = ()
     before: tuple[Callback, ...] = ()
+    start: tuple[Callback, ...] = ()
+    read: Reading | None = None
 
     def __add__(self, other: Hooks) -> Hooks:
-        return Hooks(self.control + other.control, self.passive + other.passive, self.before + other.before)
+        return Hooks(
+            self.control + other.control,
+            self.passive + other.passive,
+            self.before + other.before,
+            self.start + other.start,
+            self.read or other.read,
+        )
 
 
 def in_turn(callbacks: Sequence[Callback]) -> Callback | None:
@@ -46,7 +61,7 @@ Binder = Callable[[Any, Sequence[int]], Hooks]
 class Building:
     """A model while it is built. Constructions add to `spec`, to `written` (rows that callbacks will write, see
     `written_rows`) and to `binders` (called with the compiled model for hooks); `contact` asks for MuJoCo's contacts,
-    `leapfrog` says that positions run half a step ahead of velocities.
+    `start_rates` says how fast further joints turn at the start.
     """
 
     spec: Any  # mujoco.MjSpec, in which body i is called "body i" and tree coordinate c is "coordinate c"
@@ -58,8 +73,8 @@ class Building:
     written: list[WrittenJoint] = field(default_factory=list)
     binders: list[Binder] = field(default_factory=list)
     contact: bool = False
-    leapfrog: bool = False
     rewritten: bool = False  # rows of equalities that stand here already are changed by callbacks
+    start_rates: dict[str, float] = field(default_factory=dict)
     size: int = 0  # rows held by forces, those written not counted
 
     def index(self, name: str | None) -> int | None:

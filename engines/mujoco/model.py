@@ -19,7 +19,7 @@ from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
 from engines.mujoco.roll_contact import CompletedContact, RollContact
 from engines.mujoco.roll_rows import RollEquality, RollRows
-from engines.mujoco.skates import SkateBy, add_skates
+from engines.mujoco.skating import SkateBy, add_skates
 from engines.mujoco.slots import SlotBy, add_slots
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.tree import Tree, spanning_tree, world_offset
@@ -52,9 +52,9 @@ class Model:
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
-    leapfrog: bool = False  # positions run half a step ahead of velocities
     rows: int = 0  # scalar constraints held by forces, drives not counted
     written: bool = False  # some of them by callback: the dual solver can't serve them
+    start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
 
     def hooked(self) -> AbstractContextManager[None]:
         """The callbacks in place while this is entered: every step and every reading needs them."""
@@ -67,9 +67,11 @@ class Model:
         for driven in self.driven:
             data.qvel[self.address[driven.column]] = driven.rate
         if self.drive == "servo":
-            data.ctrl[:] = [driven.rate for driven in self.driven]
+            data.ctrl[: len(self.driven)] = [driven.rate for driven in self.driven]
+        for place, rate in self.start_rates:
+            data.qvel[place] = rate
         with self.hooked():
-            for prepare in self.hooks.before:
+            for prepare in (*self.hooks.before, *self.hooks.start, *self.hooks.before):
                 prepare(self.compiled, data)
             mujoco.mj_forward(self.compiled, data)
         return data
@@ -158,7 +160,8 @@ def build_model(
         hooks += Hooks(control=(writing(rows, before, compiled.nv),))
     held = 2 * len(pins) + building.size + sum(joint.size for joint in building.written)
     written = bool(building.written) or building.rewritten
-    return Model(mechanism, tree, compiled, places, driven, drive, hooks, building.leapfrog, held, written)
+    rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
+    return Model(mechanism, tree, compiled, places, driven, drive, hooks, held, written, rates)
 
 
 def _driven_coordinate(tree: Tree, joint: Drive) -> DrivenCoordinate:

@@ -141,6 +141,8 @@ class MuJoCoRun:
                 prepare(compiled, data)
             mujoco.mj_forward(compiled, data)
             acceleration[sample] = data.qacc
+            if self.model.hooks.read:
+                position[sample], velocity[sample], acceleration[sample] = self.model.hooks.read(compiled, data)
             data.qacc_warmstart[:] = data.qacc
             worst = max(worst, unsolved(compiled, data))
         return acceleration, worst

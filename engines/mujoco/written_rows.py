@@ -65,6 +65,12 @@ def add_placeholders(
             )
 
 
+def chain(tree: Tree, joint: WrittenJoint) -> list[int]:
+    """The tree coordinates that can move the joint, ascending."""
+    bodies = [body for body in (joint.first, joint.second) if body is not None]
+    return sorted(column for index in _ancestry(tree, bodies) for column in tree.links[index].columns)
+
+
 def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint]) -> Rows:
     """The function (t, qpos, qvel) -> (efc_J flattened row by row, efc_aref) of the joints' rows.
 
