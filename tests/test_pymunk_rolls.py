@@ -155,6 +155,7 @@ def test_upstream_on_ground_without_thickness_a_fine_polygon_stops_dead():
 def test_a_round_body_leaves_the_hill_where_the_contact_would_have_to_pull():
     trajectory = run(TUNED, HILL, 30)
     gap = np.abs(HILL.mechanism().gap(trajectory.pose, trajectory.t))[:, 1]
+    assert HILL.hop is not None
     before, after = trajectory.t < HILL.hop - 0.02, trajectory.t > HILL.hop + 0.1
     assert gap[before].max() < 2e-3
     assert gap[after].min() > 2e-3

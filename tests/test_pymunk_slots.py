@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pymunk
 import pytest
+from pymunk.constraints import GrooveJoint
 
 from engines import Size, Unsupported
 from engines.lagrange import Lagrange
@@ -102,7 +103,7 @@ def test_a_groove_joint_pushes_a_free_body_that_only_slides_along_it():
     """Nothing is violated, and yet the engine gives it a velocity across."""
     space, body = pymunk.Space(), pymunk.Body(1.0, 0.1)
     body.velocity, body.angular_velocity = (1.0, -0.3), 1.0  # of the anchor (0.3, 0.3): (0.7, 0)
-    space.add(body, pymunk.GrooveJoint(space.static_body, body, (-10, 0.3), (10, 0.3), (0.3, 0.3)))
+    space.add(body, GrooveJoint(space.static_body, body, (-10, 0.3), (10, 0.3), (0.3, 0.3)))
     space.step(1e-9)
     across = body.velocity.y + 0.3 * body.angular_velocity
     assert abs(across) > 0.01

@@ -29,6 +29,11 @@ class Extended:
     def name(self) -> str:
         return "pymunk"
 
+    @property
+    def step_cost(self) -> float:
+        """About what a step costs [s]: of the levels together, which is what the grid is cut by."""
+        return 2e-6 * max(sum(method.levels) for method in (self.single, self.skates, self.pins))
+
     def chosen(self, mechanism: Mechanism) -> Extrapolated:
         """The engine that this one takes for a mechanism."""
         if reflectable(mechanism):

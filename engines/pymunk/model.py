@@ -110,7 +110,8 @@ class _Builder:
     def __init__(self, mechanism: Mechanism, settings: Settings) -> None:
         self.mechanism, self.settings = mechanism, settings
         self.space = pymunk.Space()
-        self.space.gravity = tuple(value * settings.unit * settings.unit for value in mechanism.gravity)
+        x, y = mechanism.gravity
+        self.space.gravity = (x * settings.unit * settings.unit, y * settings.unit * settings.unit)
         self.space.iterations = settings.iterations
         self.cranks, self.turned = find_cranks(mechanism), find_turned(mechanism)
         self.bodies = {description.name: self._body(description) for description in mechanism.bodies}
