@@ -179,7 +179,7 @@ EXTENDED = MuJoCo(
     "RK4",
     Hardened(),
     armature=1e12,
-    solvers=("PGS", "Newton", "CG"),
+    solvers=("Newton", "PGS", "CG"),
     iterations=100,
     tolerance=1e-28,
     jacobian="dense",
