@@ -78,7 +78,7 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
     """Of these engines those that the scene's page compares; the variants of every scene where no page teaches it."""
     from engines.registry import VARIANTS
 
-    compared = next((page.engines for page in pages if page.name == scene.page), VARIANTS)
+    compared = next((page.engines_of(scene) for page in pages if page.name == scene.page), VARIANTS)
     return tuple(engine for engine in engines if engine in compared)
 
 
@@ -108,7 +108,9 @@ def choose_cells(
         cells += sweep_cells((scene,), grid_engines(scene, engines, pages), FULL if full else QUICK)
     taught = {scene.page for scene in scenes}
     for page in pages:
-        if page.name in taught:
+        # A page without scenes of its own belongs to those that its cells are about.
+        about = {page.name} if page.scenes else {cell.scene.page for cell in page.extra_cells()}
+        if about & taught:
             cells += [
                 cell
                 for cell in page.extra_cells()
@@ -119,4 +121,5 @@ def choose_cells(
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell that a page could show."""
-    return tuple(dict.fromkeys([*sweep_cells(page.scenes, page.engines, FULL), *page.extra_cells()]))
+    grid = (cell for scene in page.scenes for cell in sweep_cells((scene,), page.engines_of(scene), FULL))
+    return tuple(dict.fromkeys([*grid, *page.extra_cells()]))

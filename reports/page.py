@@ -75,6 +75,10 @@ def usual_series(row: Measurement) -> bool:
     return row.variant in FEATURED
 
 
+def everything(scene: Scene, engine: Engine) -> bool:
+    return True
+
+
 def no_figures(material: Material) -> dict[str, str]:
     return {}
 
@@ -89,6 +93,7 @@ class Page:
 
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
     template's own variables, numbers taken from the rows.
+    compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.quantities`.
     orders: method ("pymunk tuned") -> the order that theory promises for an ideal constraint. known: (scene, method,
     check) -> why that check of `tests/test_crosscheck.py` must fail; it begins "upstream:", "by design:" or "ours:".
@@ -101,12 +106,17 @@ class Page:
     engines: tuple[Engine, ...]
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
+    compared: Callable[[Scene, Engine], bool] = everything
     quantity: str = "angle"
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
     orders: Mapping[str, int] = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], str] = field(default_factory=dict, compare=False)
+
+    def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
+        """The engines in which a scene of the page is run."""
+        return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
         """The cells of failures and maps, beyond the sweep."""

@@ -24,7 +24,7 @@ from reports.sweep import Verdict, groups, sweeps
 
 CHECKS = ("outcome", "error", "gap", "order", "reaction")
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-GRID = [(page, scene, engine) for page in PAGES for scene in page.scenes for engine in page.engines]
+GRID = [(page, scene, engine) for page in PAGES for scene in page.scenes for engine in page.engines_of(scene)]
 
 # The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
 # fast motion shows only below its time scale.
@@ -56,7 +56,12 @@ def parameters(check: str) -> list:
 @pytest.fixture(scope="session")
 def rows(tmp_path_factory) -> Rows:
     """All cells of all pages, run once."""
-    cells = [cell for page in PAGES for cell in sweep_cells(page.scenes, page.engines, STEPS, COST_LIMIT)]
+    cells = [
+        cell
+        for page in PAGES
+        for scene in page.scenes
+        for cell in sweep_cells((scene,), page.engines_of(scene), STEPS, COST_LIMIT)
+    ]
     with Store(tmp_path_factory.mktemp("crosscheck") / "cells.sqlite") as store:
         run_into(store, cells)
         found = store.get(cells)

@@ -1,0 +1,133 @@
+"""Skates where an ideal one does what no friction does: at rest across a slope, sliding on it, and fixing a body."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
+from reference.joints import Skate, Vector
+from reference.mechanism import Body, Mechanism, Triple
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class SkateOnSlope(Scene):
+    """A body with its skate under the centre of mass on an incline that pulls down (-y) with `slope` [m/s^2].
+
+    Nothing turns it, so theta = heading + turning_rate t, and along the blade u' = -slope sin theta: in closed form a
+    cycloid, which gains no height and loses none (Neimark and Fufaev). With turning_rate 0 and the blade across the
+    slope (heading 0) it rests for ever, its force being all of m g. mass [kg], inertia [kg m^2], speed [m/s] along the
+    blade at t = 0. Raises InvalidMechanism for numbers not finite, or masses not positive.
+    """
+
+    name: ClassVar[str] = "skate_on_slope"
+    page: ClassVar[str] = "skate"
+    source: ClassVar[str] = "box 18.3, eq. 18.64, under gravity"
+
+    mass: float = 2.0
+    inertia: float = 0.3
+    slope: float = 1.0
+    heading: float = 0.0
+    speed: float = 0.0
+    turning_rate: float = 0.0
+    duration: float = 5.0
+    horizon: float = 5.0
+
+    def __post_init__(self) -> None:
+        owner = f"scene {self.name!r}"
+        positive = {"mass": self.mass, "inertia": self.inertia, "duration": self.duration, "horizon": self.horizon}
+        require_positive(owner, **positive)
+        require_finite(owner, slope=self.slope, heading=self.heading, speed=self.speed, turning_rate=self.turning_rate)
+
+    def mechanism(self) -> Mechanism:
+        start = self.motion(0.0)
+        pose, twist = start.pose[0, 0].tolist(), start.twist[0, 0].tolist()
+        body = Body("skate", self.mass, self.inertia, tuple(pose), tuple(twist))
+        return Mechanism((body,), (Skate("blade", None, "skate", (0.0, 0.0)),), (0.0, -self.slope))
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        t = sample_times(f"scene {self.name!r}", t)
+        first, rate = self.heading, self.turning_rate
+        angle, half = first + rate * t, 0.5 * rate * t
+        # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
+        chord = t * np.sinc(half / math.pi)
+        speed = self.speed - self.slope * chord * np.sin(first + half)
+        x, y = self._way(t)
+        pose = np.stack([x, y, angle], axis=-1)
+        twist = np.stack([speed * np.cos(angle), speed * np.sin(angle), np.full_like(t, rate)], axis=-1)
+        force = self.mass * (speed * rate + self.slope * np.cos(angle))
+        return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
+
+    def _way(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
+        first, rate, pull = self.heading, self.turning_rate, self.slope
+        if rate == 0:
+            along = self.speed * t - 0.5 * pull * math.sin(first) * t**2
+            return along * math.cos(first), along * math.sin(first)
+        angle = first + rate * t
+        chord = 2 * np.sin(0.5 * rate * t) / rate  # of a circle with unit speed, along the mean heading
+        middle = first + 0.5 * rate * t
+        # u = free + (pull/rate) cos theta, free = speed - (pull/rate) cos first.
+        free = self.speed - pull / rate * math.cos(first)
+        twice = (np.sin(2 * angle) - math.sin(2 * first)) / (4 * rate)
+        x = free * chord * np.cos(middle) + pull / rate * (0.5 * t + twice)
+        y = free * chord * np.sin(middle) + pull / rate * (np.sin(angle) ** 2 - math.sin(first) ** 2) / (2 * rate)
+        return x, y
+
+
+@dataclass(frozen=True)
+class HeldBySkates(Scene):
+    """A body on skates whose axles do not meet in one point: no freedom of velocity is left, and it stays, on a slope.
+
+    Two skates always leave one freedom (their axles meet in a point, the centre of rotation, or are parallel); so it
+    takes a third, elsewhere. points [m] from the centre of mass, angles [rad] of the blades against the body; `slope`
+    [m/s^2] pulls down (-y). Raises InvalidMechanism unless the skates hold the body.
+    """
+
+    name: ClassVar[str] = "held_by_skates"
+    page: ClassVar[str] = "skate"
+    source: ClassVar[str] = "box 18.3, degrees of freedom by rank"
+
+    mass: float = 2.0
+    inertia: float = 0.3
+    points: tuple[Vector, ...] = ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4))
+    angles: tuple[float, ...] = (0.5, -0.5, 1.5)
+    slope: float = 1.0
+    pose: Triple = (0.0, 0.0, 0.3)
+    duration: float = 3.0
+    horizon: float = 3.0
+
+    def __post_init__(self) -> None:
+        owner = f"scene {self.name!r}"
+        positive = {"mass": self.mass, "inertia": self.inertia, "duration": self.duration, "horizon": self.horizon}
+        require_positive(owner, **positive)
+        require_finite(owner, points=self.points, angles=self.angles, slope=self.slope, pose=self.pose)
+        if len(self.points) != len(self.angles):
+            raise InvalidMechanism(
+                f"{owner}: {len(self.points)} points and {len(self.angles)} angles; each skate has one"
+            )
+        _, freedoms = self.mechanism().degrees_of_freedom()
+        if freedoms:
+            raise InvalidMechanism(
+                f"{owner}: these {len(self.points)} skates leave {freedoms} freedom of velocity, so the body moves; "
+                f"their axles must not all be parallel or meet in one point"
+            )
+
+    def mechanism(self) -> Mechanism:
+        joints = tuple(
+            Skate(f"skate {index + 1}", None, "body", point, angle)
+            for index, (point, angle) in enumerate(zip(self.points, self.angles, strict=True))
+        )
+        return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.slope))
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        t = sample_times(f"scene {self.name!r}", t)
+        pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(t), 1, 3)).copy()
+        still = np.zeros_like(pose)
+        return Trajectory(t, pose, still, self.mechanism().reaction(pose, still))

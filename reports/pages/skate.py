@@ -1,0 +1,191 @@
+"""The skate's page: every construction that people use for one, on the sleigh, and what else a skate teaches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from engines import Engine
+from engines.registry import VARIANTS
+from reference.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.joints import Skate
+from reference.parking import commutator_displacement
+from reference.scene import Scene
+from reference.scenes import SCENES
+from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.trajectory import Trajectory
+from reports import charts, tables
+from reports.cells import Cell
+from reports.measure import Measurement
+from reports.outcomes import Outcome
+from reports.page import FEATURED, Material, Page
+from reports.pages import skate_pictures
+from reports.pages.skate_failures import FAILURES, MAPS
+from reports.pages.skate_known import KNOWN, ORDERS
+from reports.pages.skate_methods import CONSTRUCTIONS, method
+from reports.paths import Blades, Panel, Path, paths
+from reports.sweep import by_method, groups, sweeps
+from reports.theme import svg
+
+NAME = "skate"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SLEIGH = ChaplyginSleigh()
+
+# The step at which constructions are compared [s]: about that of a user who has refined once.
+COMPARED = 1e-3
+BLADES = 7  # skates drawn on the way
+# Name -> colour, dashes. A construction that is not visibly off is not worth a line.
+OVERLAID: dict[str, tuple[str, Any]] = {
+    "pymunk skate: centre's velocity zeroed": ("pymunk", "--"),
+    "pymunk skate: point's velocity zeroed": ("pymunk", ":"),
+    "pymunk tuned": ("pymunk", "-"),
+    "mujoco default": ("mujoco", "--"),
+    "mujoco tuned": ("mujoco", ":"),
+}
+
+
+def featured(row: Measurement) -> bool:
+    """The variants of every scene, and the two cheap constructions of second order."""
+    return row.variant in FEATURED or row.method in ("pymunk skate: reflection", "mujoco leapfrog")
+
+
+def compared(scene: Scene, engine: Engine) -> bool:
+    """Constructions of a skate only where there is one."""
+    return engine not in CONSTRUCTIONS or any(isinstance(joint, Skate) for joint in scene.mechanism().joints)
+
+
+def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
+    """Poses (times, 3) of the skate from those of the sleigh's body."""
+    pose = trajectory.pose[:, 0]
+    arm = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2]), np.zeros(len(pose))], axis=-1)
+    return pose - scene.offset * arm
+
+
+def path_picture(material: Material) -> Figure:
+    """The skate's path in truth and in several methods, forwards and backwards."""
+    panels = []
+    for title, scene in (("ahead for 3 s", SLEIGH), ("backwards for 10 s: it turns round", SleighBackwards())):
+        cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
+        found = material.trajectories(tuple(cells.values()))
+        truth = scene.skate_pose(np.linspace(0, scene.duration, scene.samples + 1))
+        lines = [Path(truth[:, :2], "truth", "ink", "-", 3.0)]
+        for name, (colour, dashes) in OVERLAID.items():
+            if cells[name] in found:
+                points = skate_path(scene, found[cells[name]])[:, :2]
+                lines.append(Path(points, f"{name}, step 1e-2 s", colour, dashes, 1.6, framed=False, dot=True))
+        some = truth[:: max(1, scene.samples // (BLADES - 1))]
+        panels.append(Panel(title, lines, [Blades(some, 0.12 * float(np.ptp(truth[:, :2])), "ink", 3.0)]))
+    return paths(panels, columns=2)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Paths, parking, the slope, and every construction's error against the step."""
+    own = {f"{engine.name} {engine.variant}" for engine in CONSTRUCTIONS}
+    rows = [row for row in material.sweep((SLEIGH,)) if row.method in own]
+    found = {
+        "paths": svg(path_picture(material), "The skate's path, ahead and backwards, in truth and in several methods"),
+        "parking": svg(skate_pictures.parking(), "Parallel parking by turns and slides, and the commutator"),
+        "slope": svg(skate_pictures.slope(), "An ideal skate that turns on a slope"),
+    }
+    for engine in ("pymunk", "mujoco"):
+        here = [row for row in rows if row.engine == engine]
+        if any(Outcome(row.outcome).comparable for row in here):
+            chart = charts.error_against_step(here, lambda row: True, "position")
+            found[f"constructions_{engine}"] = svg(
+                chart, f"Every construction of a skate in {engine}: error against step"
+            )
+    return found
+
+
+def nearest_step(rows: Iterable[Measurement], step: float) -> Measurement | None:
+    """The row whose step is nearest to this one, by ratio; None without rows."""
+    return min(rows, key=lambda row: abs(np.log(row.step / step)), default=None)
+
+
+def constructions(rows: Sequence[Measurement]) -> str:
+    """One line a construction: what it gives at the compared step and costs there, and what its error does."""
+    verdicts = by_method(sweeps(rows), "position")
+    told = []
+    for key, members in groups(rows).items():
+        row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
+        if row is None:
+            told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 5, ""]))
+            continue
+        numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
+        words = tables.sweep_words(verdicts[key]) if Outcome(row.outcome).comparable else "wrong at every step"
+        told.append((row.position, [row.method, row.outcome, *numbers, tables.milliseconds(row.cpu), words]))
+    header = [
+        "construction",
+        "outcome",
+        "position [m]",
+        "slip [m/s]",
+        "energy",
+        "reaction",
+        "CPU [ms/s]",
+        "as the step shrinks",
+    ]
+    return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=2)
+
+
+def counted(scenes: Sequence[Scene]) -> str:
+    """Freedoms of scenes by rank and by brackets, as a table."""
+    body = []
+    for scene in scenes:
+        mechanism = scene.mechanism()
+        configuration, velocity = mechanism.degrees_of_freedom()
+        growth = " -> ".join(map(str, freedoms_by_brackets(mechanism)))
+        kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
+        body.append([scene.name, str(mechanism.row_count), f"({configuration}, {velocity})", growth, kind])
+    header = ["scene", "rows", "(configuration, velocity) by rank", "by brackets", "by Frobenius"]
+    return tables.markdown(header, body, left=5)
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """`constructions` and `counted` as tables; `at(method, step)`: the sleigh's row nearest to that step, or None;
+    `least(method)`: its row with the least position error; `stays(method)`: its plateau in position or None.
+    """
+    rows = material.sweep((SLEIGH,))
+    verdicts = {sweep.method: sweep for sweep in by_method(sweeps(rows), "position").values()}
+
+    def at(name: str, step: float = COMPARED) -> Measurement | None:
+        return nearest_step((row for row in rows if row.method == name and np.isfinite(row.position)), step)
+
+    def least(name: str) -> Measurement | None:
+        usable = [row for row in rows if row.method == name and Outcome(row.outcome).comparable]
+        return min(usable, key=lambda row: row.position, default=None)
+
+    def stays(name: str) -> float | None:
+        sweep = verdicts.get(name)
+        return sweep.plateau if sweep is not None and np.isfinite(sweep.plateau) else None
+
+    commutator = commutator_displacement(0.1, 0.1)
+    return {
+        "constructions": constructions(rows),
+        "counted": counted(SCENES_HERE),
+        "at": at,
+        "least": least,
+        "stays": stays,
+        "sleigh": SLEIGH,
+        "commutator": commutator,
+    }
+
+
+PAGE = Page(
+    name=NAME,
+    title="The skate",
+    lesson="One row on velocity that no position knows: what stands for it in engines that have no such joint.",
+    scenes=SCENES_HERE,
+    engines=(*VARIANTS, *CONSTRUCTIONS),
+    failures=FAILURES,
+    maps=MAPS,
+    compared=compared,
+    quantity="position",
+    featured=featured,
+    figures=figures,
+    words=words,
+    orders=ORDERS,
+    known=KNOWN,
+)

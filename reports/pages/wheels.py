@@ -1,0 +1,80 @@
+"""The wheels' page: vehicles that coast on ideal wheels, and what towed and free wheels do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from engines.registry import VARIANTS
+from reference.cart import Cart
+from reference.scenes import SCENES
+from reference.wheels import CarAndTrailer
+from reports.cells import Cell
+from reports.measure import Measurement
+from reports.outcomes import Outcome
+from reports.page import Material, Page
+from reports.pages import wheels_pictures
+from reports.pages.skate import counted
+from reports.pages.skate_methods import method
+from reports.pages.wheels_failures import FAILURES
+from reports.pages.wheels_known import KNOWN, ORDERS
+from reports.paths import paths
+from reports.theme import svg
+
+NAME = "wheels"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+OVERLAID: dict[str, tuple[str, Any]] = {
+    "pymunk default": ("pymunk", "--"),
+    "pymunk tuned": ("pymunk", "-"),
+    "mujoco default": ("mujoco", "--"),
+    "mujoco tuned": ("mujoco", ":"),
+}
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Both vehicles coasting, tows, casters, and the trailer that folds."""
+    panels = []
+    for title, scene in (("car and trailer, 5 s", CarAndTrailer()), ("cart with two casters, 3 s", Cart())):
+        cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
+        made = material.trajectories(tuple(cells.values()))
+        truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
+        found = {
+            f"{name}, step 1e-2 s": (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made
+        }
+        panels.append(wheels_pictures.coasting(truth, found, title))
+    return {
+        "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),
+        "tows": svg(wheels_pictures.tows(), "A towed wheel: the tractrix, and tows round circles"),
+        "casters": svg(wheels_pictures.casters(), "Casters that trail, and that swing round"),
+        "reversing": svg(wheels_pictures.reversing(), "A reversing trailer folds"),
+    }
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """`counted`: the freedoms' table; `least(scene, method)`: the row with the least position error, or None."""
+    rows = material.sweep(SCENES_HERE)
+
+    def least(scene: str, name: str) -> Measurement | None:
+        usable = [row for row in rows if (row.scene, row.method) == (scene, name) and Outcome(row.outcome).comparable]
+        return min(usable, key=lambda row: row.position, default=None)
+
+    shown = (*SCENES_HERE, CarAndTrailer(redundant=True), Cart(redundant=True))
+    return {"counted": counted(shown), "least": least}
+
+
+PAGE = Page(
+    name=NAME,
+    title="Ideal wheels",
+    lesson="Cars, trailers and carts: pins and skates together, coasting with what the wheels leave.",
+    scenes=SCENES_HERE,
+    engines=VARIANTS,
+    failures=FAILURES,
+    quantity="position",
+    figures=figures,
+    words=words,
+    orders=ORDERS,
+    known=KNOWN,
+)

@@ -1,0 +1,124 @@
+"""Where vehicles on ideal wheels go wrong: reversing, casters that swing round, and a wheel too many."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from engines import Engine, Unsupported
+from engines.registry import VARIANTS
+from reference.cart import Cart
+from reference.scene import Scene
+from reference.tractrix import Tow
+from reference.trailers import CarWithTrailers
+from reference.wheels import CarAndTrailer
+from reports.cells import Cell
+from reports.page import Failure, Observation
+from reports.running import trajectory_of
+from reports.tables import number
+
+ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
+MOTION = ("position", "angle", "gap", "slip", "energy")
+
+BACKING = CarAndTrailer(speed=-1.0, steering=0.0, bend=0.05, hitch=0.0)
+PUSHED = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
+FOLDED = math.pi / 2  # rad
+
+
+def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
+
+
+def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
+    """When |values| first passes a limit, linear between samples; None if it never does."""
+    over = np.flatnonzero(np.abs(values) > limit)
+    if not over.size or over[0] == 0:
+        return None
+    late = int(over[0])
+    before, after = abs(values[late - 1]), abs(values[late])
+    return float(t[late - 1] + (t[late] - t[late - 1]) * (limit - before) / (after - before))
+
+
+def folding() -> list[Observation]:
+    """When the reversing trailer is bent beyond a right angle: closed form, kinematics, and methods that coast."""
+    # Straight back the bend b obeys b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
+    exact = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)
+    found = [Observation("closed form, at an even speed", "", f"{exact:.4f} s")]
+    car = CarWithTrailers(BACKING.wheelbase, (BACKING.length,), (BACKING.hitch,))
+    convoy = car.drive(BACKING.speed, BACKING.steering, BACKING.pose, (BACKING.bend,), [exact + 1])
+    found.append(Observation("the reference, driven at an even speed", "", f"{convoy.jackknifed_at:.4f} s"))
+    tow = Tow(BACKING.length, BACKING.bend)
+    way = -exact * abs(BACKING.speed)
+    found.append(
+        Observation("the drawbar pushed along by that way", "", f"bent by {float(tow.relative_angle(way)):.4f} rad")
+    )
+    t = np.linspace(0, BACKING.duration, BACKING.samples + 1)
+    truth = BACKING.motion(t).pose
+    found.append(Observation("the reference, coasting", "", _folded(t, truth)))
+    for engine in ENGINES_ALONE:
+        for every in (1, 10):
+            cell = Cell(BACKING, engine, every, "failure")
+            try:
+                run = trajectory_of(cell)
+            except Unsupported:
+                continue
+            found.append(
+                Observation(f"{engine.name} {engine.variant}", f"step {number(cell.step)} s", _folded(run.t, run.pose))
+            )
+    return found
+
+
+def _folded(t: np.ndarray, pose: np.ndarray) -> str:
+    bend = pose[:, 1, 2] - pose[:, 0, 2]
+    when = crossing(t, np.where(np.isfinite(bend), bend, 0.0), FOLDED)
+    return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.nanmax(np.abs(bend)):.3f} rad"
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="A reversing trailer jack-knifes",
+        expected=(
+            f"Backing straight from a bend of {BACKING.bend:g} rad the bend grows as exp(v t / L), "
+            f"{abs(BACKING.speed) / BACKING.length:g} per second, and passes a right angle. Coasting, the car is slowed"
+            " down by what it gives to the trailer."
+        ),
+        cells=_cells(BACKING, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+        observations=folding,
+        remark=(
+            "The ideal wheels go on through the fold, real bodies would touch. The naive zeroing has another vehicle: "
+            "its trailer folds half a second late, at every step."
+        ),
+    ),
+    Failure(
+        title="Casters swing round when the cart is pushed back",
+        expected=(
+            "A caster that stands straight behind its kingpin is unstable as soon as the cart goes back, and swings "
+            "round by half a turn: the left one first, which stood less straight."
+        ),
+        cells=_cells(PUSHED, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+    ),
+    Failure(
+        title="Both wheels of every axle: the car and its trailer",
+        expected=(
+            "The two wheels of an axle stop the same motion, so the second changes nothing but the number of rows; how "
+            "the two share the force is not determined, and the reference gives each half."
+        ),
+        cells=_cells(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+        remark=(
+            "Compare with the same vehicle with one row an axle, in the tables above. What holds a row exactly does "
+            "not notice the second. Two soft ones are another softness: MuJoCo's friction as shipped goes elsewhere."
+        ),
+    ),
+    Failure(
+        title="Both wheels of the fixed axle: the cart",
+        expected="As above: one row would do.",
+        cells=_cells(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+    ),
+)
