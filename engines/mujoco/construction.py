@@ -1,10 +1,15 @@
 """What a joint that MuJoCo lacks is built from: parts added to the model, and hooks that run while it is stepped."""
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+import mujoco
 
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.tree import Tree
@@ -51,6 +56,13 @@ def in_turn(callbacks: Sequence[Callback]) -> Callback | None:
             callback(model, data)
 
     return run
+
+
+def read_by_step(model: Any, data: Any) -> tuple[Any, Any, Any]:
+    """A reading whose acceleration is what a whole step does to the velocity."""
+    position, velocity = data.qpos.copy(), data.qvel.copy()
+    mujoco.mj_step(model, data)
+    return position, velocity, (data.qvel - velocity) / model.opt.timestep
 
 
 # Given the compiled model and where each tree coordinate stands in qpos and qvel.

@@ -143,6 +143,12 @@ def build_model(
     add_placeholders(spec, tree, building.written, stiffness.impedance, building.driven)
     if building.contact:
         spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    written = bool(building.written) or building.rewritten
+    dense = spec.option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
+    if written and not (dense and spec.option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ISLAND)):
+        raise Unsupported(
+            "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
+        )
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -159,7 +165,6 @@ def build_model(
         before -= sum(joint.size for joint in building.written)
         hooks += Hooks(control=(writing(rows, before, compiled.nv),))
     held = 2 * len(pins) + building.size + sum(joint.size for joint in building.written)
-    written = bool(building.written) or building.rewritten
     rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
     return Model(mechanism, tree, compiled, places, driven, drive, hooks, held, written, rates)
 

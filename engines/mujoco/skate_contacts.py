@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from engines import Unsupported
-from engines.mujoco.construction import Building, Hooks
+from engines.mujoco.construction import Building, Hooks, read_by_step
 from engines.mujoco.stiffness import Shipped
 from engines.mujoco.tree import world_offset
 from reference.joints import Skate
@@ -57,14 +57,8 @@ def add_servos(building: Building, skates: Sequence[Skate]) -> None:
         servo.gear = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
         servo.set_to_velocity(SERVO_GAIN * mass)
     building.size += len(skates)
-
-    def read(model: Any, data: Any) -> tuple[Any, Any, Any]:
-        # An implicit integrator's acceleration is not the one that the forces at the start of the step would give.
-        position, velocity = data.qpos.copy(), data.qvel.copy()
-        mujoco.mj_step(model, data)
-        return position, velocity, (data.qvel - velocity) / model.opt.timestep
-
-    building.binders.append(lambda _compiled, _address: Hooks(read=read))
+    # An implicit integrator's acceleration is not the one that the forces at the start of the step would give.
+    building.binders.append(lambda _compiled, _address: Hooks(read=read_by_step))
 
 
 def _add_ground(building: Building) -> None:

