@@ -298,3 +298,12 @@ def test_the_ground_moves_nothing() -> None:
     row = skate_rows(Skate("skate", None, "body", (0.0, 0.0)), 0.0)(0.0, GROUND, (1.0, 2.0, 0.0, 3.0, 0.0, 0.5))[0]
     assert row[3:6] == (0.0, 1.0, 0.0)
     assert row[6] == pytest.approx(0.5 * 3.0)  # turning at 0.5 rad/s while it slides at 3 m/s: v w to the left
+
+
+def test_a_long_coast_ends_straight_and_raises_no_alarm() -> None:
+    scene = ChaplyginSleigh(duration=100.0)
+    motion, truth = run(EXTENDED, scene, 1e-2)
+    # The heading is settled after about 5 s; its error then carries the sleigh 140 m.
+    assert np.abs(motion.pose - truth.pose)[..., 2].max() < 2e-9
+    assert np.abs(motion.pose - truth.pose).max() < 140 * 2e-9
+    assert motion.warnings == ()

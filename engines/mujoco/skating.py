@@ -36,8 +36,9 @@ def add_skates(building: Building, skates: Sequence[Skate], by: SkateBy) -> None
         {"servo": add_servos, "blade": add_blades, "wheel": add_wheels}[by](building, skates)
         return
     # There is no gap to close, only slip that rounding leaves: it may take the motion's own time to die out, and a
-    # faster damping would cost accuracy.
-    damping = 1 / building.mechanism.time_scale
+    # faster damping would cost accuracy. What turns sets that time; speed over a short arm would be far too fast.
+    turning = max(abs(body.twist[2]) for body in building.mechanism.bodies)
+    damping = turning or 1 / building.mechanism.time_scale
     joints = [
         WrittenJoint(building.index(skate.first), building.index(skate.second), 1, skate_rows(skate, damping))
         for skate in skates
