@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.banded_reactions import MANY_ROWS, banded_reaction
-from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Drive, Joint, Vector
 
@@ -221,15 +220,6 @@ class Mechanism:
         pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
         have applied. Unique when the rows are independent; of redundant rows it gives the smallest.
         """
-        if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
-            found = banded_reaction(self, pose, acceleration)
-            dependent = np.isnan(found).any(axis=1)
-            if dependent.any():
-                found[dependent] = self._dense_reaction(pose[dependent], acceleration[dependent])
-            return found
-        return self._dense_reaction(pose, acceleration)
-
-    def _dense_reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
             found = banded_reaction(self, pose, acceleration)
             dependent = np.isnan(found).any(axis=1)

@@ -61,7 +61,7 @@ def _refusal() -> list[Observation]:
 
 
 SWEEPS = tuple(
-    replace(pymunk.TUNED, variant=f"tuned, {count} sweep{'s' if count > 1 else ''}", iterations=count)
+    replace(pymunk.TUNED, variant=f"tuned, {count} sweep{'s' if count > 1 else ''}", iterations=count, error_bias=0.0)
     for count in (1, 2, 5, 20)
 )
 
