@@ -13,7 +13,7 @@ from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.fingerprint import fingerprint
 
-Purpose = Literal["sweep", "failure", "map"]
+Purpose = Literal["sweep", "failure", "growth", "map"]
 
 # Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
 # they are about 1e-2, 3e-3, 1e-3 ... 1e-5 s. Three points are the fewest that can tell a slope from a plateau.
@@ -24,7 +24,7 @@ FULL = (1, 3, 10, 30, 100, 300, 1000)
 # so that the grid (and errors.csv) is the same on every machine.
 COST_LIMIT = 2.0
 # A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
-QUICK_LIMIT = 10.0
+QUICK_LIMIT = 5.0
 
 # About what one step costs [s] with three bodies: an engine may say better in `step_cost` (a number or property).
 STEP_COST = {"pymunk": 2e-6, "mujoco": 12e-6, "lagrange": 400e-6}

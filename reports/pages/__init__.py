@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from reports.page import Page
-from reports.pages import four_bar, skate, wheels
+from reports.pages import errata, four_bar, scaling, skate, wheels
 
-PAGES: tuple[Page, ...] = (four_bar.PAGE, skate.PAGE, wheels.PAGE)
+PAGES: tuple[Page, ...] = (four_bar.PAGE, skate.PAGE, wheels.PAGE, scaling.PAGE, errata.PAGE)

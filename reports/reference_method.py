@@ -1,0 +1,91 @@
+"""The reference's own equations of a chain as a method among others: a banded solve for the joint forces, under RK4.
+
+It is no engine: it reads an open chain of uniform bars from a mechanism and can do nothing else. It stands beside the
+engines to say what an evaluation needs to cost.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from engines import Size, Unsupported, check_counts, check_step
+from reference.joints import Pin
+from reference.link_chain import Array, Chain
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+ROUNDING = 1e-9  # relative: numbers that were made from one another
+
+
+@dataclass(frozen=True)
+class BandedChain:
+    """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
+
+    name: ClassVar[str] = "reference"
+    variant: ClassVar[str] = "banded rk4"
+
+    def build(self, mechanism: Mechanism, dt: float) -> BandedRun:
+        """Raises Unsupported unless uniform bars hang on one another from a pin at the origin."""
+        check_step(dt)
+        return BandedRun(mechanism, chain_of(mechanism), dt)
+
+
+def chain_of(mechanism: Mechanism) -> Chain:
+    """The chain that a mechanism is; raises Unsupported, saying why, if it is none."""
+    pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
+    if not len(pins) == len(mechanism.bodies) == len(mechanism.joints):
+        raise Unsupported("the reference's chain has as many pins as bars, and no other joint")
+    if mechanism.gravity[0] != 0:
+        raise Unsupported("the reference's chain hangs in gravity along y")
+    lengths: list[float] = []
+    previous = None
+    for body, pin in zip(mechanism.bodies, pins, strict=True):
+        length = -2 * pin.second_point[0]
+        end = (lengths[-1] / 2, 0.0) if previous else (0.0, 0.0)
+        fits = pin.first == previous and pin.second == body.name and pin.second_point[1] == 0 and length > 0
+        if not (fits and math.dist(pin.first_point, end) <= ROUNDING * length):
+            raise Unsupported(f"pin {pin.name!r} does not hang bar {body.name!r} on the end of the one before it")
+        if abs(body.inertia - body.mass * length**2 / 12) > ROUNDING * body.inertia:
+            raise Unsupported(f"bar {body.name!r} is not uniform")
+        lengths.append(length)
+        previous = body.name
+    return Chain(tuple(lengths), tuple(body.mass for body in mechanism.bodies), -mechanism.gravity[1])
+
+
+class BandedRun:
+    """A chain at its start; see `engines.Run`."""
+
+    def __init__(self, mechanism: Mechanism, chain: Chain, dt: float) -> None:
+        self._chain, self._dt = chain, dt
+        self._start = np.concatenate([mechanism.pose[:, 2] + math.pi / 2, mechanism.twist[:, 2]])
+        self.size = Size(chain.links, chain.links, 0, 0)
+
+    def __call__(self, samples: int, every: int) -> Trajectory:
+        check_counts(samples, every)
+        chain, states = self._chain, np.empty((samples + 1, len(self._start)))
+        state = states[0] = self._start
+        begin = time.process_time()
+        for sample in range(1, samples + 1):
+            for _ in range(every):
+                state = self._step(state)
+            states[sample] = state
+        stepping = time.process_time() - begin
+        angle, rate = states[:, : chain.links], states[:, chain.links :]
+        pose, twist, _ = chain.placement(angle, rate, np.zeros_like(angle))
+        reaction = chain.forces(angle, rate).reshape(samples + 1, -1)
+        t: Array = np.arange(samples + 1, dtype=float) * (every * self._dt)
+        return Trajectory(t, pose, twist, reaction, stepping)
+
+    def _step(self, state: Array) -> Array:
+        """The classical Runge-Kutta step."""
+        rates, dt = self._chain.rates, self._dt
+        first = rates(state)
+        second = rates(state + dt / 2 * first)
+        third = rates(state + dt / 2 * second)
+        fourth = rates(state + dt * third)
+        return state + dt / 6 * (first + 2 * second + 2 * third + fourth)
