@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from dataclasses import fields
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +30,10 @@ class Scene(ABC):
     duration: float
     horizon: float
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Its numbers alone, so that a scene travels to another process without what it has worked out."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+
     @abstractmethod
     def mechanism(self) -> Mechanism:
         """The bodies and joints at t = 0."""
@@ -39,6 +45,11 @@ class Scene(ABC):
     def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
         """The assembly mode (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
         return np.zeros(np.shape(pose)[:-2], dtype=int)
+
+    @property
+    def comparable_until(self) -> float:
+        """Up to when a body could do what the ideal motion asks of it [s]; beyond, no comparison with it is valid."""
+        return math.inf
 
     @property
     def samples(self) -> int:

@@ -139,6 +139,7 @@ def sizes(mechanism: Mechanism, size: Any) -> dict[str, int]:
 
 def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement) -> Measurement:
     """Fill a row with errors and its outcome."""
+    trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
     count = usable_samples(trajectory)
     finite = replace(
         trajectory,
@@ -148,7 +149,7 @@ def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measu
         reaction=trajectory.reaction[:count],
     )
     errors: dict[str, Any] = constraint_errors(mechanism, finite) if count else {}
-    note = "; ".join(dict.fromkeys(trajectory.warnings))
+    note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
     try:
         truth = _truth(cell.scene, np.ascontiguousarray(finite.t, dtype=float).tobytes())
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
@@ -161,6 +162,22 @@ def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measu
     row = replace(row, **errors)
     outcome, sentence = classify(row, mechanism, trajectory, count)
     return replace(row, outcome=outcome, sentence="; ".join(filter(None, (sentence, note))))
+
+
+def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Trajectory, str]:
+    """The samples that may be compared with the scene's ideal motion, and a sentence if there were others."""
+    limit = scene.comparable_until
+    count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
+    if count == len(trajectory.t):
+        return trajectory, ""
+    reset = trajectory.reset_at
+    kept = replace(
+        trajectory,
+        **{name: getattr(trajectory, name)[:count] for name in ("t", "pose", "twist", "reaction")},
+        estimate=None if trajectory.estimate is None else trajectory.estimate[:count],
+        reset_at=reset if reset is not None and reset <= limit else None,
+    )
+    return kept, f"compared until {limit:.4g} s only: beyond, the ideal motion asks for what a real contact can't give"
 
 
 def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:

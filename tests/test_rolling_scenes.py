@@ -120,9 +120,16 @@ def test_a_round_disc_leaves_a_round_hill_where_the_textbook_says():
         assert law.required_friction(at)[0] == pytest.approx(mu, rel=1e-9)
 
 
-def test_a_scene_that_hops_ends_its_horizon_there():
-    assert RollingOnCircle().horizon == RollingOnCircle().hop < RollingOnCircle().duration
+def test_a_scene_that_slips_and_hops_ends_its_horizon_there():
+    scene = RollingOnCircle()
+    assert scene.horizon == scene.comparable_until < scene.hop < scene.duration
+    assert scene.motion_law.required_friction(scene.horizon)[0] == pytest.approx(scene.friction, rel=1e-9)
+    # However rough, it holds no longer than to the hop.
+    assert RollingOnCircle(friction=1e9).horizon == pytest.approx(scene.hop, rel=1e-6)
     assert RollingEllipse().horizon == RollingEllipse().duration
+    assert RollingEllipse().comparable_until == math.inf
+    # The ellipse asks for 0.2993 at most.
+    assert RollingEllipse(friction=0.25).horizon < 1.0
 
 
 def test_small_oscillations_have_the_closed_frequencies():

@@ -1,0 +1,92 @@
+"""The page of rolling: bodies that are not round, by contact and by constraint, and two elliptic gears."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from engines import Engine
+from engines.mujoco import rolls as mujoco_rolls
+from engines.pymunk import rolls as pymunk_rolls
+from engines.registry import VARIANTS
+from reference.elliptic_gears import EllipticGears
+from reference.rolling_scenes import RollingEllipse, RollingOnCircle
+from reference.scene import Scene
+from reference.scenes import SCENES
+from reports import rolling_charts, rolling_drawings
+from reports.page import Material, Page
+from reports.pages.rolling_failures import FAILURES, MAPS, polygon_cells, softness_cells
+from reports.pages.rolling_known import KNOWN, ORDERS
+from reports.sweep import best_of, by_method, sweeps
+from reports.theme import svg
+
+NAME = "rolling"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+# Ideal constraints under Euler say nothing here that Runge-Kutta's don't, and finding a contact is what costs.
+COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
+BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_rolls.STALE_PIVOT, pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED)
+ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_rolls.METHODS)
+
+
+def compared(scene: Scene, engine: Engine) -> bool:
+    """All but exact multipliers on the gears, where each contact is a search within a search: the tests do that."""
+    return not (engine.name == "lagrange" and scene.name == EllipticGears.name)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Drawings from the reference, and the plateaus from the rows of two experiments."""
+    found = {
+        "roulettes": svg(
+            rolling_drawings.draw_roulettes(rolling_drawings.roulettes()),
+            "Six bodies that roll, and what a point draws",
+        ),
+        "contact": svg(rolling_drawings.draw_contact(), "An ellipse on a hill, on flat ground and in a hole"),
+        "acceleration": svg(rolling_charts.draw_acceleration(), "The acceleration's two parts"),
+        "friction": svg(
+            rolling_charts.draw_friction((RollingEllipse(), RollingOnCircle())), "Friction demanded and friction given"
+        ),
+        "gears": svg(rolling_drawings.draw_gears(EllipticGears()), "Two elliptic gears and their rates"),
+    }
+    corners = [(corners, material.rows[cell]) for corners, cell in polygon_cells() if cell in material.rows]
+    softness = [(constant, material.rows[cell]) for constant, cell in softness_cells() if cell in material.rows]
+    if corners and softness:
+        found["plateaus"] = svg(rolling_charts.draw_plateaus(corners, softness), "Errors that no step removes")
+    return found
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows and sweeps by method, for sentences: `best(scene, engine, variant)`, `sweep(...)`; None without one."""
+    rows = material.sweep(SCENES_HERE)
+    found = tuple(sweeps(rows))
+
+    def best(scene: str, engine: str, variant: str) -> Any:
+        return best_of((row for row in rows if row.scene == scene), engine, variant)
+
+    def sweep(scene: str, engine: str, variant: str, quantity: str = "angle") -> Any:
+        return by_method(found, quantity).get((scene, engine, variant))
+
+    def at(scene: str, method: str, step: float) -> Any:
+        """The row of a method ("mujoco tuned") at the step nearest to one [s]."""
+        own = [row for row in rows if row.scene == scene and row.method == method]
+        return min(own, key=lambda row: abs(row.step / step - 1), default=None)
+
+    polygons = {
+        (corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows
+    }
+    return {"best": best, "sweep": sweep, "at": at, "polygons": polygons, "hill": RollingOnCircle()}
+
+
+PAGE = Page(
+    name=NAME,
+    title="Rolling of bodies that are not round",
+    lesson="The contact runs along both curves, and its own motion is the part of an acceleration that engines forget.",
+    scenes=SCENES_HERE,
+    engines=ENGINES_HERE,
+    failures=FAILURES,
+    maps=MAPS,
+    compared=compared,
+    figures=figures,
+    words=words,
+    orders=ORDERS,
+    known=KNOWN,
+)

@@ -1,0 +1,247 @@
+"""Where methods fail at rolling: experiments with a statement of what should happen, and a stability map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from engines.mujoco import rolls as mujoco_rolls
+from engines.pymunk import rolls as pymunk_rolls
+from reference.rolling_limits import DiscInHole, SquareOnCatenaries
+from reference.rolling_scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
+from reference.scene import Scene
+from reports.cells import Cell
+from reports.page import Failure, Observation, StabilityMap
+from reports.running import trajectories
+from reports.tables import number
+
+CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+EQUALITY = next(method for method in mujoco_rolls.METHODS if "equality" in method.variant)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED, mujoco.EXTENDED, EQUALITY)
+ROLLER = 0  # the only body's index
+
+# Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
+SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
+SOFT_STEPS = {100: 1e-4, 10: 1e-3}
+CLEARANCES = (0.5, 0.1, 1e-2, 1e-3, 1e-4)
+MAP_STEPS = (1, 10, 100)
+
+
+def cells(
+    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
+) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
+
+
+def polygon_cells() -> tuple[tuple[int, Cell], ...]:
+    """(corners, cell) of the ellipse as polygons of ever more corners."""
+    return tuple(
+        (corners, cell)
+        for corners, engine in zip(pymunk_rolls.CORNERS, pymunk_rolls.FACETED, strict=True)
+        for cell in cells(RollingEllipse(), (engine,), (1, 10, 100))
+    )
+
+
+def soft_contact(constant: float, step: float) -> Engine:
+    """MuJoCo's contact with a time constant [s] at a step [s], its slip as stiff as it goes."""
+    variant = f"contact of {1e3 * constant:g} ms"
+    steps = round(constant / step)
+    return replace(mujoco.TUNED, variant=variant, rolls=replace(mujoco.TUNED.rolls, steps=steps))
+
+
+def softness_cells() -> tuple[tuple[float, Cell], ...]:
+    """(time constant [s], cell) of the ellipse on ever stiffer contacts."""
+    return tuple(
+        (constant, Cell(RollingEllipse(), soft_contact(constant, step), every, "failure"))
+        for every, step in SOFT_STEPS.items()
+        for constant in SOFTNESS
+        if constant >= 2 * step * (1 - 1e-9)
+    )
+
+
+def parting(scene: RollingScene, engine: Engine, every: int) -> tuple[float, float]:
+    """Largest distance [m] of a method's body from the ideal motion, up to the last comparable sample and at the end.
+
+    Raises KeyError if the method did not run.
+    """
+    cell = Cell(scene, engine, every)
+    found = trajectories([cell])[cell]
+    truth = scene.motion(found.t)
+    apart = np.linalg.norm((found.pose - truth.pose)[:, ROLLER, :2], axis=-1)
+    within = found.t <= scene.comparable_until * (1 + 1e-12)
+    return float(apart[within].max()), float(apart[-1])
+
+
+def partings() -> list[Observation]:
+    """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
+    scene = RollingOnCircle()
+    out = []
+    for engine in (pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED):
+        for every in (10, 100):
+            before, after = parting(scene, engine, every)
+            step = Cell(scene, engine, every).step
+            out.append(
+                Observation(
+                    f"{engine.name} {engine.variant}",
+                    f"step {number(step)} s",
+                    f"off by {number(before)} m up to {scene.comparable_until:.3f} s, by {number(after)} m at "
+                    f"{scene.duration:g} s",
+                )
+            )
+    return out
+
+
+def absent_contact(engine: Engine, every: int) -> float:
+    """The share of samples before the slip at which a method's contact carries nothing, though it must carry N."""
+    scene = RollingOnCircle()
+    cell = Cell(scene, engine, every)
+    found = trajectories([cell])[cell]
+    # The first sample has no step before it.
+    within = (found.t <= scene.comparable_until) & (found.t > 0)
+    normal = found.reaction[within, 1]
+    weight = scene.mass * abs(scene.gravity[1])
+    return float(np.mean(np.abs(normal) < 1e-3 * weight))
+
+
+def chatter() -> list[Observation]:
+    """How often the contact on the hill is absent while it should press."""
+    out = []
+    for engine in (*CONTACTS, *(method for method in mujoco_rolls.METHODS if "stiff" in method.variant)):
+        for every in (10, 100):
+            share = absent_contact(engine, every)
+            step = Cell(RollingOnCircle(), engine, every).step
+            out.append(
+                Observation(
+                    f"{engine.name} {engine.variant}",
+                    f"step {number(step)} s",
+                    f"absent in {100 * share:.0f} % of samples",
+                )
+            )
+    return out
+
+
+def _refusals() -> list[Observation]:
+    """What the reference says of curves that fit, and of a corner."""
+    out = []
+    for scene, setting in (
+        (DiscInHole(clearance=1e-10), "clearance 1e-10"),
+        (SquareOnCatenaries(), "beyond the corner"),
+    ):
+        try:
+            scene.motion([scene.duration])
+        except ValueError as sentence:
+            out.append(Observation("the reference", setting, f"refuses: {sentence}"))
+        else:
+            raise AssertionError(f"the reference went along with {scene}")
+    return out
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="A contact as shipped",
+        expected="Each step a tenth of the last: the error should fall tenfold every time, or faster.",
+        cells=cells(RollingEllipse(), (mujoco.DEFAULT,), (1, 10, 100, 1000))
+        + cells(RollingDisc(), (mujoco.DEFAULT,), (1, 10, 100, 1000)),
+        remark=(
+            "MuJoCo's contact is a spring and a damper with a time constant of 0.02 s. Rolling moves the contact along "
+            "the body, and the rows of a contact do not know that it will: the body lags by a time constant times what "
+            "is missing. That is a property of the model, so no step removes it."
+        ),
+    ),
+    Failure(
+        title="Softer and stiffer contacts",
+        expected="A contact as stiff as the step allows should be as exact as the step.",
+        cells=tuple(cell for _, cell in softness_cells()),
+        remark="The error is the time constant's, at either step; the step only says how small a constant may be.",
+    ),
+    Failure(
+        title="Polygons",
+        expected="An ellipse has no corners. With more of them the error should fall, and with the step too.",
+        cells=tuple(cell for _, cell in polygon_cells()),
+        remark=(
+            "Pymunk has circles and convex polygons. A polygon rolls by falling from corner to corner and loses energy "
+            "in each blow: what is computed well is another body. The step has nothing to do with it."
+        ),
+    ),
+    Failure(
+        title="Nearly conformal curves",
+        expected=(
+            "A disc in a hole that is larger by the fraction c turns at 1 rad/s for ever, while its contact runs round "
+            "the hole at about 1/c rad/s. What counts is the contact's turn in a step, 1 rad/s times the step over c."
+        ),
+        cells=tuple(
+            cell for c in (1e-1, 1e-2, 1e-3, 1e-4) for cell in cells(DiscInHole(clearance=c), CONSTRAINTS, (10,))
+        ),
+        observations=_refusals,
+        remark=(
+            "The curvatures cancel in 1/(kappa_A + kappa_B), and the contact outruns every method. Some break loudly "
+            "(a reset, a joint torn open); some finish with closed joints, no slip and the wrong rotation, without a "
+            "word. A closed gap proves nothing here."
+        ),
+    ),
+    Failure(
+        title="A corner",
+        expected=(
+            f"A square rolls level over the arch of a catenary for {SquareOnCatenaries().corner:.4f} s and then stands "
+            "on its corner: the curvature is infinite, the contact has nowhere to run. The reference refuses."
+        ),
+        cells=cells(SquareOnCatenaries(), (*CONSTRAINTS, Lagrange("rk4", "projection")), (1, 10)),
+        remark=(
+            "Methods by constraint ask where the contact will be, so that they stop where it can't be said. By contact "
+            "neither engine has such a ground."
+        ),
+    ),
+    Failure(
+        title="Beyond the hop, and beyond the friction",
+        expected=(
+            f"On the hill the ideal contact asks for more friction than 1 from "
+            f"{RollingOnCircle().comparable_until:.4f} s on, and at {RollingOnCircle().hop:.4f} s it would have to "
+            "pull. Ideal rolling goes on; a body with real contact slips and flies. From there on the comparison is "
+            "invalid, and it stops."
+        ),
+        cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
+        observations=partings,
+        remark=(
+            "Contact and ideal rolling part there and only there; the method by constraint follows the ideal motion to "
+            "the end, through a force that no ground could give. Neither is wrong: they are different questions."
+        ),
+    ),
+    Failure(
+        title="Chatter on curved ground",
+        expected="The body presses on the hill until it hops, so that its contact carries a force in every sample.",
+        observations=chatter,
+        remark="A contact that is let go and caught again passes on the right impulse on average, not the right force.",
+    ),
+    Failure(
+        title="Steps that tunnel",
+        expected="The body stays on the ground; with steps far too large anyone could say that it does not.",
+        cells=tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(start_rate=12.0), CONTACTS, (1,), samples)),
+        remark=(
+            "In one step the disc falls by g times the step squared before anything is looked at. At 0.4 s that is "
+            "more than its diameter; what is then on the other side of the ground is pushed out there, or never met."
+        ),
+    ),
+)
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="stability",
+        title="How nearly conformal, at which step?",
+        parameter="clearance of the hole, relative to its radius",
+        cells=tuple(
+            (clearance, Cell(DiscInHole(clearance=clearance), engine, every, "map"))
+            for engine in CONSTRAINTS
+            for clearance in CLEARANCES
+            for every in MAP_STEPS
+        ),
+        remark=(
+            "Along a diagonal the contact turns equally far in a step. Rows written into MuJoCo keep to that rule and "
+            "win with the step; a reflection loses the rotation beyond a clearance of a few hundredths at any step."
+        ),
+    ),
+)
