@@ -119,6 +119,8 @@ def test_at_the_finest_step_the_angle_error_is_what_the_order_promises(rows, sce
 @crosscheck("gap")
 def test_at_the_finest_step_the_joints_are_as_closed_as_the_order_promises(rows, scene, engine, order):
     finest = of(rows, scene, engine)[-1]
+    if not scene.mechanism().holonomic.any():
+        pytest.skip("none of its rows knows a position")
     # A joint is at most a length away from what turns: its gap is an angle error times that length.
     assert finest.gap <= bound(scene, finest.step, order) * scene.mechanism().length_scale
 
@@ -126,6 +128,8 @@ def test_at_the_finest_step_the_joints_are_as_closed_as_the_order_promises(rows,
 @crosscheck("order")
 def test_the_angle_error_falls_with_the_promised_order_or_reaches_rounding(rows, scene, engine, order):
     fine = [row for row in of(rows, scene, engine) if turning_rate(scene) * row.step <= ASYMPTOTIC]
+    if not fine:
+        pytest.skip("no step is fine enough")
     found = next(sweep for sweep in sweeps(fine) if sweep.quantity.name == "angle")
     if found.verdict is Verdict.ROUNDING:
         return

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from engines import Engine
 from engines.registry import VARIANTS
 from reference.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.joints import Skate
 from reference.parking import commutator_displacement
 from reference.scene import Scene
 from reference.scenes import SCENES
@@ -53,8 +52,8 @@ def featured(row: Measurement) -> bool:
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Constructions of a skate only where there is one."""
-    return engine not in CONSTRUCTIONS or any(isinstance(joint, Skate) for joint in scene.mechanism().joints)
+    """Constructions of a skate on the sleigh alone: backwards they are an experiment, and a pin needs none."""
+    return scene == SLEIGH or engine not in CONSTRUCTIONS
 
 
 def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:

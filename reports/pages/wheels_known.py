@@ -14,4 +14,18 @@ ORDERS: dict[str, int] = {
     "lagrange rk4 projection": 4,
 }
 
-KNOWN: dict[tuple[str, str, str], str] = {}
+ANOTHER_VEHICLE = "by design: the velocity across is set without the turning that a force at the wheel brings"
+SOFT = "by design: contacts as shipped are springs of 0.02 s and give way, whatever the step"
+ROUNDING = "ours: the hardened rows of the light casters reach their rounding at 1e-10 rad, ten times the usual"
+
+KNOWN: dict[tuple[str, str, str], str] = {
+    **{
+        (scene, "pymunk default", check): ANOTHER_VEHICLE
+        for scene in ("car_and_trailer", "cart")
+        for check in ("outcome", "error")
+    },
+    ("car_and_trailer", "pymunk default", "reaction"): ANOTHER_VEHICLE,
+    **{("car_and_trailer", "mujoco default", check): SOFT for check in ("order", "reaction")},
+    ("cart", "mujoco default", "order"): SOFT,
+    ("cart", "mujoco extended", "order"): ROUNDING,
+}

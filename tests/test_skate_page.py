@@ -1,0 +1,184 @@
+"""The skate's and the wheels' pages: their experiments' reference, their runnable lines, and what they print."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reports.pages
+from engines.lagrange import Lagrange
+from reference.checks import InvalidMechanism
+from reference.scenes import SCENES
+from reference.skate_limits import HeldBySkates, SkateOnSlope
+from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reports.cells import Cell
+from reports.choice import choose_cells, known_engines
+from reports.measure import measure
+from reports.pages import skate, skate_failures, skate_pictures, wheels, wheels_failures, wheels_pictures
+from reports.paths import Blades, Panel, paths
+from reports.paths import Path as Line
+from reports.theme import svg
+
+TEMPLATE = Path(reports.pages.__file__).parent / "skate.md"
+BLOCKS = re.findall(r"```python\n(.*?)```", TEMPLATE.read_text(encoding="utf-8"), re.DOTALL)
+
+# What each block's method promises at its step of 1e-3 s: of first order the step, of second its square, of fourth its
+# fourth power; times the 3 s and 2.6 J / 2 kg of the motion, and room for constants. Exact ones end in rounding.
+PROMISED = (1e-3, 1e-6, 1e-3, 1e-6, 1e-10)
+
+
+@pytest.mark.parametrize(("block", "bound"), tuple(zip(BLOCKS, PROMISED, strict=True)))
+def test_the_pages_lines_run_and_are_as_exact_as_the_page_says(block, bound):
+    names: dict = {}
+    exec(compile(block, "skate.md", "exec"), names)
+    truth = ChaplyginSleigh().motion([3.0]).pose[0, 0]
+    if "body" in names:
+        pose = np.array([*names["body"].position, names["body"].angle])
+    else:
+        pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates count from where the body starts
+    error = np.abs(pose - truth).max()
+    assert error < 3 * bound
+    # A bound that ten times the order's error would pass proves nothing.
+    assert error > bound / 100 or bound == PROMISED[-1]
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        SkateOnSlope(),
+        SkateOnSlope(turning_rate=2.0),
+        SkateOnSlope(turning_rate=-0.3, heading=1.0, speed=0.4),
+        SkateOnSlope(turning_rate=1e-9, heading=0.7),
+        HeldBySkates(),
+    ],
+)
+def test_skates_on_a_slope_agree_with_multipliers(scene):
+    row = measure(Cell(scene, Lagrange("dop853", "projection", tolerance=1e-13), 1, samples=50), repeat=False)
+    # Rounding of an integration to 1e-13 over some metres.
+    assert row.position < 1e-11
+    assert row.angle < 1e-11
+    assert row.reaction < 1e-10
+
+
+def test_a_turning_skate_on_a_slope_stands_as_high_as_before_after_each_turn():
+    turns = 2 * math.pi * np.arange(4)
+    pose = SkateOnSlope(turning_rate=1.0, speed=0.5).motion(turns).pose[:, 0]
+    assert np.abs(pose[:, 1]).max() < 1e-12
+    # And goes sideways by half the pull times the square of the time of a radian, each radian.
+    assert pose[:, 0] == pytest.approx(0.5 * turns, abs=1e-12)
+
+
+def test_bad_skates_on_a_slope_are_refused():
+    with pytest.raises(InvalidMechanism, match="slope"):
+        SkateOnSlope(slope=math.nan)
+    with pytest.raises(InvalidMechanism, match="mass"):
+        SkateOnSlope(mass=0.0)
+    with pytest.raises(InvalidMechanism, match="skate_on_slope"):
+        SkateOnSlope().motion([-1.0])
+    with pytest.raises(InvalidMechanism, match="2 points and 3 angles"):
+        HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0)))
+
+
+def test_two_skates_never_hold_a_body_and_three_whose_axles_meet_do_not_either():
+    with pytest.raises(InvalidMechanism, match="leave 1 freedom"):
+        HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0)), angles=(0.5, -0.5))
+    # All axles through the centre of mass: it turns about it.
+    with pytest.raises(InvalidMechanism, match="leave 1 freedom"):
+        HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))
+
+
+def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apart():
+    scene = SleighBackwards()
+    t = np.linspace(0, scene.duration, scene.samples + 1)
+    rate = scene.motion(t).twist[:, 0, 2]
+    # The square of 0.04 over the largest rate 1.6 is what the linear motion leaves out.
+    assert skate_failures.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
+    assert skate_failures.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
+    assert math.isnan(skate_failures.growth_of(t, np.full_like(t, 1e-3)))
+
+
+def test_the_lateral_force_passes_a_limit_when_the_reference_says():
+    scene, limit = skate_failures.SLIDING, skate_failures.FRICTION_LIMITS[1]
+    when = skate_failures.first_beyond(scene, limit)
+    assert when is not None
+    before, after = np.abs(scene.lateral_force([when - 2e-3, when]))
+    assert before < limit <= after
+    assert skate_failures.first_beyond(scene, 1.01 * skate_failures.PEAK) is None
+
+
+def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_before():
+    told = {(o.method, o.setting): o.outcome for o in skate_failures.slipping()}
+    for limit in skate_failures.FRICTION_LIMITS:
+        exact = told["exact lateral force", f"{limit:g} N"]
+        for method in ("pymunk groove with max_force", "mujoco tendon with friction loss"):
+            outcome = told[method, f"{limit:g} N"]
+            if "never" in exact:
+                assert outcome == "holds"
+                continue
+            times = [float(re.search(r"at ([\d.]+) s", words).group(1)) for words in (exact, outcome)]
+            # Slip starts from zero with the force's excess: a few tenths of a second until it shows.
+            assert 0 <= times[1] - times[0] < 0.3
+
+
+def test_the_trailer_folds_in_the_kinematics_when_the_closed_form_says():
+    told = {o.method: o.outcome for o in wheels_failures.folding() if not o.setting}
+    closed, driven = told["closed form, at an even speed"], told["the reference, driven at an even speed"]
+    assert closed == driven
+    assert told["the drawbar pushed along by that way"] == f"bent by {math.pi / 2:.4f} rad"
+    # A coasting car gives speed to the trailer's turning, or gets some from it: another instant.
+    assert told["the reference, coasting"] != closed
+
+
+def test_counting_tells_what_the_rows_leave():
+    told = {o.method: o.outcome for o in skate_failures.counting()}
+    assert told["pinned body (18.62)"].startswith("(1, 1); integrable")
+    assert told["one skate (18.64)"].startswith("(3, 2); not integrable")
+    assert told["two skates on one axle"] == told["one skate (18.64)"]
+    assert told["two skates in one line"] == "(3, 1); integrable: of 3 it can reach 1"
+    assert told["three skates"].startswith("(3, 0)")
+    assert "| car_and_trailer | 5 | (4, 1) | 1 | integrable |" in wheels.counted(wheels.SCENES_HERE)
+
+
+def test_a_run_has_the_named_methods_of_a_page_and_those_of_its_experiments():
+    engines = known_engines((skate.PAGE,))
+    cells = choose_cells(skate.SCENES_HERE, engines, (skate.PAGE,), full=False)
+    swept = {(cell.scene.name, cell.engine.variant) for cell in cells if cell.purpose == "sweep"}
+    assert ("sleigh", "skate: reflection") in swept
+    # Nothing constructs a skate where there is none.
+    assert ("pinned_body", "skate: reflection") not in swept
+    assert {cell for failure in skate.PAGE.failures for cell in failure.cells} <= set(cells)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_a_scene_travels_to_another_process_after_it_was_used(scene):
+    scene.mechanism()
+    again = pickle.loads(pickle.dumps(scene))
+    assert again == scene
+    assert repr(again) == repr(scene)
+
+
+def test_pictures_of_the_reference_are_drawn_and_the_same_each_time():
+    for picture in (
+        skate_pictures.parking,
+        skate_pictures.slope,
+        wheels_pictures.tows,
+        wheels_pictures.casters,
+        wheels_pictures.reversing,
+    ):
+        text = svg(picture(), "a picture")
+        assert text.startswith("<?xml")
+    assert svg(skate_pictures.slope(), "a picture") == svg(skate_pictures.slope(), "a picture")
+
+
+def test_a_wrong_motion_does_not_stretch_a_picture_and_a_broken_one_is_no_error():
+    near, far = np.array([[0.0, 0.0], [1.0, 1.0]]), np.array([[0.0, 0.0], [math.nan, 0.0], [9.0, 9.0]])
+    panel = Panel("t", [Line(near), Line(far, "wrong", framed=False)], [Blades([[0.5, 0.5, 0.0]], 0.2)])
+    low, high = panel.corners()
+    assert (low >= 0).all()
+    assert (high <= 1).all()
+    assert "<svg" in svg(paths([panel]), "t")
