@@ -24,7 +24,7 @@ FULL = (1, 3, 10, 30, 100, 300, 1000)
 # so that the grid (and errors.csv) is the same on every machine.
 COST_LIMIT = 2.0
 # A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
-QUICK_LIMIT = 5.0
+QUICK_LIMIT = 7.0
 
 # About what one step costs [s] with three bodies: an engine may say better in `step_cost` (a number or property).
 STEP_COST = {"pymunk": 2e-6, "mujoco": 12e-6, "lagrange": 400e-6}
@@ -88,11 +88,11 @@ def step_cost(engine: Any, mechanism: Mechanism | None = None) -> float:
     An engine that wraps another (`engine`) and runs it at several `levels` takes that many of its steps; one that
     chooses by the mechanism (`chosen`) costs what it has `chosen`; sweeps over many joints are counted.
     """
+    if mechanism is not None and hasattr(engine, "chosen"):
+        return step_cost(engine.chosen(mechanism), mechanism)
     own = getattr(engine, "step_cost", None)
     if own is not None:
         return float(own)
-    if mechanism is not None and hasattr(engine, "chosen"):
-        return step_cost(engine.chosen(mechanism), mechanism)
     if hasattr(engine, "levels") and hasattr(engine, "engine"):
         return sum(engine.levels) * step_cost(engine.engine, mechanism)
     cost = STEP_COST.get(engine.name, UNKNOWN_STEP_COST)

@@ -121,7 +121,7 @@ def test_the_benchmark_starts_upright_with_one_metre_a_second() -> None:
         assert (scene.loops, scene.duration) == (loops, duration)
         assert np.abs(mechanism.pose[0] - [0, 0.5, math.pi / 2]).max() < 1e-15
         assert np.abs(mechanism.twist[0] - [0.5, 0, -1]).max() < 1e-15
-    assert FortyFourBars().samples == 400
+    assert FortyFourBars().samples == 100
 
 
 def test_bad_chains_are_refused() -> None:

@@ -1,0 +1,56 @@
+"""The N-four-bar's page: a chain whose one freedom becomes N + 1 twice a turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from engines.registry import VARIANTS
+from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes import SCENES
+from reports.page import Material, Page
+from reports.pages.chain_orders import CLOSED
+from reports.pages.n_four_bar_failures import FAILURES, MAPS, SOFT
+from reports.pages.n_four_bar_known import KNOWN
+from reports.pages.told import told
+from reports.stroboscope import Strip, stroboscope
+from reports.theme import svg
+
+NAME = "n_four_bar"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Stroboscopic pictures of the truth: two loops and ten from upright, and two through the singular position."""
+    two, ten = NFourBar(), TenFourBars()
+    line = float(two.singular_times(5.0)[0])
+    strips = (
+        Strip(two, "Two loops", 7, end=0.9),
+        Strip(two, "Through the singular position", 7, start=line - 0.15, end=line + 0.15),
+        Strip(ten, "Ten loops", 6, end=1.0),
+    )
+    return {"stroboscope": svg(stroboscope(strips), "N four-bars in motion")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows, and the exact instants of each scene."""
+    exact = {
+        scene.name: {"period": scene.period, "singular": [float(t) for t in scene.singular_times(scene.period)]}
+        for scene in (NFourBar(), TenFourBars(), FortyFourBars())
+    }
+    return {**told(material, SCENES_HERE, {"soft": SOFT}), "exact": exact}
+
+
+PAGE = Page(
+    name=NAME,
+    title="N four-bars side by side",
+    lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: where a method goes on is its own.",
+    scenes=SCENES_HERE,
+    engines=VARIANTS,
+    failures=FAILURES,
+    maps=MAPS,
+    figures=figures,
+    words=words,
+    orders=CLOSED,
+    known=KNOWN,
+)

@@ -1,0 +1,60 @@
+"""The pendulums' page: one link to a hundred, as a tree and with every joint a constraint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from engines import mujoco
+from engines.registry import VARIANTS
+from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.pendulum import BarPendulum
+from reference.scenes import SCENES
+from reports.page import FEATURED, Material, Page
+from reports.pages.chain_orders import OPEN
+from reports.pages.pendulum_failures import FAILURES, MAPS, SOLVED
+from reports.pages.pendulum_known import KNOWN
+from reports.pages.told import told
+from reports.stroboscope import Strip, stroboscope
+from reports.theme import svg
+
+NAME = "pendulum"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+# Every joint an equality on bodies that are free in the plane: what the coordinates alone are worth.
+FREE = (replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"), SOLVED)
+SHOWN = (*FEATURED, *(engine.variant for engine in FREE))
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Stroboscopic pictures of the truth."""
+    one, two, ten, hundred = BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks()
+    end = ((one.length / 2, 0.0),)
+    strips = (
+        Strip(one, "One link", 12, end=1.1, ends={"link 1": end}),
+        Strip(two, "Two links, and the path of the tip", 21, end=2.0, ends={"link 2": end}, trace=("link 2", end[0])),
+        Strip(ten, "Ten links", 11, end=2.0, ends={"link 10": end}),
+        Strip(hundred, "A hundred links", 9, ends={"link 100": end}),
+    )
+    return {"stroboscope": svg(stroboscope(strips), "Pendulums of one, two, ten and a hundred links in motion")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    return told(material, SCENES_HERE)
+
+
+PAGE = Page(
+    name=NAME,
+    title="Pendulums of 1, 2, 10 and 100 links",
+    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that impulses must find by sweeping.",
+    scenes=SCENES_HERE,
+    engines=(*VARIANTS, *FREE),
+    failures=FAILURES,
+    maps=MAPS,
+    featured=lambda row: row.variant in SHOWN,
+    figures=figures,
+    words=words,
+    orders={**OPEN, "mujoco default, free coordinates": 1, "mujoco extended, free, sparse Newton": 4},
+    known=KNOWN,
+)
