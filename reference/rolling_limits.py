@@ -52,8 +52,8 @@ class DiscInHole(RollingScene):
     def inertia(self) -> float:
         return self.mass * self.radius**2 / 2
 
-    @property
-    def comparable_until(self) -> float:
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
         """The hole presses with mass clearance hole (w radius / (clearance hole))^2 and needs no friction: always."""
         return math.inf
 
@@ -106,8 +106,8 @@ class SquareOnCatenaries(RollingScene):
         rolling = Rolling.at_arcs(self.body_curve(), self.ground_curve())
         return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
 
-    @property
-    def comparable_until(self) -> float:
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
         """The arch is never too steep for a friction of 1 before the corner: what ends the motion is the corner."""
         return math.inf
 

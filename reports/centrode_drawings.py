@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from reference.centrodes import Centrodes
 from reference.contact import turned
 from reference.curve import Array
+from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reports.drawings import draw_ground, draw_pose
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
@@ -30,7 +31,7 @@ def draw_centrodes(
             joints = mechanism.bodies[body].name
             for joint in mechanism.joints:
                 # The lines of crank and rocker, produced to the centre.
-                if joint.first is None and joint.second not in (None, joints) and hasattr(joint, "first_point"):
+                if isinstance(joint, Pin) and joint.first is None and joint.second != joints:
                     line = np.stack([np.asarray(joint.first_point), centre])
                     panel.plot(*line.T, color=theme.grid, linewidth=1.2, zorder=0)
             panel.plot(*curves.space.T, color=theme.pymunk, linewidth=2, zorder=1)

@@ -3,6 +3,14 @@
 from __future__ import annotations
 
 from reports.page import Page
-from reports.pages import errata, four_bar, scaling, skate, wheels
+from reports.pages import centrodes, errata, four_bar, rolling, scaling, skate, wheels
 
-PAGES: tuple[Page, ...] = (four_bar.PAGE, skate.PAGE, wheels.PAGE, scaling.PAGE, errata.PAGE)
+PAGES: tuple[Page, ...] = (
+    four_bar.PAGE,
+    skate.PAGE,
+    wheels.PAGE,
+    scaling.PAGE,
+    rolling.PAGE,
+    centrodes.PAGE,
+    errata.PAGE,
+)

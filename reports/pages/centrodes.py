@@ -124,7 +124,7 @@ def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
 PAGE = Page(
     name="centrodes",
     title="Centrodes: any motion as rolling",
-    lesson="Every plane motion is one curve rolling on another, and the instant centre shows an engine's velocity error.",
+    lesson="Every plane motion is one curve rolling on another, and the instant centre shows errors of velocity.",
     scenes=(),
     engines=(),
     figures=figures,
