@@ -23,6 +23,7 @@ MARKERS = {"pymunk": "o", "mujoco": "s", "lagrange": "^"}
 LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)))
 FILLS = ("empty", "left", "full", "bottom", "top")
 COLUMNS = 2
+LONG_NAME = 30  # letters: beyond, four names don't fit side by side
 
 Featured = Callable[[Measurement], bool]
 
@@ -93,7 +94,9 @@ def _finish(panel: Axes) -> None:
 
 
 def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
-    legend = figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, handlelength=3.2)
+    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
+    columns = 4 if longest <= LONG_NAME else 3
+    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, handlelength=3.2)
     for text in legend.get_texts():
         text.set_color(theme.ink)
 

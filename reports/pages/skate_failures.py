@@ -261,7 +261,7 @@ FAILURES: tuple[Failure, ...] = (
         expected="An ideal skate at zero speed holds as much as it must. Nothing turns it: it rests for ever.",
         cells=_cells(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "reaction"),
-        remark="What is held by a spring or by friction creeps: the force needs a slip to exist.",
+        remark="A row that is at all soft creeps: its force needs a slip to exist. Friction that sticks does not.",
     ),
     Failure(
         title="Turning on a slope",
@@ -308,12 +308,16 @@ MAPS: tuple[StabilityMap, ...] = (
     StabilityMap(
         name="offsets",
         title="How far may the centre of mass be from the skate, at which step?",
-        parameter="offset of the centre of mass ahead of the skate [m]",
+        parameter="offset of the centre of mass [m]",
         cells=tuple(
             (offset, Cell(ChaplyginSleigh(offset=offset), engine, every, "map", samples))
             for engine in MAPPED
             for offset in OFFSETS
             for samples, every in MAP_STEPS
+        ),
+        remark=(
+            "Positive: ahead of the skate. A method that holds the row does not care for the offset; the naive zeroing "
+            "is right where the centre of mass is on the skate, and nowhere else."
         ),
     ),
 )

@@ -37,13 +37,14 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 def figures(material: Material) -> dict[str, str]:
     """Both vehicles coasting, tows, casters, and the trailer that folds."""
     panels = []
-    for title, scene in (("car and trailer, 5 s", CarAndTrailer()), ("cart with two casters, 3 s", Cart())):
+    for title, scene in (
+        ("car and trailer, 5 s, steps of 1e-2 s", CarAndTrailer()),
+        ("cart with two casters, 3 s", Cart()),
+    ):
         cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
         made = material.trajectories(tuple(cells.values()))
         truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
-        found = {
-            f"{name}, step 1e-2 s": (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made
-        }
+        found = {name: (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made}
         panels.append(wheels_pictures.coasting(truth, found, title))
     return {
         "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),
