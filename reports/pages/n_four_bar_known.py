@@ -25,10 +25,9 @@ KNOWN: dict[tuple[str, str, str], str] = {
     **{(scene, "pymunk tuned", "error"): SWEPT for scene in (TWO, TEN)},
     (TEN, "pymunk tuned", "reaction"): SWEPT,
     **{
-        (scene, "pymunk extended", check): EXTRAPOLATED
-        for scene in (TWO, TEN, FORTY)
-        for check in ("outcome", "error", "gap")
+        (scene, "pymunk extended", check): EXTRAPOLATED for scene in (TWO, TEN, FORTY) for check in ("outcome", "error")
     },
+    **{(scene, "pymunk extended", "gap"): EXTRAPOLATED for scene in (TWO, TEN)},
     **{(scene, "pymunk extended", "reaction"): EXTRAPOLATED for scene in (TEN, FORTY)},
     **{(scene, "mujoco default", "outcome"): SOFT for scene in (TWO, TEN, FORTY)},
     (TWO, "mujoco default", "error"): SOFT,
@@ -36,5 +35,5 @@ KNOWN: dict[tuple[str, str, str], str] = {
     **{(TWO, method, "order"): STEP for method in ("mujoco tuned", "mujoco extended")},
     **{(scene, "mujoco tuned", "reaction"): STEP for scene in (TWO, TEN)},
     **{(scene, "lagrange euler projection", "outcome"): EULER for scene in (TWO, TEN, FORTY)},
-    **{(scene, "lagrange euler projection", "error"): EULER for scene in (TWO, TEN)},
+    **{(scene, "lagrange euler projection", "error"): EULER for scene in (TWO, TEN, FORTY)},
 }

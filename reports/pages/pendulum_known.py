@@ -17,9 +17,6 @@ HUNDRED = "by design: 300 sweeps do not converge on a hundred links, which leave
 KNOWN: dict[tuple[str, str, str], str] = {
     **{(f"pendulum_{n}", "lagrange euler projection", "outcome"): EULER for n in (1, 10, 100)},
     **{("pendulum_100", "lagrange euler projection", check): EULER for check in ("error", "reaction")},
-    ("pendulum_1", "lagrange rk4 projection", "order"): (
-        "by design: the observed order is 3.69 because the leading errors of the angle cancel at the coarsest step"
-    ),
     **{
         ("pendulum_100", method, "error"): FAST
         for method in (
