@@ -148,8 +148,13 @@ def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measu
         twist=trajectory.twist[:count],
         reaction=trajectory.reaction[:count],
     )
-    errors: dict[str, Any] = constraint_errors(mechanism, finite) if count else {}
+    errors: dict[str, Any] = {}
     note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
+    try:
+        errors |= constraint_errors(mechanism, finite) if count else {}
+    except ValueError as reason:  # it went where the joint itself is not defined: beyond a corner, say
+        told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
+        return replace(row, outcome=Outcome.REFUSED, sentence=told)
     try:
         truth = _truth(cell.scene, np.ascontiguousarray(finite.t, dtype=float).tobytes())
         errors |= motion_errors(cell.scene, mechanism, truth, finite)

@@ -31,10 +31,16 @@ def row(scene, engine, every, samples=None):
     return measure(Cell(scene, engine, every, samples=samples), repeat=False)
 
 
+def run_of(measured, scene, engine, every):
+    """What a function of a cell and its whole motion makes of a run."""
+    cell = Cell(scene, engine, every)
+    return measured(cell, trajectory_of(cell))
+
+
 @pytest.mark.parametrize("engine", [pymunk.TUNED, mujoco.TUNED], ids=lambda engine: engine.name)
 def test_real_contact_parts_from_the_ideal_motion_where_it_must_slip_or_hop_and_only_there(engine):
     scene = RollingOnCircle()
-    coarse, fine = (parting(scene, engine, every) for every in (10, 100))
+    coarse, fine = (run_of(parting, scene, engine, every) for every in (10, 100))
     # Up to that instant the error is the method's, of first order: a tenth of the step, about a tenth of the error.
     assert fine[0] < 0.3 * coarse[0]
     assert fine[0] < 1e-3
@@ -43,11 +49,11 @@ def test_real_contact_parts_from_the_ideal_motion_where_it_must_slip_or_hop_and_
     # Where it never must, they never part.
     flat = RollingDisc()
     assert flat.comparable_until == math.inf
-    assert parting(flat, engine, 100)[1] < 1e-2
+    assert run_of(parting, flat, engine, 100)[1] < 1e-2
 
 
 def test_a_constraint_follows_the_ideal_motion_where_no_contact_could():
-    before, after = parting(RollingOnCircle(), mujoco.EXTENDED, 10)
+    before, after = run_of(parting, RollingOnCircle(), mujoco.EXTENDED, 10)
     assert max(before, after) < 1e-8
 
 
@@ -131,7 +137,8 @@ def test_a_square_stands_on_its_corner_when_energy_says_and_the_reference_stops_
 
 def test_every_method_stops_at_the_corner_and_was_right_until_there():
     scene = SquareOnCatenaries()
-    for engine in (pymunk_rolls.PIVOT, mujoco.EXTENDED, Lagrange("rk4", "projection")):
+    # The reflection is beyond the corner in its last sample, where the joint has no gap that could be measured.
+    for engine in (pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED, mujoco.EXTENDED, Lagrange("rk4", "projection")):
         found = row(scene, engine, 1)
         assert not Outcome(found.outcome).comparable
         assert found.sentence
@@ -140,8 +147,8 @@ def test_every_method_stops_at_the_corner_and_was_right_until_there():
 
 def test_contact_on_a_hill_is_let_go_and_caught_again():
     stiff = next(method for method in mujoco_rolls.METHODS if "stiff" in method.variant)
-    assert absent_contact(stiff, 100) > 0.02
-    assert absent_contact(mujoco.EXTENDED, 10) == 0.0
+    assert run_of(absent_contact, RollingOnCircle(), stiff, 100) > 0.02
+    assert run_of(absent_contact, RollingOnCircle(), mujoco.EXTENDED, 10) == 0.0
 
 
 def test_forces_that_motion_does_not_determine_are_left_out_of_the_gears_errors():
