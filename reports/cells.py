@@ -22,7 +22,7 @@ FULL = (1, 3, 10, 30, 100, 300, 1000)
 
 # A step of the full grid is left out when one run would take about this long [s]. The estimate is fixed, not measured,
 # so that the grid (and errors.csv) is the same on every machine.
-COST_LIMIT = 2.0
+COST_LIMIT = 0.7
 # A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
 QUICK_LIMIT = 7.0
 
