@@ -191,7 +191,7 @@ def draw_gears(scene: EllipticGears, theme: Theme = LIGHT) -> Figure:
                 panel.plot(2 * scene.major * gear, 0.0, "^", color=theme.ink, markersize=6)
                 spoke = np.stack([[2 * scene.major * gear, 0.0], pose[:2]])
                 panel.plot(*spoke.T, color=colour, linewidth=1.0)
-            reach = scene.major * (1 + scene.eccentricity)
+            reach = 1.06 * scene.major * (1 + scene.eccentricity)
             panel.set_xlim(-reach, 2 * scene.major + reach)
             panel.set_ylim(-reach, reach)
         panel = figure.add_subplot(grid[1, :])
