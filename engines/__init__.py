@@ -36,8 +36,8 @@ class Size:
 class Run(Protocol):
     """A built model, ready to be stepped once."""
 
-    size: Size
-
+    @property
+    def size(self) -> Size: ...
     def __call__(self, samples: int, every: int) -> Trajectory: ...
 
 

@@ -90,4 +90,4 @@ class Antiderivative:
         width = self._edges[which + 1] - self._edges[which]
         place = 2 * (flat - self._edges[which]) / width - 1
         out = (self._starts[which] + _series_at(self._series[which], place)).reshape(times.shape)
-        return out.real if self._real else out
+        return np.real(out) if self._real else out

@@ -69,7 +69,7 @@ class CoastingScene(Scene):
         allowed, changing = np.real(stepped), np.imag(stepped) / COMPLEX_STEP
         weighted = np.swapaxes(allowed * self.inertias[:, None], -1, -2)
         centripetal = changing @ nu[..., None]
-        speeding = np.linalg.solve(weighted @ allowed, -(weighted @ centripetal))
+        speeding: Array = np.asarray(np.linalg.solve(weighted @ allowed, -(weighted @ centripetal)), dtype=np.float64)
         return speeding[..., 0], (allowed @ nu[..., None])[..., 0], (allowed @ speeding + centripetal)[..., 0]
 
     @cached_property

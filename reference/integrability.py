@@ -94,7 +94,7 @@ def _bracket(one: Rows, two: Rows) -> Rows:
 def _fields(rows: Rows, place: Array) -> list[Rows]:
     """Analytic fields that span the allowed motions near the place: its null space, projected along the motion."""
     here = rows(place)
-    _, upper, pivot = qr(here.T, mode="economic", pivoting=True)
+    _, upper, pivot = qr(here.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
     diagonal = np.abs(np.diag(upper))
     rank = int(np.sum(diagonal > RANK_TOLERANCE * max(float(diagonal.max(initial=0.0)), 1.0)))
     kept = np.sort(pivot[:rank])

@@ -6,8 +6,8 @@ it. A joint has `name`; `first` and `second`, names of bodies or None for the gr
 two bodies (..., 3), the ground's zero, `gap(first, second, t)` (..., size) and `rows(first, second)` (..., size, 6),
 whose columns are the first body's x, y, angle and then the second's. Rows are analytic functions, so a complex step
 passes through them. The reaction of a row acts along it on the second body, and against it on the first.
-`mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis. A kind with
-`stackable = False` is evaluated joint by joint.
+`mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis. A kind
+with `stackable = False` is evaluated joint by joint.
 """
 
 from __future__ import annotations

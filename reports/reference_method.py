@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -26,8 +25,13 @@ ROUNDING = 1e-9  # relative: numbers that were made from one another
 class BandedChain:
     """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
 
-    name: ClassVar[str] = "reference"
-    variant: ClassVar[str] = "banded rk4"
+    @property
+    def name(self) -> str:
+        return "reference"
+
+    @property
+    def variant(self) -> str:
+        return "banded rk4"
 
     def build(self, mechanism: Mechanism, dt: float) -> BandedRun:
         """Raises Unsupported unless uniform bars hang on one another from a pin at the origin."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal, get_args
+from typing import Literal, get_args
 
 import mujoco
 
@@ -74,7 +74,6 @@ class MuJoCo:
     skates: SkateBy = "blade"
     euler_for_skates: bool = True
     rolls: RollBy = field(default_factory=RollContact)
-    name: ClassVar[str] = "mujoco"
 
     def __post_init__(self) -> None:
         for setting, valid in (
@@ -109,6 +108,10 @@ class MuJoCo:
     def step_cost(self) -> float:
         """About how long one step takes [s]: a completed contact is read and written entry by entry in every stage."""
         return 40e-6 if isinstance(self.rolls, CompletedContact) else 12e-6
+
+    @property
+    def name(self) -> str:
+        return "mujoco"
 
     def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
         """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
