@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, require_finite
-from reference.curve import Array
-from reference.rolling import Rolling
-from reference.traced import FEWEST, STILL, Traced, spline
+from reference.curves.curve import Array
+from reference.curves.traced import FEWEST, STILL, Traced, spline
+from reference.rolling.kinematics import Rolling
 from reference.trajectory import Trajectory
 
 # A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is

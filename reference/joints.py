@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import require_finite
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 Vector = tuple[float, float]
 

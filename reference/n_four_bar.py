@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
-from reference.pendulum import Pendulum, across, direction_of
+from reference.pendulum.link import Pendulum, across, direction_of
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 

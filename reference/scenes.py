@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import difflib
 
-from reference.cart import Cart
-from reference.elliptic_gears import EllipticGears
-from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.pendulum import BarPendulum, PointPendulum
-from reference.person import OneFoot
-from reference.person_swaying import SwayingOnOneFoot
-from reference.person_two_feet import TwoFeet
-from reference.pinned_body import FreelyPinnedBody, PinnedBody
-from reference.rolling_scenes import (
+from reference.pendulum.link import BarPendulum, PointPendulum
+from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot
+from reference.person.two_feet import TwoFeet
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -23,9 +21,11 @@ from reference.rolling_scenes import (
     RollingOnCircle,
 )
 from reference.scene import Scene
-from reference.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.wheels import CarAndTrailer
+from reference.skate.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
 
 SCENES: tuple[Scene, ...] = (
     DrivenFourBar(),

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from reference.centrodes import Centrodes, from_poses
 from reference.checks import InvalidMechanism, require_positive
-from reference.curve import Array
+from reference.curves.curve import Array
 
 COLUMNS = ("t", "x", "y", "angle")
 

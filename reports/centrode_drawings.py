@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from reference.centrodes import Centrodes
-from reference.contact import turned
-from reference.curve import Array
+from reference.curves.curve import Array
 from reference.joints import Pin
 from reference.mechanism import Mechanism
+from reference.rolling.contact import turned
 from reports.drawings import draw_ground, draw_pose
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 

@@ -18,7 +18,7 @@ def errata(
     engines: Annotated[bool, typer.Option("--engines", help="What engines say of it too (some seconds).")] = False,
 ) -> None:
     """The chapter's printed slips: each formula's value as printed and as it must be, and what decides."""
-    from reference.errata import ERRATA, WORD_SLIPS
+    from reference.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.terminal import print_table
 
     known = sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
@@ -47,7 +47,7 @@ def errata(
 
 def rows_of_slips() -> list[tuple[str, ...]]:
     """A row a slip under HEADER, by number; those in words have no values."""
-    from reference.errata import ERRATA, WORD_SLIPS
+    from reference.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.pages.errata import digits
     from reports.tables import number
 

@@ -14,17 +14,17 @@ import numpy as np
 
 from engines import Engine, Unsupported, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference import errata_pendulum as pendulum
-from reference.errata_four_bar import closed_form, integrated
-from reference.errata_four_bar import rates as printed_rates
-from reference.errata_skate import acceleration_of_g
-from reference.erratum import Array, Values
-from reference.four_bar_scenes import DrivenFourBar
+from reference.errata import pendulum
+from reference.errata.erratum import Array, Values
+from reference.errata.four_bar import closed_form, integrated
+from reference.errata.four_bar import rates as printed_rates
+from reference.errata.skate import acceleration_of_g
+from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Pin
-from reference.link_chain import Chain
 from reference.mechanism import Body, Mechanism
-from reference.rolling_scenes import RollingOnCircle
-from reference.sleigh import ChaplyginSleigh
+from reference.pendulum.chain import Chain
+from reference.rolling.scenes import RollingOnCircle
+from reference.skate.sleigh import ChaplyginSleigh
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from engines import Size, Unsupported, check_counts, check_step
 from reference.joints import Pin
-from reference.link_chain import Array, Chain
 from reference.mechanism import Mechanism
+from reference.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
 
 ROUNDING = 1e-9  # relative: numbers that were made from one another

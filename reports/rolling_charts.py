@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reference.curves import Line
-from reference.ellipse import Ellipse
-from reference.rolling import Rolling
-from reference.rolling_scenes import RollingScene
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Line
+from reference.rolling.kinematics import Rolling
+from reference.rolling.scenes import RollingScene
 from reports.measure import Measurement
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 

@@ -10,14 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reference.contact import turned
-from reference.curve import Array, Curve, Placed, Vector
-from reference.curves import Circle, Line, Ring, Side
-from reference.ellipse import Ellipse
-from reference.elliptic_gears import EllipticGears
-from reference.open_curves import Catenary, Parabola
-from reference.roll import Roll
-from reference.rolling import Rolling
+from reference.curves.curve import Array, Curve, Placed, Vector
+from reference.curves.ellipse import Ellipse
+from reference.curves.open import Catenary, Parabola
+from reference.curves.round import Circle, Line, Ring, Side
+from reference.rolling.contact import turned
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 POINTS = 241

@@ -6,7 +6,7 @@ import numpy as np
 
 from reference.centrodes import Centrodes
 from reference.checks import InvalidMechanism
-from reference.curve import Array
+from reference.curves.curve import Array
 
 CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
 

@@ -13,10 +13,10 @@ import pytest
 from engines.lagrange import Lagrange
 from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses, instant_centre
 from reference.checks import InvalidMechanism
-from reference.ellipse import Ellipse
-from reference.four_bar import FourBar
-from reference.rolling import Rolling
-from reference.rolling_scenes import RollingDisc, RollingEllipse, RollingInRing
+from reference.curves.ellipse import Ellipse
+from reference.four_bar.linkage import FourBar
+from reference.rolling.kinematics import Rolling
+from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
 from reference.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
 from reference.trajectory import Trajectory
 

@@ -12,12 +12,12 @@ import pytest
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
-from reference.link_chain_scenes import LinkPendulum
 from reference.n_four_bar import NFourBar
-from reference.person_two_feet import TwoFeet
-from reference.slider_crank_limits import RodEndInSlot, SliderAtDeadCentre
-from reference.slider_crank_scenes import DrivenSliderCrank
-from reference.spinning_ring import SpinningRing
+from reference.pendulum.scenes import LinkPendulum
+from reference.person.two_feet import TwoFeet
+from reference.rolling.spinning_ring import SpinningRing
+from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
+from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.trajectory import energy, joint_gap, slip
 from reports.cells import QUICK_LIMIT, Cell, estimated_cost, sweep_cells
 from reports.measure import measure

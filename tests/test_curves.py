@@ -8,14 +8,14 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.cam import Cam
 from reference.checks import InvalidMechanism
-from reference.curve import Placed
-from reference.curves import Circle, Line, Ring, Side
-from reference.ellipse import Ellipse
-from reference.monotone import solve_increasing
-from reference.open_curves import Catenary, LogSpiral, Parabola
-from reference.traced import Traced
+from reference.curves.cam import Cam
+from reference.curves.curve import Placed
+from reference.curves.ellipse import Ellipse
+from reference.curves.open import Catenary, LogSpiral, Parabola
+from reference.curves.round import Circle, Line, Ring, Side
+from reference.curves.traced import Traced
+from reference.numerics.monotone import solve_increasing
 
 COSINES, SINES = (0.05, 0.02, 0.01), (0.0, 0.03)
 

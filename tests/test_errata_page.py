@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reference.errata import ERRATA, WORD_SLIPS
-from reference.errata_rolling import rolling_acceleration
+from reference.errata.catalogue import ERRATA, WORD_SLIPS
+from reference.errata.rolling import rolling_acceleration
 from reports import __main__ as command_line
 from reports import referees
 from reports.page import Material

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.four_bar import FourBar, Unreachable
+from reference.four_bar.linkage import FourBar, Unreachable
 from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.four_bar import Unreachable
-from reference.four_bar_limits import OverdrivenFourBar, Parallelogram
+from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
+from reference.four_bar.linkage import Unreachable
 
 
 def test_the_parallel_motion_closes_the_joints_through_both_change_points():

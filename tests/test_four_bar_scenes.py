@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from reference.checks import InvalidMechanism
-from reference.four_bar import Unreachable
-from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.four_bar.linkage import Unreachable
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.scenes import SCENES, scene
 from reference.trajectory import energy, joint_gap, slip
 

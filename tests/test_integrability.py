@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.cart import Cart
 from reference.checks import InvalidMechanism
-from reference.integrability import (
+from reference.joints import Pin, Skate
+from reference.mechanism import Body, Mechanism
+from reference.skate.integrability import (
     curl_along,
     exterior_derivatives,
     freedoms_by_brackets,
@@ -16,11 +17,10 @@ from reference.integrability import (
     mechanism_is_integrable,
     obstruction,
 )
-from reference.joints import Pin, Skate
-from reference.mechanism import Body, Mechanism
-from reference.pinned_body import PinnedBody
-from reference.sleigh import ChaplyginSleigh
-from reference.wheels import CarAndTrailer
+from reference.skate.pinned_body import PinnedBody
+from reference.skate.sleigh import ChaplyginSleigh
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
 from tests.mechanisms import four_bar
 
 POINT = (0.4, -0.7)

@@ -9,10 +9,10 @@ import pytest
 from scipy.special import jn_zeros
 
 from reference.checks import InvalidMechanism
-from reference.integration import IntegrationFailed, integrate
-from reference.link_chain import Chain, accelerations, velocities
-from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.pendulum import BarPendulum
+from reference.numerics.integration import IntegrationFailed, integrate
+from reference.pendulum.chain import Chain, accelerations, velocities
+from reference.pendulum.link import BarPendulum
+from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap, slip
 
 

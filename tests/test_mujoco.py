@@ -13,7 +13,7 @@ from engines import Unsupported
 from engines.mujoco import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
 from engines.mujoco.engine import refuse_wrong_version
 from engines.mujoco.solution import unsolved
-from reference.four_bar_scenes import DrivenFourBar, FreeFourBar
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy

@@ -15,13 +15,13 @@ from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo, roll_contact
 from engines.mujoco.roll_rows import roll_rows
 from engines.mujoco.roll_table import RollTable
 from engines.mujoco.rolls import METHODS, CompletedContact, RollContact, RollEquality, RollRows
-from reference.curve import Curve, Placed
-from reference.curves import Circle, Line, Ring, Side
-from reference.elliptic_gears import EllipticGears
+from reference.curves.curve import Curve, Placed
+from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
-from reference.roll import Roll
-from reference.rolling import Rolling
-from reference.rolling_scenes import (
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

@@ -17,12 +17,12 @@ from engines.mujoco.skating import skate_rows
 from engines.mujoco.slots import slot_rows
 from engines.mujoco.tree import spanning_tree
 from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_writer
-from reference.cart import Cart
 from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.sleigh import ChaplyginSleigh
+from reference.skate.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory, energy
-from reference.wheels import CarAndTrailer
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
 from tests.mechanisms import bar, four_bar
 
 SLEIGH = ChaplyginSleigh()

@@ -12,13 +12,13 @@ import pytest
 from engines import Unsupported, lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from reference.joints import Drive, Joint, Pin, Slot
-from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.mechanism import Body, Mechanism
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.pendulum import BarPendulum, PointPendulum
-from reference.person import OneFoot
-from reference.person_two_feet import TwoFeet
-from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.pendulum.link import BarPendulum, PointPendulum
+from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.person.one_foot import OneFoot
+from reference.person.two_feet import TwoFeet
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import energy
 
 FREE_COORDINATES = replace(EXTENDED, coordinates="free")

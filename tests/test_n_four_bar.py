@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 from reference.checks import InvalidMechanism
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.pendulum import Pendulum
+from reference.pendulum.link import Pendulum
 from reference.trajectory import energy, joint_gap, slip
 
 SCENES = [NFourBar(loops=1), NFourBar(), NFourBar(loops=3, length=0.7, mass=2.0, speed=-2.5), TenFourBars()]

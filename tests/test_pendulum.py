@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.elliptic import incomplete, jacobi, quarter_period
 from reference.mechanism import Mechanism
-from reference.pendulum import BarPendulum, Pendulum, PointPendulum
+from reference.numerics.elliptic import incomplete, jacobi, quarter_period
+from reference.pendulum.link import BarPendulum, Pendulum, PointPendulum
 from reference.trajectory import energy, joint_gap, slip
 
 FREQUENCY = 3.0

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reference.body_segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
 from reference.checks import InvalidMechanism
-from reference.person import OneFoot
-from reference.person_swaying import UPRIGHT, SwayingOnOneFoot, modes_upright
-from reference.person_two_feet import TwoFeet
+from reference.person.one_foot import OneFoot
+from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
+from reference.person.swaying import UPRIGHT, SwayingOnOneFoot, modes_upright
+from reference.person.two_feet import TwoFeet
 from reference.trajectory import energy, joint_gap, slip
 
 SCENES = [

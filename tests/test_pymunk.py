@@ -15,7 +15,7 @@ from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, bare_loop
-from reference.four_bar_scenes import DrivenFourBar, FreeFourBar
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy

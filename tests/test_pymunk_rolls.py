@@ -11,14 +11,14 @@ import pytest
 from engines import Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, rolls
 from engines.pymunk.contacts import Touch
-from reference.curve import Placed
-from reference.curves import Circle, Line, Side
-from reference.ellipse import Ellipse
-from reference.elliptic_gears import EllipticGears
+from reference.curves.curve import Placed
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Circle, Line, Side
 from reference.mechanism import Body, Mechanism
-from reference.roll import Roll
-from reference.rolling import Rolling
-from reference.rolling_scenes import (
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

@@ -14,9 +14,9 @@ from engines.pymunk import EXTENDED, TUNED, Pymunk, skates
 from engines.pymunk.reflection import Reflected
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.sleigh import ChaplyginSleigh
+from reference.skate.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory, energy
-from reference.wheels import CarAndTrailer
+from reference.wheels.car_and_trailer import CarAndTrailer
 
 SLEIGH, CAR = ChaplyginSleigh(), CarAndTrailer()
 SLED = SLEIGH.mechanism()

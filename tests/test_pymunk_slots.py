@@ -16,12 +16,12 @@ from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, slots
 from engines.pymunk.contraction import contraction, gain, sweeps
 from reference.joints import Drive, Slot
-from reference.link_chain_scenes import LinkPendulum, TenLinks
 from reference.mechanism import Body, Mechanism
 from reference.n_four_bar import NFourBar
-from reference.person import OneFoot
+from reference.pendulum.scenes import LinkPendulum, TenLinks
+from reference.person.one_foot import OneFoot
 from reference.scene import Scene
-from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import Trajectory, energy, joint_gap
 from tests.mechanisms import four_bar
 

@@ -9,15 +9,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.cam import Cam
 from reference.checks import InvalidMechanism
-from reference.curve import Placed
-from reference.curves import Circle, Line, Ring, Side
-from reference.ellipse import Ellipse
+from reference.curves.cam import Cam
+from reference.curves.curve import Placed
+from reference.curves.ellipse import Ellipse
+from reference.curves.open import Catenary, LogSpiral, Parabola
+from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
-from reference.open_curves import Catenary, LogSpiral, Parabola
-from reference.roll import Roll
-from reference.rolling import NEAR_CONFORMAL, Rolling
+from reference.rolling.kinematics import NEAR_CONFORMAL, Rolling
+from reference.rolling.roll import Roll
 
 # Poses are a few roundings of lengths near 1 m, times the turns.
 ROUNDING = 1e-13

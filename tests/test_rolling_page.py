@@ -13,9 +13,9 @@ from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import rolls as mujoco_rolls
 from engines.pymunk import rolls as pymunk_rolls
-from reference.elliptic_gears import EllipticGears
-from reference.rolling_limits import DiscInHole, SquareOnCatenaries
-from reference.rolling_scenes import RollingDisc, RollingEllipse, RollingOnCircle
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.limits import DiscInHole, SquareOnCatenaries
+from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
 from reports.cells import Cell
 from reports.measure import measure, stopped_where_it_ends
 from reports.outcomes import Outcome

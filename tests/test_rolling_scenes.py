@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
-from reference.cam import Cam
 from reference.checks import InvalidMechanism
-from reference.curves import Circle, Line, Ring
-from reference.ellipse import Ellipse
-from reference.elliptic_gears import EllipticGears
-from reference.rolling import Rolling
-from reference.rolling_body import GRAVITY, RollingBody
-from reference.rolling_scenes import (
+from reference.curves.cam import Cam
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Circle, Line, Ring
+from reference.rolling.body import GRAVITY, RollingBody
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

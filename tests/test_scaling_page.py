@@ -10,9 +10,9 @@ import pytest
 
 from engines import Unsupported
 from engines.lagrange import Lagrange
-from reference.four_bar_scenes import FreeFourBar
-from reference.link_chain_scenes import LinkPendulum
-from reference.long_pendulum import LongPendulum
+from reference.four_bar.scenes import FreeFourBar
+from reference.pendulum.long import LongPendulum
+from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.choice import choose_cells
 from reports.growth import Point, Series, exponent, series_of

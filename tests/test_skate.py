@@ -13,10 +13,10 @@ from scipy.integrate import solve_ivp
 from reference.checks import InvalidMechanism
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.pinned_body import FreelyPinnedBody, PinnedBody
-from reference.skate import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
-from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.skate.path import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
+from reference.skate.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import energy, joint_gap, slip
 
 # Two tight integrations agree to their tolerance times the steps; the closed forms are better than either.

@@ -14,8 +14,8 @@ import reports.pages
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
 from reference.scenes import SCENES
-from reference.skate_limits import HeldBySkates, SkateOnSlope
-from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.limits import HeldBySkates, SkateOnSlope
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reports.cells import Cell
 from reports.choice import choose_cells, known_engines
 from reports.measure import measure

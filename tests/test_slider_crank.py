@@ -12,8 +12,8 @@ from scipy.integrate import quad
 
 from reference.checks import InvalidMechanism
 from reference.joints import Slot
-from reference.slider_crank import SliderCrank
-from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank.linkage import SliderCrank
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import energy, joint_gap, slip
 
 STEP = 1e-30

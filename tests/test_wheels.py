@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference.cart import Cart
-from reference.casters import Casters
 from reference.checks import InvalidMechanism
-from reference.tractrix import Tow
-from reference.trailers import CarWithTrailers, Tricycle
 from reference.trajectory import energy, joint_gap, slip
-from reference.wheels import CarAndTrailer
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
+from reference.wheels.casters import Casters
+from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers, Tricycle
 from tests.test_skate import TIGHT, multipliers
 
 # ---------------------------------------------------------------------------------------------------------- tows

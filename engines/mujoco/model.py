@@ -26,7 +26,7 @@ from engines.mujoco.tree import Tree, spanning_tree, world_offset
 from engines.mujoco.written_rows import add_placeholders, installed, row_writer, writing
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 Coordinates = Literal["tree", "free"]
 DriveBy = Literal["inertia", "servo", "overwrite"]

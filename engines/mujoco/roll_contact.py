@@ -21,7 +21,7 @@ from engines.mujoco.construction import Building, Callback, Hooks
 from engines.mujoco.roll_shapes import RoundShape, add_shapes
 from engines.mujoco.roll_table import RollTable
 from engines.mujoco.stiffness import STIFFEST, Shipped
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 Cone = Literal["pyramidal", "elliptic"]
 # A pair that just touches must collide whatever its distance is rounded to: this part of the mechanism's length.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from engines.mujoco.construction import Binder, Building, Hooks
 from engines.mujoco.roll_table import RollTable
 from engines.mujoco.tree import Link
 from engines.mujoco.written_rows import Row, State, WrittenJoint
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def _own_rows(
 def roll_rows(table: RollTable, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:
     """The rows of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0, in x and in y, and J a = -(dJ/dt) v - b J v - k gap.
 
-    The same two conditions as those of `reference.roll` along the tangent and the normal, in directions that rest.
+    The same two conditions as those of `reference.rolling.roll` along tangent and normal, in directions that rest.
     """
     place_at, cosine_of, sine_of = table.place, math.cos, math.sin
 

@@ -16,10 +16,10 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building
-from reference.curve import Curve, Placed
-from reference.curves import Circle, Line, Ring
-from reference.ellipse import Ellipse
-from reference.roll import Roll
+from reference.curves.curve import Curve, Placed
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Circle, Line, Ring
+from reference.rolling.roll import Roll
 
 RoundShape = Literal["sphere", "cylinder"]
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.rolling import Rolling
+from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so
 # nothing is amplified. Powers of the distance from a cell's middle do no harm, because their coefficients fall.
@@ -30,7 +30,7 @@ LOST: Place = (NOWHERE, NOWHERE, NOWHERE)
 class RollTable:
     """P(theta), P'(theta) and P''(theta): the body's origin [m] in the frame of the ground, as x + i y.
 
-    With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.contact`), P = point + a, P' = i a and
+    With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.contact`), P = point + a, P' = i a and
     P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the acceleration that rolling implies then.
     Made once; it grows with the angles that it is asked for.
     """

@@ -1,4 +1,4 @@
-"""Boundaries of rolling bodies in plain floats: the closed forms of `reference.curve` for one place at a time."""
+"""Boundaries of rolling bodies in plain floats: the closed forms of `reference.curves` for one place at a time."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Protocol
 
 from scipy.special import ellipeinc
 
-from reference.cam import Cam
-from reference.curve import Curve, Placed
-from reference.curves import Circle, Line, Ring
-from reference.ellipse import Ellipse
+from reference.curves.cam import Cam
+from reference.curves.curve import Curve, Placed
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Circle, Line, Ring
 
 Point = tuple[float, float]
 
 
 class Boundary(Protocol):
-    """A curve by its natural parameter, as in `reference.curve.Curve`, one float at a time."""
+    """A curve by its natural parameter, as in `reference.curves.curve.Curve`, one float at a time."""
 
     def point(self, p: float) -> Point: ...
     def angle(self, p: float) -> float: ...

@@ -13,8 +13,8 @@ from typing import Any
 
 from engines.pymunk.boundaries import Point, boundary_of, unplaced
 from reference.checks import InvalidMechanism
-from reference.curves import Line
-from reference.rolling import Rolling
+from reference.curves.round import Line
+from reference.rolling.kinematics import Rolling
 
 
 class Touch:

@@ -21,7 +21,7 @@ from engines.pymunk.rollers import MovedPivot, RollConstruction
 from engines.pymunk.slides import SlotConstruction, slide
 from reference.joints import Drive, Joint, Pin, Skate, Slot, Vector
 from reference.mechanism import Mechanism
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 # Scalar constraints of each kind of pymunk constraint; its solver has no others.
 ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1}

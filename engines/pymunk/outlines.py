@@ -10,9 +10,9 @@ import numpy as np
 import pymunk
 
 from engines import Unsupported
-from reference.curve import Curve, Placed, Vector
-from reference.curves import Circle, Line
-from reference.roll import Roll
+from reference.curves.curve import Curve, Placed, Vector
+from reference.curves.round import Circle, Line
+from reference.rolling.roll import Roll
 
 _space = pymunk.Space()
 SHIPPED_SLOP = _space.collision_slop  # 0.1

@@ -29,7 +29,7 @@ from engines.pymunk.contacts import Touch
 from engines.pymunk.recorder import reactions
 from reference.joints import Skate, Vector
 from reference.mechanism import Body, Mechanism
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from pymunk.constraints import PivotJoint
 
 from engines.pymunk.contacts import Touch
 from reference.joints import Vector
-from reference.roll import Roll
+from reference.rolling.roll import Roll
 
 RollConstruction = Literal["contact", "pivot", "stale pivot"]
 CONSTRUCTIONS: tuple[str, ...] = get_args(RollConstruction)

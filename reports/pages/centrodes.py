@@ -11,7 +11,7 @@ import numpy as np
 from engines import Engine
 from engines.registry import VARIANTS
 from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
-from reference.four_bar_scenes import DrivenFourBar
+from reference.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
 from reports import centrode_drawings
 from reports.cells import Cell

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from reference.errata import ERRATA, WORD_SLIPS, Erratum, Values
-from reference.errata_rolling import rolling_acceleration
+from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
+from reference.errata.rolling import rolling_acceleration
 from reports.page import Material, Page
 from reports.referees import CONFIRMED, Ruling, rulings
 from reports.tables import markdown, number

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from engines.registry import ENGINES
-from reference.four_bar_scenes import DrivenFourBar
+from reference.four_bar.scenes import DrivenFourBar
 from reference.scenes import SCENES
 from reports import drawings
 from reports.cells import Cell

@@ -9,8 +9,8 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar_limits import OverdrivenFourBar, Parallelogram
-from reference.four_bar_scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.scene import Scene
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap

@@ -8,8 +8,8 @@ from typing import Any
 
 from engines import mujoco
 from engines.registry import VARIANTS
-from reference.link_chain_scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.pendulum import BarPendulum
+from reference.pendulum.link import BarPendulum
+from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes import SCENES
 from reports.page import FEATURED, Material, Page
 from reports.pages.chain_orders import OPEN

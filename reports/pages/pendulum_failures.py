@@ -11,10 +11,10 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import Hardened
-from reference.link_chain_scenes import HundredLinks, LinkPendulum
-from reference.pendulum import PointPendulum
+from reference.pendulum.link import PointPendulum
+from reference.pendulum.scenes import HundredLinks, LinkPendulum
+from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
-from reference.spinning_ring import SpinningRing
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap
 from reports.tables import number

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.person import OneFoot
-from reference.person_swaying import SwayingOnOneFoot, modes_upright
-from reference.person_two_feet import TwoFeet
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot, modes_upright
+from reference.person.two_feet import TwoFeet
 from reference.scenes import SCENES
 from reports.page import Material, Page
 from reports.pages.chain_orders import CLOSED

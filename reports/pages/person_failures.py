@@ -8,9 +8,9 @@ from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
 from reference.checks import InvalidMechanism
-from reference.person import OneFoot
-from reference.person_swaying import SwayingOnOneFoot, modes_upright
-from reference.person_two_feet import TwoFeet
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot, modes_upright
+from reference.person.two_feet import TwoFeet
 from reference.scene import Scene
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap

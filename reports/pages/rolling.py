@@ -9,8 +9,8 @@ from engines import Engine
 from engines.mujoco import rolls as mujoco_rolls
 from engines.pymunk import rolls as pymunk_rolls
 from engines.registry import VARIANTS
-from reference.elliptic_gears import EllipticGears
-from reference.rolling_scenes import RollingEllipse, RollingInRing, RollingOnCircle
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.scenes import RollingEllipse, RollingInRing, RollingOnCircle
 from reference.scene import Scene
 from reference.scenes import SCENES
 from reports import rolling_charts, rolling_drawings

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reference.elliptic_gears import EllipticGears
-from reference.rolling_scenes import (
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

@@ -9,7 +9,7 @@ from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.long_pendulum import LongPendulum
+from reference.pendulum.long import LongPendulum
 from reports.cells import Cell
 from reports.growth import Series, cost_exponent, error_exponent, series_of
 from reports.page import Material, Page

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from engines import Engine
 from engines.registry import VARIANTS
-from reference.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.parking import commutator_displacement
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.skate.parking import commutator_displacement
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports import charts, tables
 from reports.cells import Cell

@@ -8,12 +8,12 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.registry import VARIANTS
-from reference.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
-from reference.skate_limits import HeldBySkates, SkateOnSlope
-from reference.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.skate.limits import HeldBySkates, SkateOnSlope
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap
 from reports.pages.skate_methods import CONSTRUCTIONS, limited, method

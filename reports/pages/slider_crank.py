@@ -8,7 +8,7 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.scenes import SCENES
-from reference.slider_crank_scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.page import Material, Page
 from reports.pages.chain_orders import CLOSED
 from reports.pages.slider_crank_failures import FAILURES, GROOVES, MAPS

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from engines.registry import VARIANTS
-from reference.cart import Cart
 from reference.scenes import SCENES
-from reference.wheels import CarAndTrailer
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
 from reports.cells import Cell
 from reports.measure import Measurement
 from reports.outcomes import Outcome

@@ -9,11 +9,11 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.registry import VARIANTS
-from reference.cart import Cart
 from reference.scene import Scene
-from reference.tractrix import Tow
-from reference.trailers import CarWithTrailers
-from reference.wheels import CarAndTrailer
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
+from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers
 from reports.cells import Cell
 from reports.page import Failure, Observation
 from reports.running import trajectory_of

@@ -7,9 +7,9 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.casters import Casters
-from reference.tractrix import Tow
-from reference.trailers import CarWithTrailers
+from reference.wheels.casters import Casters
+from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers
 from reports.paths import Blades, Panel, Path, paths
 
 # The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].

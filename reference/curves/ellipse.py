@@ -1,0 +1,104 @@
+"""The ellipse by arc length: elliptic integrals, continuous over any number of turns."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ellipe, ellipeinc
+
+from reference.checks import InvalidMechanism, require_positive
+from reference.curves.curve import Array, Curve, Vector, along
+from reference.numerics.monotone import solve_increasing
+
+
+@dataclass(frozen=True)
+class Ellipse(Curve):
+    """(a cos u, b sin u) [m] for semi-axes `along_x` = a and `along_y` = b, u its natural parameter, counter-clockwise.
+
+    Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2), with the incomplete integral
+    used within half a turn only, so that rounding doesn't grow with the turns by more than the arc itself.
+    """
+
+    along_x: float
+    along_y: float
+
+    def __post_init__(self) -> None:
+        require_positive("ellipse", along_x=self.along_x, along_y=self.along_y)
+        ratio = max(self.along_x / self.along_y, self.along_y / self.along_x)
+        if ratio > 1e3:
+            raise InvalidMechanism(
+                f"ellipse: its axes differ by a factor {ratio:.3g}, so its ends are nearly of infinite curvature; "
+                "a factor up to 1e3 is kept to full accuracy"
+            )
+
+    @cached_property
+    def _round(self) -> float:
+        a, b = self.along_x, self.along_y
+        return float(4 * max(a, b) * ellipe(1 - min(a / b, b / a) ** 2))
+
+    @property
+    def curvature_range(self) -> tuple[float, float]:
+        flat, sharp = sorted((self.along_y / self.along_x**2, self.along_x / self.along_y**2))
+        return (flat, sharp)
+
+    @property
+    def foci(self) -> tuple[Vector, Vector]:
+        """Both foci [m], that at negative coordinates first."""
+        excess = self.along_x**2 - self.along_y**2
+        c = math.sqrt(abs(excess))
+        return ((-c, 0.0), (c, 0.0)) if excess >= 0 else ((0.0, -c), (0.0, c))
+
+    def speed_of(self, p: ArrayLike) -> Array:
+        u = along(p)
+        return np.hypot(self.along_x * np.sin(u), self.along_y * np.cos(u))
+
+    def arc_of(self, p: ArrayLike) -> Array:
+        u = along(p)
+        half_turns = np.round(u / math.pi)
+        rest = u - half_turns * math.pi
+        a, b = self.along_x, self.along_y
+        if a <= b:
+            part = b * ellipeinc(rest, 1 - (a / b) ** 2)
+        else:  # the same integral counted from the nearest minor vertex: the parameter stays between 0 and 1
+            shifted = rest - np.copysign(math.pi / 2, rest)
+            part = a * ellipeinc(shifted, 1 - (b / a) ** 2) + np.copysign(self.length / 4, rest)
+        return half_turns * (self.length / 2) + part
+
+    @property
+    def length(self) -> float:
+        return self._round
+
+    def parameter(self, arc: ArrayLike) -> Array:
+        arc = along(arc)
+        # Reduced to half a turn, so that the root is found to the rounding of the fraction, not of the turns.
+        half_turns = np.round(arc / (self.length / 2))
+        rest = arc - half_turns * (self.length / 2)
+        mean = rest * (2 * math.pi / self.length)
+        n = (self.along_x - self.along_y) / (self.along_x + self.along_y)
+        guess = mean + np.clip(1.5 * n, -0.6, 0.6) / 2 * np.sin(2 * mean)
+        root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, guess, 1e-3)
+        return root + half_turns * math.pi
+
+    def parameter_at(self, angle: ArrayLike) -> Array:
+        normal = along(angle) - math.pi / 2
+        a, b = self.along_x, self.along_y
+        sine, cosine = np.sin(normal), np.cos(normal)
+        return normal + np.arctan2((b - a) * sine * cosine, a * cosine**2 + b * sine**2)
+
+    def point_of(self, p: ArrayLike) -> Array:
+        u = along(p)
+        return np.stack([self.along_x * np.cos(u), self.along_y * np.sin(u)], axis=-1)
+
+    def angle_of(self, p: ArrayLike) -> Array:
+        u = along(p)
+        a, b = self.along_x, self.along_y
+        sine, cosine = np.sin(u), np.cos(u)
+        # The excess over a circle's tangent angle is less than a quarter turn: no principal value is ever crossed.
+        return u + math.pi / 2 + np.arctan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)
+
+    def curvature_of(self, p: ArrayLike) -> Array:
+        return self.along_x * self.along_y / self.speed_of(p) ** 3

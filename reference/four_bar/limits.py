@@ -1,0 +1,92 @@
+"""Four-bars where methods fail: a parallelogram through its change points, and a crank driven into its limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism
+from reference.four_bar.free_motion import BarAngles
+from reference.four_bar.scenes import Array, DrivenFourBar
+from reference.joints import Vector
+from reference.trajectory import Trajectory
+
+# Within this of a change point (the sine of the transmission angle) the rows are as good as dependent, and the
+# reactions of ideal rigid bars are not determined.
+IN_LINE = 1e-6
+
+
+@dataclass(frozen=True)
+class Parallelogram(DrivenFourBar):
+    """Crank and rocker equal, coupler and ground equal: twice a revolution all bars lie in line.
+
+    There two motions satisfy the joints, parallel bars and crossed ones. The truth is the one that is smooth: the
+    coupler stays parallel to the ground. `assembly` can't express it, as C passes from one side of B -> D to the other.
+    """
+
+    name: ClassVar[str] = "parallelogram"
+    source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
+
+    crank: float = 0.4
+    coupler: float = 1.2
+    rocker: float = 0.4
+    ground: Vector = (1.2, 0.0)
+    revolutions: float = 2.0
+
+    def __post_init__(self) -> None:
+        if self.crank != self.rocker or not math.isclose(self.coupler, math.hypot(*self.ground), rel_tol=1e-15):
+            raise InvalidMechanism(
+                f"parallelogram: crank {self.crank!r} and rocker {self.rocker!r} must be equal, and so must coupler "
+                f"{self.coupler!r} and ground {math.hypot(*self.ground)!r}"
+            )
+        super().__post_init__()
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        """Reactions are NaN where the bars are in line: rigid bars then share them in no definite way."""
+        times = self._times(t)
+        angles = self._angles(times)
+        pose, twist, acceleration = self._bodies(angles)
+        reaction = np.full((len(times), 9), np.nan)
+        apart = np.abs(np.sin(angles.angle[:, 2] - angles.angle[:, 1])) > IN_LINE
+        reaction[apart] = self.mechanism().reaction(pose[apart], acceleration[apart])
+        return Trajectory(times, pose, twist, reaction)
+
+    def _angles(self, times: Array) -> BarAngles:
+        theta = self.start + self.rate * times
+        still = np.zeros_like(theta)
+        heading = np.full_like(theta, math.atan2(self.ground[1], self.ground[0]))
+        rate = np.full_like(theta, self.rate)
+        return BarAngles(
+            np.stack([theta, heading, theta], axis=-1),
+            np.stack([rate, still, rate], axis=-1),
+            np.zeros((len(theta), 3)),
+        )
+
+
+@dataclass(frozen=True)
+class OverdrivenFourBar(DrivenFourBar):
+    """A triple-rocker whose crank is driven beyond what the other bars can follow: `motion` refuses from there."""
+
+    name: ClassVar[str] = "overdriven_four_bar"
+    source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
+
+    crank: float = 0.8
+    coupler: float = 0.5
+    rocker: float = 0.5
+    start: float = 0.0
+    rate: float = 4.0
+    revolutions: float = 0.5
+
+    @property
+    def stopping_time(self) -> float:
+        """When the crank meets its limit [s]; infinite if it never does."""
+        limits = self.four_bar.crank_limits()
+        if limits is None:
+            return math.inf
+        turn = 2 * math.pi
+        ends = [bound for interval in limits for bound in interval]
+        return min(math.copysign(1, self.rate) * (end - self.start) % turn for end in ends) / abs(self.rate)

@@ -1,0 +1,278 @@
+"""The four-bar linkage in closed form: position, rates, accelerations, limits and forces (sample 18.15, 18.67-18.71).
+
+Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker; the
+chapter's "rod CD", whose direction must be read from D). A is the origin, D anywhere else. `branch` is +1 for C left of
+the directed line B -> D, as in the chapter's figure, -1 for the other assembly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.four_bar.forces import Forces, bar_forces
+from reference.four_bar.rate_integration import RateIntegration, integrate_rates
+from reference.four_bar.sweep import Constants, Kinematics, OutOfReach, difference, sweep
+
+Interval = tuple[float, float]
+
+
+class Unreachable(ValueError):
+    """A crank angle at which the loop can't close: the message names it and the range that is possible."""
+
+
+class PointMotion(NamedTuple):
+    """Position [m], velocity [m/s] and acceleration [m/s^2] of a point, each (..., 2)."""
+
+    position: Any
+    velocity: Any
+    acceleration: Any
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
+
+    Every method broadcasts its arguments. Angles are continuous in theta (not wrapped) as long as the crank moves in
+    one reachable interval, for any theta and not only along a path; they wind with the crank if it is longer than AD.
+    The chapter's start, theta = pi/2, has beta = pi/4 and phi = 3 pi/4; the other assembly's angles are counted from
+    the same direction of B seen from D.
+
+    Errors are a few roundings in regular positions. Near the end of a reachable interval, at a distance x [rad] from
+    it, angles leave their end value like sqrt(x), so that their error is about eps / sqrt(x), and sqrt(eps) = 1e-8 at
+    the end; rates grow like 1 / sqrt(x), with a relative error of eps / x, and at the end itself they are infinite or
+    NaN. Through a change point C is not determined by the crank, and each `branch` has a kink there. With crank = AD
+    and coupler = rocker, B meets D, where C is not determined at all: that crank angle is Unreachable, and across it
+    the angles jump by pi.
+
+    Raises InvalidMechanism for lengths not positive, D on A, or bars that can't be assembled at any crank angle;
+    methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or -1.
+    """
+
+    crank: float
+    coupler: float
+    rocker: float
+    ground: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        require_positive("four-bar", crank=self.crank, coupler=self.coupler, rocker=self.rocker)
+        require_finite("four-bar", ground=self.ground)
+        if np.shape(self.ground) != (2,) or self.ground_length == 0:
+            raise InvalidMechanism(
+                f"four-bar: ground is {self.ground!r}; it must be a point (x, y) other than A = (0, 0)"
+            )
+        lengths = sorted([self.crank, self.coupler, self.rocker, self.ground_length])
+        if self._constants.outer_near < 0 or self._constants.inner_far < 0:
+            raise InvalidMechanism(
+                f"four-bar: crank {self.crank:.6g}, coupler {self.coupler:.6g}, rocker {self.rocker:.6g} and ground "
+                f"{self.ground_length:.6g} can't be assembled at any crank angle; the longest must be at most the sum "
+                f"of the others, {sum(lengths[:3]):.6g}"
+            )
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """Crank, coupler and rocker [m]."""
+        return self.crank, self.coupler, self.rocker
+
+    @property
+    def ground_length(self) -> float:
+        """The distance from A to D [m]."""
+        return math.hypot(*self.ground)
+
+    @cached_property
+    def _constants(self) -> Constants:
+        return Constants.of(*self.lengths, self.ground)
+
+    def angles(self, theta: ArrayLike, branch: ArrayLike = 1) -> tuple[Any, Any]:
+        """beta and phi [rad] in closed form; the chapter calls that impossible, and integrates rates instead."""
+        return self._sweep(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
+
+    def rates(self, theta: ArrayLike, theta_dot: ArrayLike, branch: ArrayLike = 1) -> tuple[Any, Any]:
+        """beta_dot (18.71) and phi_dot (18.70) [rad/s]."""
+        return self._sweep(theta, theta_dot, 0.0, branch, order=1)[2:]  # type: ignore[return-value]
+
+    def accelerations(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: ArrayLike = 1
+    ) -> tuple[Any, Any]:
+        """beta_ddot and phi_ddot [rad/s^2]: the time derivative of (18.69), solved."""
+        return self.kinematics(theta, theta_dot, theta_ddot, branch)[4:]
+
+    def kinematics(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: ArrayLike = 1
+    ) -> Kinematics:
+        """All six at once: the fast way for many crank angles."""
+        return Kinematics(*self._sweep(theta, theta_dot, theta_ddot, branch, order=2))
+
+    def _sweep(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike, branch: ArrayLike, order: int
+    ) -> tuple[Any, ...]:
+        arguments = [np.asarray(value, dtype=float) for value in (theta, theta_dot, theta_ddot, branch)]
+        if not np.all(np.abs(arguments[3]) == 1):
+            raise ValueError(f"four-bar: branch is {branch!r}; it must be +1 (C left of B -> D) or -1")
+        shape = np.broadcast_shapes(*(value.shape for value in arguments))
+        angle = np.broadcast_to(arguments[0], shape).ravel()
+        # Single numbers stay single: a block then multiplies by a scalar.
+        others = [
+            value.ravel() if value.size == 1 else np.broadcast_to(value, shape).ravel() for value in arguments[1:]
+        ]
+        try:
+            columns = sweep(self._constants, angle, *others, order=order)
+        except OutOfReach as refusal:
+            raise self._refusal(float(angle[refusal.index]), refusal.undetermined) from None
+        return tuple(column.reshape(shape)[()] for column in columns)
+
+    def _refusal(self, theta: float, undetermined: bool) -> ValueError:
+        if not math.isfinite(theta):
+            return ValueError(f"four-bar: crank angle is {theta!r}; it must be finite")
+        if undetermined:
+            return Unreachable(f"four-bar: at crank angle {theta:.9g} rad B lies on D, and C is not determined")
+        ranges = " or ".join(f"[{low:.9g}, {high:.9g}]" for low, high in self.crank_limits() or ())
+        return Unreachable(
+            f"four-bar: at crank angle {theta:.9g} rad the loop can't close; "
+            f"possible is {ranges} rad, give or take whole turns"
+        )
+
+    def crank_limits(self) -> tuple[Interval, ...] | None:
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        c = self._constants
+        # theta' = 2 atan(sqrt(ratio)) where U or W vanishes; exact differences keep the digits near a change point.
+        outer = 2 * math.atan2(math.sqrt(c.outer_near), math.sqrt(-c.outer_far)) if c.outer_far < 0 else None
+        inner = 2 * math.atan2(math.sqrt(-c.inner_near), math.sqrt(c.inner_far)) if c.inner_near < 0 else None
+        if outer is None and inner is None:
+            return None
+        if inner is None:
+            assert outer is not None
+            return ((c.heading - outer, c.heading + outer),)
+        if outer is None:
+            return ((c.heading + inner, c.heading + 2 * math.pi - inner),)
+        return ((c.heading - outer, c.heading - inner), (c.heading + inner, c.heading + outer))
+
+    def grashof(self) -> str:
+        """The class by name, from the shortest bar s, the longest l and the others p, q.
+
+        s + l > p + q: triple-rocker (no bar turns fully). Equal up to the rounding of the lengths: change-point. Below:
+        double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; when
+        that is the rocker, it is the rocker that turns and the crank that swings.
+        """
+        bars = {"crank": self.crank, "coupler": self.coupler, "rocker": self.rocker, "ground": self.ground_length}
+        shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)
+        s, p, q, longest = (bars[name] for name in ranked)
+        excess = difference(s, longest, -p, -q)
+        if excess > 0:
+            return "triple-rocker"
+        if excess == 0:
+            return "change-point"
+        return {"ground": "double-crank", "coupler": "double-rocker"}.get(shortest, "crank-rocker")
+
+    def transmission_angle(self, theta: ArrayLike, branch: ArrayLike = 1) -> Any:
+        """The angle B C D between coupler and rocker, in [0, pi] [rad]: branch * (phi - beta) up to whole turns."""
+        beta, phi = self.angles(theta, branch)
+        return np.abs(np.remainder(phi - beta + np.pi, 2 * np.pi) - np.pi)
+
+    def transmission_extremes(self) -> tuple[float, float]:
+        """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
+        c = self._constants
+        # tan^2 of the half angle is W / U, and grows with the distance from B to D.
+        low = 2 * math.atan2(math.sqrt(max(c.inner_near, 0)), math.sqrt(c.outer_near))
+        high = 2 * math.atan2(math.sqrt(c.inner_far), math.sqrt(max(c.outer_far, 0)))
+        return low, high
+
+    def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: ArrayLike = 1) -> Any:
+        """World position (..., 2) [m] of the coupler's point `along` BC from B and `across` to its left [m]."""
+        beta, _ = self.angles(theta, branch)
+        return _plane(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
+
+    def coupler_motion(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        theta_ddot: ArrayLike,
+        along: ArrayLike,
+        across: ArrayLike,
+        branch: ArrayLike = 1,
+    ) -> PointMotion:
+        """The same point with its velocity and acceleration (18.67)."""
+        motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
+        speed, bend = np.asarray(theta_dot), np.asarray(theta_ddot)
+        crank = self.crank * np.exp(1j * np.asarray(theta))
+        arm = _arm(along, across) * np.exp(1j * motion.beta)
+        return PointMotion(
+            _plane(crank + arm),
+            _plane(1j * (crank * speed + arm * motion.beta_dot)),
+            _plane(crank * (1j * bend - speed**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
+        )
+
+    def forces(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        theta_ddot: ArrayLike = 0.0,
+        branch: ArrayLike = 1,
+        density: ArrayLike = 1.0,
+        gravity: tuple[float, float] = (0.0, -9.81),
+    ) -> Forces:
+        """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] that this motion of uniform bars needs.
+
+        density [kg/m], one number or three (crank, coupler, rocker); gravity [m/s^2]. A pin's force acts on its second
+        body: A ground on crank, B crank on coupler, C coupler on rocker, D ground on rocker. The torque acts on the
+        crank from the ground. At a crank limit they are not finite.
+        """
+        motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
+        return bar_forces(
+            self.lengths,
+            density,
+            gravity,
+            (theta, motion.beta, motion.phi),
+            (theta_dot, motion.beta_dot, motion.phi_dot),
+            (theta_ddot, motion.beta_ddot, motion.phi_ddot),
+        )
+
+    def reactions(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        theta_ddot: ArrayLike = 0.0,
+        branch: ArrayLike = 1,
+        density: ArrayLike = 1.0,
+        gravity: tuple[float, float] = (0.0, -9.81),
+    ) -> tuple[Any, Any, Any, Any]:
+        """The pin forces at A, B, C, D of `forces`, signs and arguments as there."""
+        return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity)[:4]
+
+    def drive_torque(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        theta_ddot: ArrayLike = 0.0,
+        branch: ArrayLike = 1,
+        density: ArrayLike = 1.0,
+        gravity: tuple[float, float] = (0.0, -9.81),
+    ) -> Any:
+        """The torque [N m] of `forces` on the crank, counter-clockwise positive; arguments as there."""
+        return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity).torque
+
+    def integrate_rates(
+        self,
+        t: ArrayLike,
+        theta_dot: float = 10.0,
+        theta: float = math.pi / 2,
+        branch: int = 1,
+        **settings: Any,
+    ) -> RateIntegration:
+        """The chapter's pseudocode from the given start, a method under test; settings as in `rate_integration`."""
+        beta, phi = self.angles(theta, branch)
+        return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, t, **settings)
+
+
+def _arm(along: ArrayLike, across: ArrayLike) -> Any:
+    return np.asarray(along) + 1j * np.asarray(across)
+
+
+def _plane(value: Any) -> Any:
+    return np.stack([np.real(value), np.imag(value)], axis=-1)

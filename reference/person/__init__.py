@@ -1,0 +1,7 @@
+"""A person of rigid segments on one foot (an open chain) and on two (a closed one)."""
+
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot
+from reference.person.two_feet import TwoFeet
+
+__all__ = ["OneFoot", "SwayingOnOneFoot", "TwoFeet"]

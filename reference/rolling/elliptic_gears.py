@@ -1,0 +1,134 @@
+"""Two congruent elliptic gears pinned at foci: rolling between two moving bodies, in closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.curves.curve import Array
+from reference.curves.ellipse import Ellipse
+from reference.joints import Drive, Pin
+from reference.mechanism import RANK_TOLERANCE, Body, Mechanism, Triple
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+
+def _triple(values: Array) -> Triple:
+    x, y, angle = (float(value) for value in values)
+    return (x, y, angle)
+
+
+@dataclass(frozen=True)
+class EllipticGears(Scene):
+    """The first gear turns at a constant rate about its focus at the origin, the second about its own at (2a, 0).
+
+    The sum of the distances from the contact to the two pins is 2a at every angle, so the contact stays on the line of
+    the pins, and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2): the rate of the second swings between
+    (1 + e) / (1 - e) of the first and its inverse. Gears are uniform discs, described at their centres.
+
+    Pins already keep the gears apart, so a force along the line of the pins, from pin to gear to gear to pin, is not
+    determined by motion: those rows' reactions are NaN in the truth.
+    """
+
+    name: ClassVar[str] = "elliptic_gears"
+    page: ClassVar[str] = "rolling"
+    source: ClassVar[str] = "rolling of not round objects, (18.66), between two moving bodies"
+
+    major: float = 0.3  # m, semi-axis a
+    eccentricity: float = 0.5
+    turning_rate: float = 3.0  # rad/s of the first gear
+    start_angle: float = 0.4  # rad of the first gear
+    mass: float = 1.0  # kg, each
+    duration: float = 2.0  # s
+    horizon: float = 2.0  # s
+
+    def __post_init__(self) -> None:
+        require_positive("elliptic gears", major=self.major, mass=self.mass)
+        require_finite("elliptic gears", turning_rate=self.turning_rate, start_angle=self.start_angle)
+        if not 0 <= self.eccentricity <= 0.99:
+            raise InvalidMechanism(
+                f"elliptic gears: eccentricity is {self.eccentricity!r}; it must be from 0 (round) to 0.99"
+            )
+
+    @property
+    def samples(self) -> int:
+        """A fifth of those elsewhere: the contact of two ellipses takes a nested search, some ten times a circle's."""
+        return max(1, super().samples // 5)
+
+    @property
+    def _minor(self) -> float:
+        return self.major * math.sqrt(1 - self.eccentricity**2)
+
+    @property
+    def _focus(self) -> tuple[float, float]:
+        return (-self.major * self.eccentricity, 0.0)
+
+    def second_angle(self, first: ArrayLike) -> Array:
+        """theta_2 (...) [rad] at theta_1 (...) [rad], both unwrapped."""
+        half = np.asarray(first, dtype=float) / 2
+        ratio = (1 + self.eccentricity) / (1 - self.eccentricity)
+        sine, cosine = np.sin(half), np.cos(half)
+        return -2 * (half + np.arctan2((ratio - 1) * sine * cosine, cosine**2 + ratio * sine**2))
+
+    def second_rate(self, first: ArrayLike) -> tuple[Array, Array]:
+        """theta_2' and theta_2'' (...) [rad/s, rad/s^2]: minus the ratio of the contact's distances, and its rate."""
+        first = np.asarray(first, dtype=float)
+        e, bend = self.eccentricity, self.major * (1 - self.eccentricity**2)
+        near = bend / (1 - e * np.cos(first))
+        far = 2 * self.major - near
+        receding = -(near**2) * e * np.sin(first) / bend * self.turning_rate
+        return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
+
+    def kinematics(self, t: Array) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 2, 3)."""
+        first = self.start_angle + self.turning_rate * t
+        rate, growth = self.second_rate(first)
+        pose, twist, acceleration = np.empty((3, len(t), 2, 3))
+        for gear, pin, angle, omega, alpha in (
+            (0, 0.0, first, np.full(t.shape, self.turning_rate), np.zeros(t.shape)),
+            (1, 2 * self.major, self.second_angle(first), rate, growth),
+        ):
+            arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+            across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+            pose[:, gear] = np.column_stack([arm[:, 0] + pin, arm[:, 1], angle])
+            twist[:, gear] = np.column_stack([omega[:, None] * across, omega])
+            acceleration[:, gear] = np.column_stack([alpha[:, None] * across - omega[:, None] ** 2 * arm, alpha])
+        return pose, twist, acceleration
+
+    def mechanism(self) -> Mechanism:
+        shape = Ellipse(self.major, self._minor)
+        pose, twist, _ = self.kinematics(np.zeros(1))
+        inertia = self.mass * (self.major**2 + self._minor**2) / 4
+        bodies = tuple(
+            Body(name, self.mass, inertia, _triple(pose[0, gear]), _triple(twist[0, gear]))
+            for gear, name in enumerate(("first", "second"))
+        )
+        # At theta_1 = theta_2 = 0 the far end of the first touches the near end of the second.
+        rolling = Rolling(shape, shape, 0.0, 0.0, shape.length / 2)
+        return Mechanism(
+            bodies,
+            (
+                Pin("first pin", None, "first", (0.0, 0.0), self._focus),
+                Pin("second pin", None, "second", (2 * self.major, 0.0), self._focus),
+                Drive("motor", None, "first", self.turning_rate, self.start_angle),
+                Roll("mesh", "first", "second", rolling),
+            ),
+        )
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        t = np.atleast_1d(np.asarray(t, dtype=float))
+        pose, twist, acceleration = self.kinematics(t)
+        mechanism = self.mechanism()
+        reaction = mechanism.reaction(pose, acceleration)
+        # Rows that take part in a set of forces in equilibrium by themselves: J^T null = 0.
+        _, singular, right = np.linalg.svd(np.swapaxes(mechanism.rows(pose), -1, -2))
+        rank = int(np.sum(singular[0] > RANK_TOLERANCE * singular[0, 0]))
+        share = np.sqrt(np.sum(right[:, rank:, :] ** 2, axis=-2))
+        return Trajectory(t=t, pose=pose, twist=twist, reaction=np.where(share > 1e-9, np.nan, reaction))

@@ -1,0 +1,294 @@
+"""One rigid curve rolling on another: contact, pose, velocity (18.66) and acceleration as functions of the rotation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, require_finite
+from reference.curves.curve import Array, Curve, Placed, Vector
+from reference.curves.round import Line, Ring, Side
+from reference.numerics.monotone import solve_increasing
+from reference.rolling.contact import Contact, quarter_turned, turned
+
+# The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
+# of a double's sixteen digits are left in it, and a truth of fewer would be none.
+NEAR_CONFORMAL = 1e-9
+SCAN = 721  # places at which a pair that might be conformal somewhere is examined, once round
+
+
+def _hole(curve: Curve) -> tuple[Array, float] | None:
+    """Centre (2,) [m] and radius [m] of a ring, placed or not; None for any other curve."""
+    if isinstance(curve, Ring):
+        return np.asarray(curve.centre, dtype=float), curve.radius
+    inner = _hole(curve.curve) if isinstance(curve, Placed) else None
+    if inner is None or not isinstance(curve, Placed):
+        return None
+    return turned(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """The curve `body` rolls without slip on the fixed curve `ground`; see `reference.curves.curve` for the convention.
+
+    At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]; make one with `Rolling.at_angle` or
+    `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.
+
+    Raises InvalidMechanism, saying where, if the tangents don't match at the start, if curvature_A + curvature_B isn't
+    positive (the curves would cut into each other) or falls below NEAR_CONFORMAL of the larger curvature, if a place
+    doesn't exist on a curve, and if a hole is too small for what is in it. Not checked: whether curves that are neither
+    convex nor a ring meet at a second place.
+    """
+
+    body: Curve
+    ground: Curve
+    theta: float
+    ground_arc: float
+    body_arc: float
+
+    def __post_init__(self) -> None:
+        require_finite("rolling", theta=self.theta, ground_arc=self.ground_arc, body_arc=self.body_arc)
+        mismatch = float(self.ground.angle(self.ground_arc) + math.pi - self.theta - self.body.angle(self.body_arc))
+        mismatch = math.remainder(mismatch, 2 * math.pi)
+        if abs(mismatch) > 1e-9:
+            raise InvalidMechanism(
+                f"rolling: at theta = {self.theta!r} rad the curves cross at an angle of {mismatch:.3g} rad instead of "
+                "touching; the tangent angles must satisfy angle_A + pi = theta + angle_B"
+            )
+        self._refuse_conformal(self._contact_at(np.asarray(self.theta), np.asarray(self._body_start)))
+        if not self._apart_everywhere:
+            self._refuse_overlap(np.asarray(self.theta))
+
+    @classmethod
+    def at_angle(cls, body: Curve, ground: Curve, theta: float = 0.0, ground_arc: float = 0.0) -> Rolling:
+        """Start at a rotation [rad] of the body, touching the ground at an arc [m]; the body must not be straight."""
+        require_finite("rolling", theta=theta, ground_arc=ground_arc)
+        wanted = math.remainder(float(ground.angle(ground_arc)) + math.pi - theta, 2 * math.pi)
+        return cls(body, ground, theta, ground_arc, float(body.arc(wanted)))
+
+    @classmethod
+    def at_arcs(cls, body: Curve, ground: Curve, ground_arc: float = 0.0, body_arc: float = 0.0) -> Rolling:
+        """Start with these arcs [m] touching; the rotation is then known up to turns, and taken within half a turn."""
+        require_finite("rolling", ground_arc=ground_arc, body_arc=body_arc)
+        theta = math.remainder(float(ground.angle(ground_arc) + math.pi - body.angle(body_arc)), 2 * math.pi)
+        return cls(body, ground, theta, ground_arc, body_arc)
+
+    @cached_property
+    def _body_start(self) -> float:
+        return float(self.body.parameter(self.body_arc))
+
+    @cached_property
+    def _start_angles(self) -> tuple[float, float]:
+        """Unwrapped tangent angles of ground and body at the start; only their changes matter."""
+        return float(self.ground.angle(self.ground_arc)), float(self.body.angle_of(self._body_start))
+
+    @cached_property
+    def _apart_everywhere(self) -> bool:
+        """Whether no two places of the curves could fit or cut: a property of the ranges of curvature alone."""
+        return self.ground.curvature_range[0] + self.body.curvature_range[0] >= 0
+
+    def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
+        """-(theta - start) (...) and its slope, as a function of the body's parameter: increasing where it can roll."""
+        ground_arc = self.ground_arc + (self.body_arc - self.body.arc_of(body_parameter))
+        ground = self.ground.parameter(ground_arc)
+        ground_start, body_start = self._start_angles
+        turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)
+        curvature = self.ground.curvature_of(ground) + self.body.curvature_of(body_parameter)
+        return -turned, curvature * self.body.speed_of(body_parameter)
+
+    @cached_property
+    def _parameter_limits(self) -> tuple[float, float]:
+        """The body's parameters between which rolling is possible; raises nothing."""
+        low, high = self.body.limits
+        ground_low, ground_high = self.ground.limits
+        total = self.ground_arc + self.body_arc
+        low, high = max(low, total - ground_high), min(high, total - ground_low)
+        if not self._apart_everywhere:
+            low, high = self._stop(low, -1), self._stop(high, +1)
+        ends = (float(self.body.parameter(arc)) if math.isfinite(arc) else arc for arc in (low, high))
+        return tuple(ends)  # type: ignore[return-value]
+
+    def _stop(self, end: float, side: int) -> float:
+        """The first body arc on one side of the start where the curvatures cancel, or the end [m]."""
+        period = self.body.length if not math.isfinite(self.ground.length) else self.body.length + self.ground.length
+        if not math.isfinite(end):
+            if not math.isfinite(period):
+                return end
+            reach = self.body_arc + side * period
+        else:
+            reach = end
+
+        def free(arc: ArrayLike) -> Array:
+            total = self.ground_arc + self.body_arc
+            body, ground = self.body.curvature(arc), self.ground.curvature(total - np.asarray(arc))
+            return ground + body - NEAR_CONFORMAL * np.maximum(np.abs(ground), np.abs(body))
+
+        arcs = np.linspace(self.body_arc, reach, SCAN)
+        blocked = np.flatnonzero(free(arcs) <= 0)
+        if blocked.size == 0:
+            return end
+        good, bad = float(arcs[max(blocked[0] - 1, 0)]), float(arcs[blocked[0]])
+        for _ in range(60):
+            middle = 0.5 * (good + bad)
+            good, bad = (middle, bad) if free(middle) > 0 else (good, middle)
+        return good
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Rotations [rad] between which the body can roll: infinite, or where the curves fit or a curve ends."""
+        low, high = self._parameter_limits
+        later = self.theta - float(self._rotation(np.asarray(low))[0]) if math.isfinite(low) else math.inf
+        earlier = self.theta - float(self._rotation(np.asarray(high))[0]) if math.isfinite(high) else -math.inf
+        return (earlier, later)
+
+    def _body_parameter(self, theta: Array) -> Array:
+        rotation = theta - self.theta
+        if isinstance(self.ground, Line) and not isinstance(self.body, (Line, Side)):
+            return self.body.parameter_at(self._start_angles[1] - rotation)
+        low, high = self.limits
+        slack = 1e-12 * (1 + abs(self.theta))
+        if np.any((theta < low - slack) | (theta > high + slack)):
+            worst = float(theta[(theta < low - slack) | (theta > high + slack)].flat[0])
+            raise InvalidMechanism(
+                f"rolling: the body can't turn to {worst!r} rad; between {low:.9g} and {high:.9g} rad it rolls, "
+                "and there a curve ends or curvature_A + curvature_B falls to zero and the curves fit each other"
+            )
+        return solve_increasing(
+            self._rotation, -rotation, self._body_start - rotation * self._mean_slope, 1e-3, self._parameter_limits
+        )
+
+    @cached_property
+    def _mean_slope(self) -> float:
+        """About how far the body's parameter goes back in a radian of rotation: the first guess of the search."""
+
+        def mean(curve: Curve) -> float:
+            low, high = curve.curvature_range
+            return math.copysign(2 * math.pi / curve.length, high + low) if low != high else low
+
+        if math.isfinite(self.body.length):
+            once = float(self.body.parameter(self.body_arc + self.body.length)) - self._body_start
+            if math.isfinite(self.ground.length) or self.ground.curvature_range == (0.0, 0.0):
+                curvature = mean(self.body) + mean(self.ground)
+                if curvature > 0:
+                    return once / self.body.length / curvature
+        return 1 / float(self._rotation(np.asarray(self._body_start))[1])
+
+    def _contact_at(self, theta: Array, body_parameter: Array) -> Contact:
+        body_arc = self.body.arc_of(body_parameter)
+        ground_arc = self.ground_arc + (self.body_arc - body_arc)
+        ground = self.ground.parameter(ground_arc)
+        return Contact(
+            theta=theta,
+            ground_arc=ground_arc,
+            body_arc=body_arc,
+            point=self.ground.point_of(ground),
+            arm=-turned(theta, self.body.point_of(body_parameter)),
+            tangent_angle=self.ground.angle_of(ground),
+            ground_curvature=self.ground.curvature_of(ground),
+            body_curvature=self.body.curvature_of(body_parameter),
+        )
+
+    def _refuse_conformal(self, contact: Contact) -> None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            near = ~(contact.conformality >= NEAR_CONFORMAL)
+        if np.any(near):
+            theta, arc, on_body, a, b = (
+                float(value[near].flat[0])
+                for value in (
+                    np.broadcast_to(contact.theta, near.shape),
+                    np.broadcast_to(contact.ground_arc, near.shape),
+                    np.broadcast_to(contact.body_arc, near.shape),
+                    contact.ground_curvature,
+                    contact.body_curvature,
+                )
+            )
+            raise InvalidMechanism(
+                f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
+                f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
+                f"{NEAR_CONFORMAL:g} of the larger, else the curves cut into each other or fit so closely "
+                "that the contact has no place"
+            )
+
+    def _refuse_overlap(self, theta: Array) -> None:
+        """A closed curve inside a ring must lie inside it all round, not only at the contact."""
+        around, within = _hole(self.ground), _hole(self.body)
+        if around is not None and within is None and math.isfinite(self.body.length):
+            (centre, radius), other = around, self.body
+        elif within is not None and around is None and math.isfinite(self.ground.length):
+            (centre, radius), other = within, self.ground
+        else:
+            return
+        rim = other.point(np.linspace(0, other.length, SCAN))
+        contact = self._contact_at(theta, self._body_parameter(theta))
+        origin = contact.point + contact.arm
+        if other is self.body:
+            world = turned(theta[..., None], rim) + origin[..., None, :]
+        else:
+            world = turned(-theta[..., None], rim - origin[..., None, :])
+        excess = np.linalg.norm(world - centre, axis=-1).max(axis=-1) - radius
+        if np.any(excess > 1e-9 * radius):
+            worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
+            raise InvalidMechanism(
+                f"rolling: at theta = {float(theta[worst]):.9g} rad the curve inside the ring of radius "
+                f"{radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
+                "the ring must be larger than its roller everywhere"
+            )
+
+    def contact(self, theta: ArrayLike) -> Contact:
+        """The contact on both curves at rotations theta (...) [rad]."""
+        theta = np.asarray(theta, dtype=float)
+        require_finite("rolling", theta=theta)
+        contact = self._contact_at(theta, self._body_parameter(theta))
+        self._refuse_conformal(contact)
+        if not self._apart_everywhere:
+            self._refuse_overlap(theta)
+        return contact
+
+    def advance(self, theta: ArrayLike) -> Array:
+        """s (...) [m]: how far the contact has moved along the ground since the start."""
+        return self.contact(theta).ground_arc - self.ground_arc
+
+    def pose(self, theta: ArrayLike) -> Array:
+        """Poses (..., 3) [m, m, rad] of the body's frame at rotations theta (...) [rad]."""
+        contact = self.contact(theta)
+        return np.concatenate([contact.point + contact.arm, contact.theta[..., None]], axis=-1)
+
+    def _arm(self, contact: Contact, point: Vector | ArrayLike) -> Array:
+        """r_{P/C} (..., 2) [m] of a point P of the body, in its own frame."""
+        return contact.arm + turned(contact.theta, np.asarray(point, dtype=float))
+
+    def position(self, theta: ArrayLike, point: ArrayLike = (0.0, 0.0)) -> Array:
+        """Positions (..., 2) [m] of a point of the body, given in its own frame [m]: the roulette."""
+        contact = self.contact(theta)
+        return contact.point + self._arm(contact, point)
+
+    def velocity(self, theta: ArrayLike, rate: ArrayLike, point: ArrayLike = (0.0, 0.0)) -> Array:
+        """(18.66) v = omega x r_{P/C} (..., 2) [m/s] of a point of the body at the rate omega (...) [rad/s]."""
+        return np.asarray(rate)[..., None] * quarter_turned(self._arm(self.contact(theta), point))
+
+    def contact_velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+        """v_C = omega / (curvature_A + curvature_B) e_t (..., 2) [m/s]: of no material point."""
+        contact = self.contact(theta)
+        return (np.asarray(rate) * contact.rate)[..., None] * contact.tangent
+
+    def pinned_acceleration(
+        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: ArrayLike = (0.0, 0.0)
+    ) -> Array:
+        """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration as if the body were pinned at C."""
+        arm = self._arm(self.contact(theta), point)
+        return np.asarray(growth)[..., None] * quarter_turned(arm) - np.asarray(rate)[..., None] ** 2 * arm
+
+    def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+        """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2]: what rolling adds, the same for every point."""
+        contact = self.contact(theta)
+        return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
+
+    def acceleration(
+        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: ArrayLike = (0.0, 0.0)
+    ) -> Array:
+        """Accelerations (..., 2) [m/s^2] of a point at the rate omega [rad/s] and its growth alpha [rad/s^2] (...)."""
+        return self.pinned_acceleration(theta, rate, growth, point) + self.rolling_acceleration(theta, rate)

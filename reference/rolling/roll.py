@@ -1,0 +1,94 @@
+"""The joint Roll: a curve of the second body rolls without slip on a curve of the first, or of the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.curves.curve import Vector
+from reference.rolling.kinematics import Rolling
+
+
+@dataclass(frozen=True)
+class Roll:
+    """Ideal rolling of two bodies (18.66): at the contact, the material of the second has the velocity of the first's.
+
+    `rolling` holds both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
+    second, each from its centre of mass, and where they touch at the start. The contact is a function of the relative
+    rotation alone, so the joint is holonomic: the pose of the second body is the one that rolling gives at its
+    rotation.
+
+    Rows: relative velocity at the contact along e_t, in which the first's curve is traversed, then along e_n towards
+    the interior of the second (see `reference.curves`). They are the derivatives of the gap where the gap is zero.
+    Reactions on the second body [N]: friction along e_t, and the normal force, which presses where positive; this
+    joint can pull.
+    """
+
+    size: ClassVar[int] = 2
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("tangent", "normal")
+    stackable: ClassVar[bool] = False  # curves don't stack as numbers do
+
+    name: str
+    first: str | None
+    second: str | None
+    rolling: Rolling
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (0.0, 0.0)
+
+    @cached_property
+    def first_point(self) -> Vector:
+        """Where they touch at the start, in the first body's frame [m]."""
+        x, y = self.rolling.ground.point(self.rolling.ground_arc)
+        return (float(x), float(y))
+
+    @cached_property
+    def second_point(self) -> Vector:
+        """Where they touch at the start, in the second body's frame [m]."""
+        x, y = self.rolling.body.point(self.rolling.body_arc)
+        return (float(x), float(y))
+
+    def _contact(self, theta: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Contact point, arm r_{O'/C} (..., 2) and tangent angle (...), in the first body's frame.
+
+        A complex rotation is continued by the first derivative: a complex step asks for no more, and it is exact.
+        """
+        contact = self.rolling.contact(np.real(theta))
+        if not np.iscomplexobj(theta):
+            return contact.point, contact.arm, contact.tangent_angle
+        step = 1j * np.imag(theta)
+        advance = (step * contact.rate)[..., None] * contact.tangent
+        across = np.stack([-contact.arm[..., 1], contact.arm[..., 0]], axis=-1)
+        angle = contact.tangent_angle + step * contact.ground_curvature * contact.rate
+        return contact.point + advance, contact.arm + step[..., None] * across - advance, angle
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Second body minus where rolling would put it at its rotation, along e_t and e_n (..., 2) [m]."""
+        point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
+        cosine, sine = np.cos(first[..., 2]), np.sin(first[..., 2])
+        x, y = point[..., 0] + arm[..., 0], point[..., 1] + arm[..., 1]
+        open_x = second[..., 0] - first[..., 0] - (cosine * x - sine * y)
+        open_y = second[..., 1] - first[..., 1] - (sine * x + cosine * y)
+        along, across = np.cos(angle + first[..., 2]), np.sin(angle + first[..., 2])
+        return np.stack([along * open_x + across * open_y, across * open_x - along * open_y], axis=-1)
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity rows (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
+        point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
+        world = angle + first[..., 2]
+        rows = np.zeros((*world.shape, 2, 6), dtype=np.result_type(world, point))
+        for row, x, y, own_x, own_y in (
+            (0, np.cos(world), np.sin(world), np.cos(angle), np.sin(angle)),
+            (1, np.sin(world), -np.cos(world), np.sin(angle), -np.cos(angle)),
+        ):
+            rows[..., row, 0], rows[..., row, 1] = -x, -y
+            rows[..., row, 2] = own_x * point[..., 1] - own_y * point[..., 0]
+            rows[..., row, 3], rows[..., row, 4] = x, y
+            rows[..., row, 5] = own_x * arm[..., 1] - own_y * arm[..., 0]
+        return rows

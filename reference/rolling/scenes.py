@@ -1,0 +1,195 @@
+"""Scenes of bodies that are not round, or not centred, rolling under gravity on flat and on curved ground."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import sample_times
+from reference.curves.cam import Cam
+from reference.curves.curve import Curve, Placed, Vector
+from reference.curves.ellipse import Ellipse
+from reference.curves.round import Circle, Line, Ring
+from reference.mechanism import Body, Mechanism
+from reference.rolling.body import GRAVITY, RollingBody
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class RollingScene(Scene):
+    """A body on fixed ground: subclasses give the two curves; the centre of mass is the origin of the body's curve."""
+
+    page: ClassVar[str] = "rolling"
+    source: ClassVar[str] = "rolling of not round objects, (18.66)"
+
+    mass: float = 1.0  # kg
+    start_angle: float = 0.0  # rad
+    start_rate: float = 4.0  # rad/s
+    ground_arc: float = 0.0  # m, where the contact begins
+    gravity: Vector = (0.0, -GRAVITY)  # m/s^2
+    duration: float = 2.0  # s
+    friction: float = 1.0  # the coefficient up to which a real contact is taken to hold
+
+    @abstractmethod
+    def body_curve(self) -> Curve:
+        """The body's boundary in its own frame, from the centre of mass."""
+
+    def ground_curve(self) -> Curve:
+        """Flat ground through the origin, unless a scene says otherwise."""
+        return Line()
+
+    @property
+    @abstractmethod
+    def inertia(self) -> float:
+        """kg m^2 about the centre of mass."""
+
+    @cached_property
+    def motion_law(self) -> RollingBody:
+        """The body in its one coordinate: forces, friction, hop, slip, small oscillations."""
+        rolling = Rolling.at_angle(self.body_curve(), self.ground_curve(), self.start_angle, self.ground_arc)
+        return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
+
+    @cached_property
+    def hop(self) -> float | None:
+        """When the contact would have to pull [s]; None within the duration."""
+        return self.motion_law.hop(self.duration)
+
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
+        """Up to where a contact of this friction slips, or hops: beyond, an engine is right to disagree [s]."""
+        slip = self.motion_law.slip(self.friction, self.duration)
+        return math.inf if slip is None else slip
+
+    @cached_property
+    def horizon(self) -> float:  # type: ignore[override]
+        return min(self.duration, self.comparable_until)
+
+    def mechanism(self) -> Mechanism:
+        law = self.motion_law
+        x, y, angle = (float(value) for value in law.rolling.pose(law.rolling.theta))
+        vx, vy = (float(value) for value in law.rolling.velocity(law.rolling.theta, self.start_rate))
+        body = Body("roller", self.mass, self.inertia, (x, y, angle), (vx, vy, self.start_rate))
+        return Mechanism((body,), (Roll("contact", None, "roller", law.rolling),), self.gravity)
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        t = sample_times("rolling", t)
+        law = self.motion_law
+        theta, rate = law.states(t)
+        velocity = law.rolling.velocity(theta, rate)
+        tangent, normal = law.forces(t)
+        return Trajectory(
+            t=t,
+            pose=law.rolling.pose(theta)[:, None, :],
+            twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
+            reaction=np.stack([tangent, normal], axis=-1),
+        )
+
+
+@dataclass(frozen=True)
+class RollingEllipse(RollingScene):
+    """A uniform elliptic disc on flat ground."""
+
+    name: ClassVar[str] = "rolling_ellipse"
+
+    along_x: float = 0.5  # m, semi-axis
+    along_y: float = 0.3
+
+    def body_curve(self) -> Curve:
+        return Ellipse(self.along_x, self.along_y)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * (self.along_x**2 + self.along_y**2) / 4
+
+
+@dataclass(frozen=True)
+class RollingDisc(RollingScene):
+    """A round disc whose centre of mass is off its centre, as if its inertia were that of a uniform disc."""
+
+    name: ClassVar[str] = "rolling_disc"
+
+    radius: float = 0.4  # m
+    eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre
+
+    def body_curve(self) -> Curve:
+        return Circle(self.radius, (self.eccentricity, 0.0))
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.radius**2 / 2
+
+
+@dataclass(frozen=True)
+class RollingCam(RollingScene):
+    """A three-lobed, slightly eccentric cam on flat ground."""
+
+    name: ClassVar[str] = "rolling_cam"
+
+    radius: float = 0.4  # m, mean of the support function
+    cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics
+    sines: tuple[float, ...] = (0.0, 0.02)
+    gyration: float = 0.28  # m, radius of gyration
+
+    def body_curve(self) -> Curve:
+        return Cam(self.radius, self.cosines, self.sines)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.gyration**2
+
+
+@dataclass(frozen=True)
+class RollingDownhill(RollingEllipse):
+    """The ellipse on an incline that falls to -x, so that it goes faster and faster."""
+
+    name: ClassVar[str] = "rolling_incline"
+
+    slope: float = 0.1  # rad, the ground rises to +x
+    along_y: float = 0.4
+    start_rate: float = 2.5
+
+    def ground_curve(self) -> Curve:
+        return Line(math.pi + self.slope)
+
+
+@dataclass(frozen=True)
+class RollingInRing(RollingEllipse):
+    """The ellipse inside a round hole: rolling to and fro about the bottom and beyond."""
+
+    name: ClassVar[str] = "rolling_in_ring"
+
+    ring: float = 1.5  # m, radius of the hole about the origin
+    start_rate: float = 2.0
+
+    @property
+    def samples(self) -> int:
+        """Half as many as elsewhere: finding a contact on two curved boundaries costs a reader several times more."""
+        return max(1, super().samples // 2)
+
+    def ground_curve(self) -> Curve:
+        return Placed(Ring(self.ring), turn=-math.pi / 2)  # arc 0 at the bottom
+
+
+@dataclass(frozen=True)
+class RollingOnCircle(RollingDisc):
+    """The eccentric disc on top of a fixed round hill: it rolls off, and must hop where N falls to zero."""
+
+    name: ClassVar[str] = "rolling_on_circle"
+
+    hill: float = 1.0  # m, radius of the hill about the origin
+    radius: float = 0.25
+    eccentricity: float = 0.05
+    start_rate: float = 1.0
+    duration: float = 1.2
+
+    def ground_curve(self) -> Curve:
+        return Placed(Circle(self.hill), turn=math.pi / 2)  # arc 0 at the top

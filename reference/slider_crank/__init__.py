@@ -1,0 +1,6 @@
+"""The slider-crank: its equations, and the scenes that use them."""
+
+from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+
+__all__ = ["DrivenSliderCrank", "FreeSliderCrank", "MovingSliderCrank", "SliderCrank"]

@@ -1,0 +1,153 @@
+"""A slider-crank driven at a constant rate, and one let go: crank, rod and a sliding block of its own.
+
+The block has a slot at its centre of mass and keeps its angle by a drive of rate zero: a slot alone would leave it
+free to turn about its pin, a third freedom that no slider-crank has.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import require_finite, require_positive
+from reference.joints import Drive, Joint, Pin, Slot
+from reference.mechanism import Body, Mechanism
+from reference.numerics.integration import Integrated, error_of, integrate
+from reference.scene import Scene
+from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+def _rates(moving: MovingSliderCrank, state: Array) -> Array:
+    theta, rate = state[..., 0], state[..., 1]
+    return np.stack([rate, moving.acceleration(theta, rate)], axis=-1)
+
+
+@lru_cache(maxsize=8)
+def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float) -> Integrated:
+    return integrate(lambda state: _rates(moving, state), [angle, rate], until)
+
+
+@dataclass(frozen=True)
+class DrivenSliderCrank(Scene):
+    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; lengths [m], masses [kg], gravity [m/s^2].
+
+    The slider's `slider_inertia` [kg m^2] never acts: it doesn't turn.
+    """
+
+    name: ClassVar[str] = "driven_slider_crank"
+    page: ClassVar[str] = "slider_crank"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: a slider-crank"
+    driven: ClassVar[bool] = True
+    crank: float = 0.3
+    rod: float = 1.0
+    offset: float = 0.0
+    assembly: int = 1
+    crank_mass: float = 0.3
+    rod_mass: float = 1.0
+    slider_mass: float = 0.5
+    slider_inertia: float = 1e-3
+    gravity: float = 9.81
+    angle: float = 0.5
+    rate: float = 10.0
+    duration: float = 2 * math.pi / 10
+    horizon: float = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
+
+    def __post_init__(self) -> None:
+        require_positive(f"scene {self.name!r}", slider_inertia=self.slider_inertia)
+        require_finite(f"scene {self.name!r}", angle=self.angle, rate=self.rate)
+        _ = self.moving  # refuses lengths and masses that can't be
+
+    @cached_property
+    def moving(self) -> MovingSliderCrank:
+        shape = SliderCrank(self.crank, self.rod, self.offset, self.assembly)
+        return MovingSliderCrank(shape, self.crank_mass, self.rod_mass, self.slider_mass, self.gravity)
+
+    def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
+        """Angle, rate and acceleration of the crank (times,) [rad, s]."""
+        return self.angle + self.rate * t, np.full_like(t, self.rate), np.zeros_like(t)
+
+    def _placement(self, theta: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+        """Poses, twists, accelerations (times, 3 bodies, 3)."""
+        shape, r = self.moving.shape, self.crank
+        sine, cosine, zero = np.sin(theta), np.cos(theta), np.zeros_like(theta)
+        x, beta = shape.position(theta), shape.rod_angle(theta)
+        (x1, x2), (b1, b2) = shape.position_rates(theta), shape.rod_rates(theta)
+
+        def bodies(*rows: tuple[Array | float, Array | float, Array | float]) -> Array:
+            return np.stack([np.stack([value + zero for value in row], axis=-1) for row in rows], axis=-2)
+
+        place = bodies(
+            (r * cosine / 2, r * sine / 2, theta),
+            ((r * cosine + x) / 2, (r * sine + self.offset) / 2, beta),
+            (x, self.offset, 0.0),
+        )
+        first = bodies((-r * sine / 2, r * cosine / 2, 1.0), ((x1 - r * sine) / 2, r * cosine / 2, b1), (x1, 0.0, 0.0))
+        second = bodies(
+            (-r * cosine / 2, -r * sine / 2, 0.0), ((x2 - r * cosine) / 2, -r * sine / 2, b2), (x2, 0.0, 0.0)
+        )
+        w, alpha = rate[:, None, None], acceleration[:, None, None]
+        return place, first * w, second * w**2 + first * alpha
+
+    @cached_property
+    def _mechanism(self) -> Mechanism:
+        theta, rate, acceleration = self.crank_motion(np.zeros(1))
+        pose, twist, _ = self._placement(theta, rate, acceleration)
+        masses = (self.crank_mass, self.rod_mass, self.slider_mass)
+        inertias = (self.crank_mass * self.crank**2 / 12, self.rod_mass * self.rod**2 / 12, self.slider_inertia)
+        names = ("crank", "rod", "slider")
+        bodies = tuple(
+            Body(name, mass, inertia, tuple(place), tuple(speed))
+            for name, mass, inertia, place, speed in zip(
+                names, masses, inertias, pose[0].tolist(), twist[0].tolist(), strict=True
+            )
+        )
+        joints: list[Joint] = [
+            Pin("A", None, "crank", (0.0, 0.0), (-self.crank / 2, 0.0)),
+            Pin("B", "crank", "rod", (self.crank / 2, 0.0), (-self.rod / 2, 0.0)),
+            Pin("C", "rod", "slider", (self.rod / 2, 0.0), (0.0, 0.0)),
+            Slot("guide", None, "slider", (0.0, self.offset), 0.0, (0.0, 0.0)),
+            Drive("level", None, "slider", 0.0, 0.0),
+        ]
+        if self.driven:
+            joints.append(Drive("drive", None, "crank", self.rate, self.angle))
+        return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
+
+    def mechanism(self) -> Mechanism:
+        return self._mechanism
+
+    def motion(self, t: ArrayLike) -> Trajectory:
+        t = np.atleast_1d(np.asarray(t, dtype=float))
+        pose, twist, acceleration = self._placement(*self.crank_motion(t))
+        return Trajectory(t, pose, twist, self._mechanism.reaction(pose, acceleration))
+
+    def branch(self, pose: Array) -> NDArray[np.int_]:
+        """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
+        pin = 2 * np.asarray(pose)[..., 0, 0]  # the crank's centre is halfway out to its pin
+        return np.sign(pose[..., 2, 0] - pin).astype(int)
+
+
+@dataclass(frozen=True)
+class FreeSliderCrank(DrivenSliderCrank):
+    """The same, let go at `angle` with `rate`: it turns over by its own speed, and gravity acts on it."""
+
+    name: ClassVar[str] = "free_slider_crank"
+    driven: ClassVar[bool] = False
+    duration: float = 2.0
+    horizon: float = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
+
+    def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
+        until = max(self.duration, float(t.max()))
+        state = _integrated(self.moving, self.angle, self.rate, until)(t)
+        return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
+
+    def error(self, t: ArrayLike) -> Array:
+        """A bound on the truth's own error (times,) [rad, rad/s], by two tolerances."""
+        return error_of(lambda state: _rates(self.moving, state), [self.angle, self.rate], t)
