@@ -20,8 +20,10 @@ from reports.sweep import groups
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 MARKERS = {"pymunk": "o", "mujoco": "s", "lagrange": "^"}
-LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)))
-FILLS = ("empty", "left", "full", "bottom", "top")
+LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
+FILLS = ("empty", "left", "full", "bottom", "top", "right", "empty", "full")
+# An engine's three variants look the same in every chart, whichever of them are shown.
+VARIANTS = ("default", "tuned", "extended")
 COLUMNS = 2
 LONG_NAME = 30  # letters: beyond, four names don't fit side by side
 
@@ -34,7 +36,9 @@ def colour(engine: str, theme: Theme) -> str:
 
 def look(engine: str, variant: str, variants: Sequence[str], theme: Theme) -> dict[str, Any]:
     """Line and marker of one method among the variants of its engine that are shown."""
-    index = variants.index(variant)
+    named = [other for other in variants if other not in VARIANTS]
+    first = 0 if len(named) == len(variants) else len(VARIANTS)
+    index = VARIANTS.index(variant) if variant in VARIANTS else first + named.index(variant)
     paint, fill = colour(engine, theme), FILLS[index % len(FILLS)]
     return {
         "color": paint,

@@ -114,7 +114,7 @@ def choose_cells(
             cells += [
                 cell
                 for cell in page.extra_cells()
-                if any(cell.engine == engine for engine in engines) and (full or cell.purpose != "map")
+                if any(cell.engine == engine for engine in engines) and (full or cell.purpose not in ("map", "large"))
             ]
     return tuple(dict.fromkeys(cells))
 

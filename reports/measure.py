@@ -19,6 +19,9 @@ from reports.timing import process_seconds, repeated_stepping
 
 NAN = float("nan")
 
+# Experiments and maps are about what becomes of a run; only what is charted against its cost is timed with care.
+TIMED = ("sweep", "growth", "large")
+
 TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
 BLOWN = 1e3  # of the mechanism's length
 SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to what causes it
@@ -119,7 +122,7 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
         except ValueError as reason:
             return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
         row = compare(cell, mechanism, trajectory, row)
-        if repeat and Outcome(row.outcome).comparable:
+        if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:
             cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
         else:
             cpu, runs = trajectory.stepping, 1

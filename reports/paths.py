@@ -152,8 +152,8 @@ def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) ->
             zorder=5,
             bbox={"facecolor": theme.paper, "edgecolor": "none", "pad": 1.0},
         )
-    spot.set_xlabel(panel.across)
-    spot.set_ylabel(panel.up)
+    spot.set_xlabel(panel.across or ("x [m]" if panel.plane else ""))
+    spot.set_ylabel(panel.up or ("y [m]" if panel.plane else ""))
     if panel.logarithmic:
         spot.set_yscale("log")
     if panel.plane:

@@ -107,8 +107,15 @@ def _last_words(log: Path) -> str:
 
 
 def run_cells(
-    cells: Iterable[Cell], limit: float = TIME_LIMIT, workers: int = WORKERS, watch: Watch | None = None
+    cells: Iterable[Cell],
+    limit: float = TIME_LIMIT,
+    workers: int = WORKERS,
+    watch: Watch | None = None,
+    timed: bool = True,
 ) -> Iterator[Measurement]:
-    """Yield the measurement of every cell as it is done; a lost cell gives a row with its outcome and no numbers."""
-    for cell, result in supervise(measure, cells, limit, workers, watch):
+    """Yield the measurement of every cell as it is done; a lost cell gives a row with its outcome and no numbers.
+
+    `timed`: whether a cell is run again for the least of several times.
+    """
+    for cell, result in supervise(partial(measure, repeat=timed), cells, limit, workers, watch):
         yield blank(cell, result.outcome, result.sentence) if isinstance(result, Loss) else result

@@ -26,6 +26,7 @@ def run_into(
     workers: int = WORKERS,
     done: Callable[[Measurement], None] = lambda row: None,
     watch: Callable[[list[Cell]], None] | None = None,
+    timed: bool = True,
 ) -> int:
     """Run what is missing (everything if fresh), store each row as it arrives; how many were run.
 
@@ -34,7 +35,7 @@ def run_into(
     if fresh:
         store.forget(cells)
     waiting = missing(cells, store)
-    for row in run_cells(waiting, limit, workers, watch):
+    for row in run_cells(waiting, limit, workers, watch, timed):
         store.put(row)
         done(row)
     return len(waiting)

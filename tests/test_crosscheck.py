@@ -63,7 +63,7 @@ def rows(tmp_path_factory) -> Rows:
         for cell in sweep_cells((scene,), page.engines_of(scene), STEPS, COST_LIMIT)
     ]
     with Store(tmp_path_factory.mktemp("crosscheck") / "cells.sqlite") as store:
-        run_into(store, cells)
+        run_into(store, cells, timed=False)
         found = store.get(cells)
     assert len(found) == len(set(cells))
     return groups(found.values())

@@ -74,7 +74,7 @@ LAWS = {
 
 
 def cells() -> tuple[Cell, ...]:
-    """Every method at every size; the purpose "growth" runs always, "map" in a full run only."""
+    """Every method at every size; the purpose "growth" runs always, "large" in a full run only."""
     found = []
     for engine, largest in LARGEST.items():
         for links in (*SMALL, *LARGE, *COSTLY):
@@ -83,11 +83,11 @@ def cells() -> tuple[Cell, ...]:
             if links in COSTLY or (links > 100 and engine in SHORT_OF_BREATH):
                 steps = MORE if engine in CHEAP else FEW
                 scene = LongPendulum(links, duration=steps * STEP, horizon=steps * STEP)
-                found.append(Cell(scene, engine, steps, "map", 1))
+                found.append(Cell(scene, engine, steps, "large", 1))
             else:
                 scene = LongPendulum(links)
                 every = round(scene.duration / STEP) // SAMPLES
-                found.append(Cell(scene, engine, every, "growth" if links in SMALL else "map", SAMPLES))
+                found.append(Cell(scene, engine, every, "growth" if links in SMALL else "large", SAMPLES))
     return tuple(found)
 
 
