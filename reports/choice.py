@@ -8,8 +8,11 @@ from collections.abc import Iterable, Sequence
 
 from engines import Engine
 from reference.scene import Scene
-from reports.cells import FULL, QUICK, Cell, sweep_cells
+from reports.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.page import Page
+
+# A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
+QUICK_CELL = 0.1
 
 
 class BadInput(ValueError):
@@ -92,7 +95,8 @@ def choose_cells(
 ) -> tuple[Cell, ...]:
     """The cells of a run: the grid, with the failures of the pages that teach these scenes, and their maps if full.
 
-    `every` or `steps` replace the grid by these steps alone. Raises BadInput for steps that can't be.
+    A quick run leaves out what would take longer than QUICK_CELL. `every` or `steps` replace the grid by these steps
+    alone. Raises BadInput for steps that can't be.
     """
     for count in every:
         if count < 1:
@@ -116,7 +120,13 @@ def choose_cells(
                 for cell in page.extra_cells()
                 if any(cell.engine == engine for engine in engines) and (full or cell.purpose not in ("map", "large"))
             ]
-    return tuple(dict.fromkeys(cells))
+    chosen_once = dict.fromkeys(cells)
+    return tuple(chosen_once if full else (cell for cell in chosen_once if _quick(cell)))
+
+
+def _quick(cell: Cell) -> bool:
+    """Whether a quick run has the time for a cell; the coarsest step of a scene's grid is always there."""
+    return estimated_cost(cell) <= QUICK_CELL or (cell.purpose == "sweep" and cell.every == QUICK[0])
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:

@@ -11,7 +11,7 @@ from reports.cells import Cell
 
 Result = TypeVar("Result")
 
-BUDGET = 0.15  # s spent on repeating one cell
+BUDGET = 0.05  # s spent on repeating one cell
 MOST_RUNS = 5
 LONG = 0.5  # s: warming up is nothing beside a run this long, so it is not repeated
 

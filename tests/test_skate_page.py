@@ -151,7 +151,9 @@ def test_a_run_has_the_named_methods_of_a_page_and_those_of_its_experiments():
     assert ("sleigh", "skate: reflection") in swept
     # Nothing constructs a skate where there is none.
     assert ("pinned_body", "skate: reflection") not in swept
-    assert {cell for failure in skate.PAGE.failures for cell in failure.cells} <= set(cells)
+    everything = choose_cells(skate.SCENES_HERE, engines, (skate.PAGE,), full=True)
+    assert {cell for failure in skate.PAGE.failures for cell in failure.cells} <= set(everything)
+    assert set(cells) < set(everything)
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)

@@ -15,7 +15,7 @@ from reports.cells import Cell
 from reports.page import Material, Page
 from reports.pages.four_bar_failures import FAILURES, MAPS
 from reports.pages.four_bar_known import KNOWN, ORDERS
-from reports.sweep import best_of, by_method, sweeps
+from reports.pages.told import told
 from reports.theme import svg
 
 NAME = "four_bar"
@@ -48,17 +48,8 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows and sweeps by method, for sentences: `best(scene, engine, variant)`, `sweep(...)`; None without one."""
-    rows = material.sweep(SCENES_HERE)
-    found = tuple(sweeps(rows))
-
-    def best(scene: str, engine: str, variant: str) -> Any:
-        return best_of((row for row in rows if row.scene == scene), engine, variant)
-
-    def sweep(scene: str, engine: str, variant: str, quantity: str = "angle") -> Any:
-        return by_method(found, quantity).get((scene, engine, variant))
-
-    return {"best": best, "sweep": sweep}
+    """Rows and sweeps by method, for sentences."""
+    return told(material, SCENES_HERE)
 
 
 PAGE = Page(

@@ -45,7 +45,7 @@ def rates_drift() -> list[Observation]:
                 Observation(
                     "RK45 on the printed rates",
                     f"{turns}, rtol {number(rtol, 1)}",
-                    f"beta off by {error:.2g} rad after {run.evaluations} evaluations{stopped}",
+                    f"beta off by {number(error)} rad after {run.evaluations} evaluations{stopped}",
                 )
             )
     return found

@@ -17,7 +17,7 @@ from reports import rolling_charts, rolling_drawings
 from reports.page import Material, Page
 from reports.pages.rolling_failures import FAILURES, MAPS, polygon_cells, softness_cells
 from reports.pages.rolling_known import KNOWN, ORDERS
-from reports.sweep import best_of, by_method, sweeps
+from reports.pages.told import told
 from reports.theme import svg
 
 NAME = "rolling"
@@ -55,15 +55,8 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows and sweeps by method, for sentences: `best(scene, engine, variant)`, `sweep(...)`; None without one."""
+    """Rows and sweeps by method, for sentences; `at` takes a method in one word, and a step."""
     rows = material.sweep(SCENES_HERE)
-    found = tuple(sweeps(rows))
-
-    def best(scene: str, engine: str, variant: str) -> Any:
-        return best_of((row for row in rows if row.scene == scene), engine, variant)
-
-    def sweep(scene: str, engine: str, variant: str, quantity: str = "angle") -> Any:
-        return by_method(found, quantity).get((scene, engine, variant))
 
     def at(scene: str, method: str, step: float) -> Any:
         """The row of a method ("mujoco tuned") at the step nearest to one [s]."""
@@ -73,7 +66,7 @@ def words(material: Material) -> Mapping[str, Any]:
     polygons = {
         (corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows
     }
-    return {"best": best, "sweep": sweep, "at": at, "polygons": polygons, "hill": RollingOnCircle()}
+    return {**told(material, SCENES_HERE), "at": at, "polygons": polygons, "hill": RollingOnCircle()}
 
 
 PAGE = Page(
