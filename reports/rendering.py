@@ -197,5 +197,6 @@ def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:
     files["index.md"] = render_index(pages.items(), command)
     files["errors.csv"] = tables.as_csv(rows.values(), timings=False)
     header = f"{today()}\n{machine()}\n{versions()}\n{command}\nCPU seconds: cpu per simulated second; build once"
+    files["descriptions.csv"] = tables.descriptions_csv(rows.values())
     files["timings.csv"] = tables.as_csv(rows.values(), timings=True, header=header)
     return files

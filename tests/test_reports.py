@@ -101,6 +101,14 @@ def test_errors_have_no_timing_in_them_and_timings_say_where_they_were_taken(fil
     assert float(body[0]["cpu"]) > 0
 
 
+def test_every_digest_in_the_errors_is_described(files):
+    errors = list(csv.DictReader(io.StringIO(files["errors.csv"])))
+    described = {row["digest"]: row["description"] for row in csv.DictReader(io.StringIO(files["descriptions.csv"]))}
+    used = {row[name] for row in errors for name in ("parameters", "settings")}
+    assert used == set(described)
+    assert any("(" in text for text in described.values())
+
+
 def test_errors_do_not_change_when_timings_do(material, files):
     slower = Material({cell: replace(row, cpu=2 * row.cpu, build=1.0) for cell, row in material.rows.items()})
     assert render_all({PAGE: slower}, "the command")["errors.csv"] == files["errors.csv"]
