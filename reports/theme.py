@@ -10,7 +10,6 @@ from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
@@ -123,10 +122,3 @@ def svg(figure: Figure, title: str) -> str:
     sheet = "\n".join(["<style>@media (prefers-color-scheme: dark) {", *rules, "}</style>"])
     text = re.sub(r"(<svg [^>]*>)", lambda match: match.group(1) + "\n" + sheet, text, count=1)
     return re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE)
-
-
-def png(figure: Figure, path: str, resolution: int = 110) -> None:
-    """Write a figure as a picture, to be looked at."""
-    FigureCanvasAgg(figure)
-    with settings():
-        figure.savefig(path, dpi=resolution)
