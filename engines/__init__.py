@@ -1,6 +1,9 @@
 """The contract of an engine under test, and the one list of them.
 
-1. An engine is a frozen dataclass; its fields are its settings, printed in the report.
+1. An engine is a frozen dataclass; its fields are its settings, printed in the report. `variant` is a label of the
+   user's choice: any string that is not empty and can be printed. Settings, steps and counts that can't be are refused
+   by a ValueError, not by the engine's own abort: `reference.validation` does it for what inherits from `Valid`, and
+   for `build` and `run` with `validated`.
 2. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
    sentence. It sees no scene, so it can't see the answer.
 3. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
@@ -11,12 +14,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Count, Positive
 
 
 class Unsupported(Exception):
@@ -38,9 +41,10 @@ class Run(Protocol):
 
     @property
     def size(self) -> Size: ...
-    def __call__(self, samples: int, every: int) -> Trajectory: ...
+    def __call__(self, samples: Count, every: Count) -> Trajectory: ...
 
 
+@runtime_checkable
 class Engine(Protocol):
     """See the module's numbered contract."""
 
@@ -48,17 +52,4 @@ class Engine(Protocol):
     def name(self) -> str: ...
     @property
     def variant(self) -> str: ...
-    def build(self, mechanism: Mechanism, dt: float) -> Run: ...
-
-
-def check_step(dt: float) -> None:
-    """Raise ValueError unless dt is a finite time above zero: some engines abort the process instead."""
-    if not (isinstance(dt, (int, float)) and math.isfinite(dt) and dt > 0):
-        raise ValueError(f"step dt is {dt!r}; it must be a finite number of seconds greater than zero")
-
-
-def check_counts(samples: int, every: int) -> None:
-    """Raise ValueError unless both counts are whole numbers above zero."""
-    for name, value in (("samples", samples), ("every", every)):
-        if not (isinstance(value, int) and value > 0):
-            raise ValueError(f"{name} is {value!r}; it must be a whole number greater than zero")
+    def build(self, mechanism: Mechanism, dt: Positive) -> Run: ...

@@ -9,9 +9,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Run, Size, check_counts, check_step
+from engines import Engine, Run, Size
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Count, InvalidMechanism, Name, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,7 @@ def extrapolation_weights(levels: Sequence[int], powers: Sequence[int]) -> Array
 
 
 @dataclass(frozen=True)
-class Extrapolated:
+class Extrapolated(Valid):
     """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
@@ -37,17 +38,19 @@ class Extrapolated:
     """
 
     engine: Engine
-    variant: str
-    levels: tuple[int, ...]
-    powers: tuple[int, ...]
+    variant: Name
+    levels: tuple[Count, ...]
+    powers: tuple[Count, ...]
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         for name, values in (("levels", self.levels), ("powers", self.powers)):
-            whole = all(isinstance(value, int) and value > 0 for value in values)
-            if not (values and whole and all(low < high for low, high in pairwise(values))):
-                raise ValueError(f"extrapolated: {name} are {values!r}; they must be whole numbers from 1, rising")
+            if not (values and all(low < high for low, high in pairwise(values))):
+                raise InvalidMechanism(
+                    f"extrapolated: {name} are {values!r}; they must be whole numbers from 1, rising"
+                )
         if len(self.levels) != len(self.powers) + 1:
-            raise ValueError(
+            raise InvalidMechanism(
                 f"extrapolated: {len(self.levels)} levels remove {len(self.levels) - 1} powers, "
                 f"but powers are {self.powers!r}; give one power fewer than levels"
             )
@@ -57,9 +60,9 @@ class Extrapolated:
         """The name of the engine inside."""
         return self.engine.name
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Build the engine once a level; raises whatever it raises."""
-        check_step(dt)
         return ExtrapolatedRun(self, tuple(self.engine.build(mechanism, dt / level) for level in self.levels))
 
 
@@ -70,8 +73,8 @@ class ExtrapolatedRun:
         self._method, self._runs = method, runs
         self.size: Size = runs[0].size
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
-        check_counts(samples, every)
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         levels, powers = self._method.levels, self._method.powers
         parts = [run(samples, every * level) for run, level in zip(self._runs, levels, strict=True)]
         weights = extrapolation_weights(levels, powers)

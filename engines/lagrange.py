@@ -11,20 +11,22 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
-from engines import Size, check_counts, check_step
+from engines import Size
 from reference.mechanism import RANK_TOLERANCE, Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Count, InvalidMechanism, Positive, Rule, Valid, validated
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4", "dop853"]
 Stabilisation = Literal["none", "baumgarte", "projection"]
+Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 to below 1")]
 
 # Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
 BAUMGARTE_STEPS = 5.0
@@ -138,7 +140,7 @@ def _adaptive(dynamics: _Dynamics, tolerance: float) -> Step:
 
 
 @dataclass(frozen=True)
-class Lagrange:
+class Lagrange(Valid):
     """Ideal constraints by exact multipliers; raises ValueError for settings that don't exist.
 
     integrator: "euler" (semi-implicit, order 1), "rk4" (order 4), "dop853" (order 8), all with the given fixed step;
@@ -149,22 +151,14 @@ class Lagrange:
 
     integrator: Integrator = "dop853"
     stabilisation: Stabilisation = "projection"
-    tolerance: float | None = None
+    tolerance: Tolerance | None = None
 
     def __post_init__(self) -> None:
-        for field, value, valid in (
-            ("integrator", self.integrator, get_args(Integrator)),
-            ("stabilisation", self.stabilisation, get_args(Stabilisation)),
-        ):
-            if value not in valid:
-                raise ValueError(f"lagrange: {field} is {value!r}; it must be one of {', '.join(valid)}")
-        if self.tolerance is not None:
-            if self.integrator != "dop853" or self.stabilisation == "baumgarte":
-                raise ValueError(
-                    "lagrange: a tolerance goes with dop853, without baumgarte: only those adapt their steps"
-                )
-            if not 1e-14 <= self.tolerance < 1:
-                raise ValueError(f"lagrange: tolerance is {self.tolerance!r}; it must lie in [1e-14, 1)")
+        super().__post_init__()
+        if self.tolerance is not None and (self.integrator != "dop853" or self.stabilisation == "baumgarte"):
+            raise InvalidMechanism(
+                "lagrange: a tolerance goes with dop853, without baumgarte: only those adapt their steps"
+            )
 
     @property
     def name(self) -> str:
@@ -179,9 +173,9 @@ class Lagrange:
     def variant(self) -> str:
         return f"{self.integrator} {self.stabilisation}" + (" adaptive" if self.tolerance is not None else "")
 
-    def build(self, mechanism: Mechanism, dt: float) -> _LagrangeRun:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> _LagrangeRun:
         """A run with steps of dt [s]; raises ValueError for a step that is not a finite time above zero."""
-        check_step(dt)
         return _LagrangeRun(self, mechanism, dt)
 
 
@@ -200,8 +194,8 @@ class _LagrangeRun:
             return _semi_implicit_euler(self._dynamics)
         return _runge_kutta(self._dynamics, _TABLEAUS[self._engine.integrator])
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
-        check_counts(samples, every)
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         dynamics, mechanism, step = self._dynamics, self._mechanism, self._step()
         steps, dt = (1, self._dt * every) if self._engine.tolerance is not None else (every, self._dt)
         project = self._engine.stabilisation == "projection"

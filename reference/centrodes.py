@@ -8,27 +8,31 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from reference.checks import InvalidMechanism, require_finite
 from reference.curves.curve import Array
 from reference.curves.traced import FEWEST, STILL, Traced, spline
 from reference.rolling.kinematics import Rolling
 from reference.trajectory import Trajectory
+from reference.validation import NOT_FINITE, InvalidMechanism, Numbers, Valid, of_shape, validated
 
 # A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is
 # large: for the shapes it is at infinity.
 SLOWEST = 1e-6
 
+Poses = Annotated[Array, of_shape("n", 3)]
+States = Annotated[Numbers, of_shape("...", 3)]
 
-def instant_centre(pose: ArrayLike, twist: ArrayLike) -> tuple[Array, Array]:
+
+@validated
+def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
     """The point that has no velocity, r_{C/O'} = k x v_{O'} / omega, in space and in the body (..., 2) [m].
 
     pose, twist (..., 3) of one body. NaN where the rotation rate is zero: the centre is at infinity.
     """
-    pose, twist = np.asarray(pose, dtype=float), np.asarray(twist, dtype=float)
     rate = np.where(twist[..., 2] == 0, np.nan, twist[..., 2])
     arm = np.stack([-twist[..., 1] / rate, twist[..., 0] / rate], axis=-1)
     cosine, sine = np.cos(pose[..., 2]), np.sin(pose[..., 2])
@@ -36,6 +40,7 @@ def instant_centre(pose: ArrayLike, twist: ArrayLike) -> tuple[Array, Array]:
     return pose[..., :2] + arm, in_body
 
 
+@validated
 def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array:
     """Distance (times,) [m] between the instant centres in space of one body: an engine's velocity error as a length.
 
@@ -48,13 +53,15 @@ def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array
 
 
 @dataclass(frozen=True, eq=False)
-class Centrodes:
+class Centrodes(Valid):
     """Both curves of a motion, sampled in the order of growing rotation; make one with `centrodes` or `from_poses`."""
 
-    pose: Array  # (n, 3) m, m, rad
-    space: Array  # (n, 2) m, instant centre in the world
-    body: Array  # (n, 2) m, the same in the body's frame
-    error: float  # m, how far the curves move if every second sample is left out: a bound on interpolation
+    pose: Poses  # (n, 3) m, m, rad
+    space: Annotated[Array, of_shape("n", 2)]  # (n, 2) m, instant centre in the world
+    body: Annotated[Array, of_shape("n", 2)]  # (n, 2) m, the same in the body's frame
+    error: Annotated[
+        float, NOT_FINITE
+    ]  # m, how far the curves move if every second sample is left out: a bound on interpolation
 
     @property
     def theta(self) -> Array:
@@ -109,15 +116,14 @@ class Centrodes:
         return Rolling(rolling.body, rolling.ground, rolling.theta + turns, rolling.ground_arc, rolling.body_arc)
 
 
-def centrodes(t: ArrayLike, pose: ArrayLike, twist: ArrayLike) -> Centrodes:
+@validated
+def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> Centrodes:
     """Both curves from times (n,) [s], poses and twists (n, 3) of one body, as a truth or an engine gives them.
 
     Raises InvalidMechanism where the rotation rate vanishes or changes its sign (the centre is at infinity: cut the
     motion there), where nothing rotates, for fewer than 16 samples, times that don't grow, or numbers not finite.
     """
     t, pose = _checked(t, pose)
-    twist = np.asarray(twist, dtype=float)
-    require_finite("centrodes", twist=twist)
     if twist.shape != pose.shape:
         raise InvalidMechanism(f"centrodes: twists have the shape {twist.shape}; give one for each pose, {pose.shape}")
     rate = twist[:, 2]
@@ -140,7 +146,8 @@ def centrodes(t: ArrayLike, pose: ArrayLike, twist: ArrayLike) -> Centrodes:
     return _assembled(pose, space, body)
 
 
-def from_poses(t: ArrayLike, pose: ArrayLike) -> Centrodes:
+@validated
+def from_poses(t: Annotated[Array, of_shape("n")], pose: Poses) -> Centrodes:
     """Both curves from a table of poses (n, 3) at times (n,) [s] alone: twists by a spline of degree 7.
 
     Angles may be wrapped, if no two neighbours differ by half a turn. Raises as `centrodes`. Only the order of the
@@ -159,10 +166,9 @@ def from_poses(t: ArrayLike, pose: ArrayLike) -> Centrodes:
     return Centrodes(full.pose, full.space, full.body, max(full.error, float(np.max(moved))))
 
 
-def _checked(t: ArrayLike, pose: ArrayLike) -> tuple[Array, Array]:
-    require_finite("centrodes", times=t, poses=pose)
-    t, pose = np.asarray(t, dtype=float), np.array(pose, dtype=float)
-    if t.ndim != 1 or pose.shape != (len(t), 3):
+def _checked(t: Array, pose: Array) -> tuple[Array, Array]:
+    pose = pose.copy()
+    if len(pose) != len(t):
         raise InvalidMechanism(f"centrodes: times {t.shape} and poses {pose.shape}; give (n,) times and (n, 3) poses")
     if len(t) < FEWEST:
         raise InvalidMechanism(f"centrodes: {len(t)} poses are too few; give at least {FEWEST}")

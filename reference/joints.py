@@ -18,8 +18,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import require_finite
 from reference.rolling.roll import Roll
+from reference.validation import Name, Valid
 
 Vector = tuple[float, float]
 
@@ -31,7 +31,7 @@ def turn(angle: NDArray[Any], point: NDArray[Any]) -> tuple[NDArray[Any], NDArra
 
 
 @dataclass(frozen=True)
-class Pin:
+class Pin(Valid):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
     Points [m] are in the body's own frame, from its centre of mass; on the ground (None) they are world coordinates.
@@ -42,14 +42,11 @@ class Pin:
     holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("x", "y")
 
-    name: str
-    first: str | None
-    second: str | None
+    name: Name
+    first: Name | None
+    second: Name | None
     first_point: Vector
     second_point: Vector
-
-    def __post_init__(self) -> None:
-        require_finite(f"pin {self.name!r}", first_point=self.first_point, second_point=self.second_point)
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -79,7 +76,7 @@ class Pin:
 
 
 @dataclass(frozen=True)
-class Drive:
+class Drive(Valid):
     """A prescribed relative rotation: the second body turns against the first at a constant `turning_rate` [rad/s].
 
     `offset` [rad] is the relative angle at t = 0. Row: omega of the second minus omega of the first. Reaction: torque
@@ -90,14 +87,11 @@ class Drive:
     holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("torque",)
 
-    name: str
-    first: str | None
-    second: str | None
+    name: Name
+    first: Name | None
+    second: Name | None
     turning_rate: float
     offset: float
-
-    def __post_init__(self) -> None:
-        require_finite(f"drive {self.name!r}", turning_rate=self.turning_rate, offset=self.offset)
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -117,7 +111,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Slot:
+class Slot(Valid):
     """A straight slot in the first body, in which the point `second_point` of the second slides.
 
     The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
@@ -130,16 +124,12 @@ class Slot:
     holonomic: ClassVar[bool] = True
     labels: ClassVar[tuple[str, ...]] = ("across",)
 
-    name: str
-    first: str | None
-    second: str | None
+    name: Name
+    first: Name | None
+    second: Name | None
     first_point: Vector
     line_angle: float
     second_point: Vector
-
-    def __post_init__(self) -> None:
-        owner = f"slot {self.name!r}"
-        require_finite(owner, first_point=self.first_point, second_point=self.second_point, line_angle=self.line_angle)
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -170,7 +160,7 @@ class Slot:
 
 
 @dataclass(frozen=True)
-class Skate:
+class Skate(Valid):
     """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
 
     `second_point` [m] is where the blade touches, in the second body's own frame from its centre of mass, and `angle`
@@ -183,14 +173,11 @@ class Skate:
     holonomic: ClassVar[bool] = False
     labels: ClassVar[tuple[str, ...]] = ("across",)
 
-    name: str
-    first: str | None
-    second: str | None
+    name: Name
+    first: Name | None
+    second: Name | None
     second_point: Vector
     angle: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_finite(f"skate {self.name!r}", second_point=self.second_point, angle=self.angle)
 
     @property
     def rate(self) -> tuple[float, ...]:

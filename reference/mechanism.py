@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from copy import copy
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -16,10 +17,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.banded_reactions import MANY_ROWS, banded_reaction
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Drive, Joint, Vector
+from reference.validation import AnyComplexes, Floats, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Triple = tuple[float, float, float]
+States = AnyComplexes  # (..., bodies, 3)
 
 # A row is counted as dependent below this fraction of the largest singular value, and a start that misses a row by
 # more than this fraction of the mechanism's own length or speed is refused: far above rounding, far below a mistake.
@@ -28,24 +30,18 @@ START_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class Body:
+class Body(Valid):
     """A rigid body in the plane, described at its centre of mass.
 
     mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
     [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a non-positive mass or inertia, or a number not finite.
     """
 
-    name: str
-    mass: float
-    inertia: float
+    name: Name
+    mass: Positive
+    inertia: Positive
     pose: Triple
     twist: Triple = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        require_positive(f"body {self.name!r}", mass=self.mass, inertia=self.inertia)
-        require_finite(f"body {self.name!r}", pose=self.pose, twist=self.twist)
-        if len(self.pose) != 3 or len(self.twist) != 3:
-            raise InvalidMechanism(f"body {self.name!r}: pose and twist are triples (x, y, angle)")
 
 
 @dataclass(frozen=True)
@@ -63,12 +59,13 @@ def _stack(joints: Sequence[Any]) -> Any:
     if not getattr(joints[0], "stackable", True):
         return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
-    stacked = {name: np.array([getattr(joint, name) for joint in joints]) for name in numeric}
-    return replace(joints[0], **stacked)
+    stacked = copy(joints[0])  # not made anew: arrays are no valid fields of one joint
+    stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
+    return stacked
 
 
 @dataclass(frozen=True)
-class Mechanism:
+class Mechanism(Valid):
     """Bodies, the joints between them, and gravity [m/s^2].
 
     Raises InvalidMechanism for a repeated or unknown name, a joint of a body with itself, or a start that does not
@@ -80,7 +77,7 @@ class Mechanism:
     gravity: Vector = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        require_finite("mechanism", gravity=self.gravity)
+        super().__post_init__()
         if not self.bodies:
             raise InvalidMechanism("mechanism: it has no bodies; give at least one")
         for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
@@ -90,8 +87,7 @@ class Mechanism:
         for joint in self.joints:
             for name in (joint.first, joint.second):
                 if name is not None and name not in self._index:
-                    known = ", ".join(repr(body.name) for body in self.bodies)
-                    raise InvalidMechanism(f"joint {joint.name!r}: no body is called {name!r}; there are {known}")
+                    raise self._unknown(f"joint {joint.name!r}", name)
             if joint.first == joint.second:
                 raise InvalidMechanism(f"joint {joint.name!r}: it joins {joint.first!r} with itself; name two bodies")
         self._refuse_a_start_off_the_joints()
@@ -134,9 +130,16 @@ class Mechanism:
             for members in kinds.values()
         )
 
-    def body_index(self, name: str) -> int:
+    @validated
+    def body_index(self, name: Name) -> int:
         """Where a body stands in q, v and every trajectory of this mechanism."""
+        if name not in self._index:
+            raise self._unknown("mechanism", name)
         return self._index[name]
+
+    def _unknown(self, owner: str, name: str) -> InvalidMechanism:
+        known = ", ".join(repr(body.name) for body in self.bodies)
+        return InvalidMechanism(f"{owner}: no body is called {name!r}; there are {known}")
 
     @cached_property
     def row_names(self) -> tuple[str, ...]:
@@ -178,10 +181,15 @@ class Mechanism:
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
     def _with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
-        pose = np.asarray(pose)
+        if pose.shape[-2:] != (len(self.bodies), 3):
+            raise InvalidMechanism(
+                f"mechanism: poses have the shape {pose.shape}; they must be of (..., {len(self.bodies)}, 3), "
+                "x, y and angle of every body"
+            )
         return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
 
-    def gap(self, pose: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    @validated
+    def gap(self, pose: States, t: ArrayLike) -> NDArray[Any]:
         """How far every joint is open (..., rows) [m, rad for a drive]; NaN in rows that constrain velocity only.
 
         pose (..., bodies, 3) and times t (...) [s].
@@ -194,7 +202,8 @@ class Mechanism:
                 out[..., group.rows] = group.joint.gap(first, second, np.asarray(t)[..., None])
         return out
 
-    def rows(self, pose: NDArray[Any]) -> NDArray[Any]:
+    @validated
+    def rows(self, pose: States) -> NDArray[Any]:
         """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes."""
         everything = self._with_ground(pose)
         leading, count = everything.shape[:-2], everything.shape[-2]
@@ -205,16 +214,19 @@ class Mechanism:
             out[..., group.rows, group.second[:, None], :] += block[..., 3:6]
         return out[..., :-1, :].reshape((*leading, self.row_count, 3 * (count - 1)))
 
-    def slip(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+    @validated
+    def slip(self, pose: States, twist: States) -> NDArray[Any]:
         """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
         return (self.rows(pose) @ _column(twist))[..., 0] - self.rate
 
-    def bias(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
+    @validated
+    def bias(self, pose: Numbers, twist: Numbers) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
         return -(np.imag(self.rows(pose + 1j * step * twist)) @ _column(twist))[..., 0] / step
 
-    def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    @validated
+    def reaction(self, pose: Numbers, acceleration: Numbers) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
 
         pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
@@ -235,7 +247,8 @@ class Mechanism:
         matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ excess
         return solve_rows(matrix, right)[..., 0]
 
-    def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
+    @validated
+    def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:
         """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
 
         A skate takes a freedom of velocity and none of configuration; a drive takes one of both.

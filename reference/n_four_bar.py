@@ -20,14 +20,14 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.link import Pendulum, across, direction_of
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import Count, NonNegative, Positive, validated
 
 Array = NDArray[np.float64]
 
@@ -44,22 +44,15 @@ class NFourBar(Scene):
     source: ClassVar[str] = (
         "IFToMM library of computational benchmark problems, A02 N-four-bar; section 18.5, closed chains"
     )
-    loops: int = 2
-    length: float = 1.0
-    mass: float = 1.0
-    gravity: float = 9.81
+    loops: Count = 2
+    length: Positive = 1.0
+    mass: Positive = 1.0
+    gravity: Positive = 9.81
     speed: float = 1.0
-    duration: float = 10.0
-    horizon: float = (
+    duration: Positive = 10.0
+    horizon: Positive = (
         10.0  # of the symmetric motion, a pendulum; what an engine does at a singular position is another matter
     )
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        if not (isinstance(self.loops, int) and self.loops >= 1):
-            raise InvalidMechanism(f"{owner}: loops is {self.loops!r}; it must be a whole number of at least 1")
-        require_positive(owner, length=self.length, mass=self.mass, gravity=self.gravity)
-        require_finite(owner, speed=self.speed)
 
     @cached_property
     def pendulum(self) -> Pendulum:
@@ -73,7 +66,8 @@ class NFourBar(Scene):
         """A whole turn of the cranks [s]; infinite when they never leave the top."""
         return self.pendulum.period
 
-    def singular_times(self, until: float) -> Array:
+    @validated
+    def singular_times(self, until: NonNegative) -> Array:
         """When, in [0, until] s, the cranks lie along the couplers: one freedom becomes N + 1."""
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
         return np.sort(np.concatenate(sides))
@@ -117,11 +111,10 @@ class NFourBar(Scene):
             joints.append(Pin(f"B{i + 1} left", f"crank {i + 1}", f"coupler {i}", (half, 0.0), (half, 0.0)))
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        angle, rate, acceleration = self.pendulum.motion(t)
+    def _motion(self, times: Array) -> Trajectory:
+        angle, rate, acceleration = self.pendulum.motion(times)
         pose, twist, _ = self._placement(angle, rate, acceleration)
-        return Trajectory(t, pose, twist, self.forces(angle, rate, acceleration))
+        return Trajectory(times, pose, twist, self.forces(angle, rate, acceleration))
 
     def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
         """The reactions (times, rows) [N] in closed form: near a singular position they are large, not inaccurate.
@@ -170,7 +163,7 @@ class TenFourBars(NFourBar):
     """Ten loops."""
 
     name: ClassVar[str] = "n_four_bar_10"
-    loops: int = 10
+    loops: Count = 10
 
     @property
     def samples(self) -> int:
@@ -183,9 +176,9 @@ class FortyFourBars(NFourBar):
     """The benchmark's original size and time: N = 40, 20 s."""
 
     name: ClassVar[str] = "n_four_bar_40"
-    loops: int = 40
-    duration: float = 20.0
-    horizon: float = 20.0
+    loops: Count = 40
+    duration: Positive = 20.0
+    horizon: Positive = 20.0
 
     @property
     def samples(self) -> int:

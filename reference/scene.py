@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Floats, InvalidMechanism, Valid, sample_times, shown
 
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
 
 
-class Scene(ABC):
+class Scene(Valid, ABC):
     """Subclasses are frozen dataclasses, and their fields are the only place where a number is written.
 
     `name` is the scene's key, `page` the page that teaches it, `source` where the chapter has it. `duration` [s] is how
@@ -27,6 +28,7 @@ class Scene(ABC):
     name: ClassVar[str]
     page: ClassVar[str]
     source: ClassVar[str]
+    reach: ClassVar[float] = 10.0  # durations, see `latest`
     duration: float
     horizon: float
 
@@ -38,9 +40,47 @@ class Scene(ABC):
     def mechanism(self) -> Mechanism:
         """The bodies and joints at t = 0."""
 
-    @abstractmethod
     def motion(self, t: ArrayLike) -> Trajectory:
-        """The truth at times t (times,) [s]: poses, twists, reactions."""
+        """The truth at times t (times,) [s], or at one: poses, twists, reactions.
+
+        Raises InvalidMechanism unless all times are finite and lie from 0 to `latest`, or where the motion itself ends.
+        """
+        times = self.times(t)
+        try:
+            motion = self._motion(times if times.size else np.zeros(1))
+        except ArithmeticError as reason:
+            raise InvalidMechanism(
+                f"{self._owner()}: no motion is known up to {times.max():.9g} s: {reason}"
+            ) from reason
+        if times.size:
+            return motion
+        return Trajectory(times, motion.pose[:0], motion.twist[:0], motion.reaction[:0])
+
+    @abstractmethod
+    def _motion(self, times: Floats) -> Trajectory:
+        """The truth at times (times,) [s] that `motion` has checked; at least one."""
+
+    def times(self, t: ArrayLike) -> Floats:
+        """Times [s], or one, as an array (times,); InvalidMechanism unless each is finite and from 0 to `latest`."""
+        times = sample_times(self._owner(), t)
+        if times.size and times.max() > self.latest:
+            raise InvalidMechanism(
+                f"{self._owner()}: t is {shown(t)}; its motion is known up to {self.latest:.9g} s, which is "
+                f"{self.reach:g} times its duration: for later times make the scene with a longer duration"
+            )
+        return times
+
+    @property
+    def latest(self) -> float:
+        """The last time that `motion` answers [s], `reach` times the duration.
+
+        A truth by integration takes time and loses digits in proportion to the time asked for, a chaotic one loses all
+        of them, and even a closed form knows the angle after a time t only to about 1e-16 of what was turned since 0.
+        """
+        return self.reach * self.duration * (1 + 1e-9)  # multiples of a step may be rounded upwards
+
+    def _owner(self) -> str:
+        return f"scene {self.name!r}"
 
     def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
         """The assembly mode (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""

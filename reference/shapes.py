@@ -5,28 +5,41 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from reference.centrodes import Centrodes, from_poses
-from reference.checks import InvalidMechanism, require_positive
 from reference.curves.curve import Array
+from reference.validation import (
+    LARGEST_COUNT,
+    NOT_FINITE,
+    InvalidMechanism,
+    Positive,
+    Valid,
+    from_to,
+    of_shape,
+    validated,
+)
 
 COLUMNS = ("t", "x", "y", "angle")
+Places = Annotated[Array, of_shape("n", 2)]
+Poses = Annotated[Array, of_shape("n", 3)]
+Points = Annotated[int, from_to(2, LARGEST_COUNT)]
 
 
 @dataclass(frozen=True, eq=False)
-class Shapes:
+class Shapes(Valid):
     """Points (n, 2) [m] equally far apart along two boundaries: point i of the one meets point i of the other."""
 
-    space: Array  # in the world's frame: the fixed part
-    body: Array  # in the body's frame: the moving part
-    pose: Array  # (n, 3) m, m, rad: where the moving part is at each contact
-    error: float  # m, see Centrodes.error
+    space: Places  # in the world's frame: the fixed part
+    body: Places  # in the body's frame: the moving part
+    pose: Poses  # (n, 3) m, m, rad: where the moving part is at each contact
+    error: Annotated[float, NOT_FINITE]  # m, see Centrodes.error
 
 
-def shapes_of_motion(t: ArrayLike, pose: ArrayLike, points: int = 400) -> Shapes:
+@validated
+def shapes_of_motion(t: Annotated[Array, of_shape("n")], pose: Poses, points: Points = 400) -> Shapes:
     """The two shapes of a table of poses (n, 3) [m, m, rad] at times (n,) [s].
 
     Raises InvalidMechanism as `centrodes.from_poses` does: where the rotation rate vanishes, nothing rotates, the
@@ -35,10 +48,9 @@ def shapes_of_motion(t: ArrayLike, pose: ArrayLike, points: int = 400) -> Shapes
     return shapes_of(from_poses(t, pose), points)
 
 
-def shapes_of(motion: Centrodes, points: int = 400) -> Shapes:
+@validated
+def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
     """The two shapes of centrodes, with `points` points each (at least 2)."""
-    if points < 2:
-        raise InvalidMechanism(f"shapes: {points} points can't draw a curve; give at least 2")
     space, body = motion.space_curve, motion.body_curve
     arcs = np.linspace(0.0, min(space.limits[1], body.limits[1]), points)
     theta = space.parameter(arcs)
@@ -49,6 +61,7 @@ def shapes_of(motion: Centrodes, points: int = 400) -> Shapes:
     return Shapes(fixed, moving, np.column_stack([x, y, theta]), motion.error)
 
 
+@validated
 def poses_from_csv(text: str) -> tuple[Array, Array]:
     """Times (n,) [s] and poses (n, 3) [m, m, rad] from CSV with the columns t, x, y, angle in any order.
 
@@ -74,6 +87,7 @@ def poses_from_csv(text: str) -> tuple[Array, Array]:
     return table[:, 0], table[:, 1:]
 
 
+@validated
 def as_csv(shapes: Shapes) -> str:
     """Columns space_x, space_y, body_x, body_y [m] and the moving part's x, y [m] and angle [rad] at that contact."""
     out = io.StringIO()
@@ -83,9 +97,9 @@ def as_csv(shapes: Shapes) -> str:
     return out.getvalue()
 
 
-def as_svg(shapes: Shapes, width: float = 200.0) -> str:
+@validated
+def as_svg(shapes: Shapes, width: Positive = 200.0) -> str:
     """Both curves to one scale, `width` [mm] wide; the moving part where it is at the first contact, y upwards."""
-    require_positive("svg", width=width)
     moved = placed_body(shapes, 0)
     corners = np.vstack([shapes.space, moved])
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)
@@ -106,6 +120,7 @@ def as_svg(shapes: Shapes, width: float = 200.0) -> str:
     )
 
 
+@validated
 def placed_body(shapes: Shapes, index: int) -> Array:
     """The moving part's points (n, 2) [m] in the world, when contact `index` touches."""
     x, y, angle = shapes.pose[index]
@@ -113,6 +128,7 @@ def placed_body(shapes: Shapes, index: int) -> Array:
     return shapes.body @ np.array([[cosine, sine], [-sine, cosine]]) + [x, y]
 
 
+@validated
 def as_dxf(shapes: Shapes) -> str:
     """A drawing in metres with two polylines, on the layers SPACE (world's frame) and BODY (body's own frame)."""
     from ezdxf.filemanagement import new  # only this writer needs it, and it takes longer to load than all else

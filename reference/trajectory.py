@@ -3,33 +3,44 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
+from reference.validation import NOT_FINITE, Numbers, Valid, of_shape, validated
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Trajectory:
+class Trajectory(Valid):
     """Poses, twists and reactions at times t, in the order of the mechanism's bodies and rows.
 
     The truth and every engine give one of these, the first sample at t = 0. An engine also says what it cost
     (`stepping`), what it warned of, whether it reset itself, and its own estimate of its error if its method has one.
     """
 
-    t: Array  # (times,) s
-    pose: Array  # (times, bodies, 3) m, m, rad; angles not wrapped
-    twist: Array  # (times, bodies, 3) m/s, m/s, rad/s, at the same instants as the poses
-    reaction: Array  # (times, rows) N or N m, M a = f + J^T reaction; NaN where unknown
-    stepping: float = float("nan")  # s of CPU in the stepping loop, recording included; NaN for a truth
+    t: Annotated[Array, of_shape("times")]  # (times,) s
+    pose: Annotated[Numbers, of_shape("times", "bodies", 3)]  # (times, bodies, 3) m, m, rad; angles not wrapped
+    twist: Annotated[
+        Numbers, of_shape("times", "bodies", 3)
+    ]  # (times, bodies, 3) m/s, m/s, rad/s, at the same instants as the poses
+    reaction: Annotated[
+        Numbers, of_shape("times", "rows")
+    ]  # (times, rows) N or N m, M a = f + J^T reaction; NaN where unknown
+    stepping: Annotated[float, NOT_FINITE] = float(
+        "nan"
+    )  # s of CPU in the stepping loop, recording included; NaN for a truth
     warnings: tuple[str, ...] = ()  # what the engine itself said
     reset_at: float | None = None  # s, the time at which the engine started anew by itself; samples from there are NaN
-    estimate: Array | None = None  # (times, bodies, 3) the method's own estimate of its error in the poses
+    estimate: Annotated[Numbers, of_shape("times", "bodies", 3)] | None = (
+        None  # (times, bodies, 3) the method's own estimate of its error in the poses
+    )
 
 
+@validated
 def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
     """Kinetic plus gravitational energy (times,) [J]; zero potential at the world's origin."""
     kinetic = 0.5 * np.sum(mechanism.inertias * trajectory.twist**2, axis=(-2, -1))
@@ -37,11 +48,13 @@ def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
     return kinetic + potential
 
 
+@validated
 def joint_gap(mechanism: Mechanism, trajectory: Trajectory) -> Array:
     """How far every joint is open (times, rows) [m, rad for a drive]; NaN in rows that constrain velocity only."""
     return mechanism.gap(trajectory.pose, trajectory.t)
 
 
+@validated
 def slip(mechanism: Mechanism, trajectory: Trajectory) -> Array:
     """J v - rate (times, rows) [m/s, rad/s]: how fast every joint is violated."""
     return mechanism.slip(trajectory.pose, trajectory.twist)

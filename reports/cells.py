@@ -11,6 +11,7 @@ from typing import Any, Literal
 from engines import Engine
 from reference.mechanism import Mechanism
 from reference.scene import Scene
+from reference.validation import Count, Valid
 from reports.fingerprint import fingerprint
 
 Purpose = Literal["sweep", "failure", "growth", "large", "map"]
@@ -33,7 +34,7 @@ SWEEP_COST = 13e-9  # of one joint in one sweep, for engines that tell how many 
 
 
 @dataclass(frozen=True)
-class Cell:
+class Cell(Valid):
     """A scene in an engine with `every` steps between samples; `samples` replaces the scene's own number if given.
 
     Scenes and engines are frozen dataclasses, so a cell is data: it travels to a worker process as it is.
@@ -42,14 +43,9 @@ class Cell:
 
     scene: Scene
     engine: Engine
-    every: int
+    every: Count
     purpose: Purpose = "sweep"
-    samples: int | None = None
-
-    def __post_init__(self) -> None:
-        for name, value in (("every", self.every), ("samples", 1 if self.samples is None else self.samples)):
-            if not isinstance(value, int) or value < 1:
-                raise ValueError(f"cell: {name} is {value!r}; it must be a whole number greater than zero")
+    samples: Count | None = None
 
     @property
     def sample_count(self) -> int:

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import Size, Unsupported, check_counts, check_step
+from engines import Size, Unsupported
 from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reference.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
+from reference.validation import Count, Positive, validated
 
 ROUNDING = 1e-9  # relative: numbers that were made from one another
 
@@ -33,9 +34,9 @@ class BandedChain:
     def variant(self) -> str:
         return "banded rk4"
 
-    def build(self, mechanism: Mechanism, dt: float) -> BandedRun:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:
         """Raises Unsupported unless uniform bars hang on one another from a pin at the origin."""
-        check_step(dt)
         return BandedRun(mechanism, chain_of(mechanism), dt)
 
 
@@ -69,8 +70,8 @@ class BandedRun:
         self._start = np.concatenate([mechanism.pose[:, 2] + math.pi / 2, mechanism.twist[:, 2]])
         self.size = Size(chain.links, chain.links, 0, 0)
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
-        check_counts(samples, every)
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         chain, states = self._chain, np.empty((samples + 1, len(self._start)))
         state = states[0] = self._start
         begin = time.process_time()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from reference.centrodes import Centrodes
-from reference.checks import InvalidMechanism
 from reference.curves.curve import Array
+from reference.validation import InvalidMechanism
 
 CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
 

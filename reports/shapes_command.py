@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reference.checks import InvalidMechanism
+from reference.validation import InvalidMechanism
 from reports.choice import BadInput
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ import pytest
 
 from engines.lagrange import Lagrange
 from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses, instant_centre
-from reference.checks import InvalidMechanism
 from reference.curves.ellipse import Ellipse
 from reference.four_bar.linkage import FourBar
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
 from reference.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
 from reference.trajectory import Trajectory
+from reference.validation import InvalidMechanism
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
 # The coupler's rate vanishes at theta = 2.8006 and 5.9406 rad; these arcs of the crank stay away from there.
@@ -219,11 +219,11 @@ REFUSED = {
     "times that go back": (lambda: from_poses(-T, np.column_stack([T, T, T])), "not after"),
     "poses not finite": (lambda: from_poses(T, np.column_stack([T, T, T * np.nan])), "finite"),
     "twists of another length": (lambda: centrodes(T, np.column_stack([T, T, T]), np.ones((3, 3))), "one for each"),
-    "pairs instead of poses": (lambda: from_poses(T, np.column_stack([T, T])), "give"),
+    "pairs instead of poses": (lambda: from_poses(T, np.column_stack([T, T])), "of shape"),
     "a missing column": (lambda: poses_from_csv("t,x,y\n1,2,3\n"), "no column 'angle'"),
     "a word in a number's place": (lambda: poses_from_csv("t,x,y,angle\n0,1,2,3\n1,2,3,left\n"), "line 3"),
     "an empty table": (lambda: poses_from_csv(""), "no column"),
-    "a curve of one point": (lambda: shapes_of_motion(*cardan(), points=1), "at least 2"),
+    "a curve of one point": (lambda: shapes_of_motion(*cardan(), points=1), "from 2 to"),
 }
 
 

@@ -11,7 +11,6 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.checks import InvalidMechanism
 from reference.n_four_bar import NFourBar
 from reference.pendulum.scenes import LinkPendulum
 from reference.person.two_feet import TwoFeet
@@ -19,6 +18,7 @@ from reference.rolling.spinning_ring import SpinningRing
 from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.trajectory import energy, joint_gap, slip
+from reference.validation import InvalidMechanism
 from reports.cells import QUICK_LIMIT, Cell, estimated_cost, sweep_cells
 from reports.measure import measure
 from reports.outcomes import Outcome

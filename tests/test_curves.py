@@ -8,7 +8,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.curves.cam import Cam
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
@@ -16,6 +15,7 @@ from reference.curves.open import Catenary, LogSpiral, Parabola
 from reference.curves.round import Circle, Line, Ring, Side
 from reference.curves.traced import Traced
 from reference.numerics.monotone import solve_increasing
+from reference.validation import InvalidMechanism
 
 COSINES, SINES = (0.05, 0.02, 0.01), (0.0, 0.03)
 

@@ -160,11 +160,11 @@ def test_name_variant_size_and_refusals_are_the_inner_engines():
     [((1, 2), (2, 3)), ((1, 2, 3), (2,)), ((2, 1), (2,)), ((1, 1), (2,)), ((0, 1), (2,)), ((1, 2), (0,)), ((1,), ())],
 )
 def test_levels_and_powers_that_do_not_fit_are_refused(levels, powers):
-    with pytest.raises(ValueError, match="extrapolated: "):
+    with pytest.raises(ValueError, match=r"(?i)extrapolated: (levels|powers|.* levels remove)"):
         Extrapolated(Toy(), "extended", levels, powers)
 
 
 @pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf")])
 def test_a_step_that_is_no_time_is_refused(dt):
-    with pytest.raises(ValueError, match="step dt"):
+    with pytest.raises(ValueError, match="build: dt is"):
         Extrapolated(Toy(), "extended", (1, 2), (2,)).build(pendulum(), dt)

@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.four_bar.linkage import FourBar, Unreachable
+from reference.validation import InvalidMechanism
 from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
@@ -348,15 +348,15 @@ def test_impossible_linkages_are_refused_in_a_sentence(values, words):
 
 
 def test_bad_arguments_are_refused_in_a_sentence():
-    with pytest.raises(ValueError, match="must be finite"):
+    with pytest.raises(ValueError, match=r"theta is .*must be finite numbers"):
         CHAPTER.angles([0.0, math.nan])
-    with pytest.raises(ValueError, match="must be finite"):
+    with pytest.raises(ValueError, match=r"theta is .*must be finite numbers"):
         CHAPTER.angles(math.inf)
     with pytest.raises(ValueError, match="branch is 0"):
         CHAPTER.angles(0.0, 0)
     with pytest.raises(InvalidMechanism, match="density"):
         CHAPTER.reactions(0.0, 1.0, density=(1.0, 2.0))
-    with pytest.raises(InvalidMechanism, match="coupler_density is 0"):
+    with pytest.raises(InvalidMechanism, match=r"density is .*greater than zero"):
         CHAPTER.drive_torque(0.0, 1.0, density=(1.0, 0.0, 1.0))
 
 

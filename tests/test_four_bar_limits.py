@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
 from reference.four_bar.linkage import Unreachable
+from reference.validation import InvalidMechanism
 
 
 def test_the_parallel_motion_closes_the_joints_through_both_change_points():

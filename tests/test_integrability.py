@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.skate.integrability import (
@@ -19,6 +18,7 @@ from reference.skate.integrability import (
 )
 from reference.skate.pinned_body import PinnedBody
 from reference.skate.sleigh import ChaplyginSleigh
+from reference.validation import InvalidMechanism
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from tests.mechanisms import four_bar

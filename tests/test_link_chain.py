@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.special import jn_zeros
 
-from reference.checks import InvalidMechanism
 from reference.numerics.integration import IntegrationFailed, integrate
 from reference.pendulum.chain import Chain, accelerations, velocities
 from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap, slip
+from reference.validation import InvalidMechanism
 
 
 def random_chain(links: int) -> tuple[Chain, np.ndarray, np.ndarray]:

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy, joint_gap, slip
+from reference.validation import InvalidMechanism
 from tests.mechanisms import bar, four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)
@@ -104,11 +104,11 @@ def test_scales_come_from_the_description():
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: Body("b", 0.0, 1, (0, 0, 0)), "mass is 0.0; it must be greater than zero"),
+        (lambda: Body("b", 0.0, 1, (0, 0, 0)), "mass is 0.0; it must be a finite number greater than zero"),
         (lambda: Body("b", 1, -1.0, (0, 0, 0)), "inertia is -1.0"),
         (lambda: Body("b", 1, 1, (0, float("nan"), 0)), "pose"),
         (lambda: Body("b", 1, 1, (0, 0, 0), (0, 0, float("inf"))), "twist"),
-        (lambda: Body("b", 1, 1, (0, 0)), "triples"),
+        (lambda: Body("b", 1, 1, (0, 0)), "it must be a tuple of 3 values"),
         (lambda: Mechanism((), ()), "no bodies"),
         (lambda: Mechanism((bar("b", (0, 0), (1, 0)),) * 2, ()), "two bodies are called 'b'"),
         (

@@ -318,13 +318,13 @@ def test_versions_that_move_rightly_are_taken(version: str) -> None:
     ids=str,
 )
 def test_bad_settings_are_refused_in_a_sentence(wrong: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=f"mujoco: {next(iter(wrong))} is .* must be"):
+    with pytest.raises(ValueError, match=f"MuJoCo: {next(iter(wrong))} is .* must be"):
         replace(EXTENDED, **wrong)
 
 
 @pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf")])
 def test_bad_steps_are_refused(dt: float) -> None:
-    with pytest.raises(ValueError, match="step dt"):
+    with pytest.raises(ValueError, match="build: dt is"):
         DEFAULT.build(FREE.mechanism(), dt)
 
 

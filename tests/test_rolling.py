@@ -9,7 +9,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.checks import InvalidMechanism
 from reference.curves.cam import Cam
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
@@ -18,6 +17,7 @@ from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import NEAR_CONFORMAL, Rolling
 from reference.rolling.roll import Roll
+from reference.validation import InvalidMechanism
 
 # Poses are a few roundings of lengths near 1 m, times the turns.
 ROUNDING = 1e-13

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
-from reference.checks import InvalidMechanism
 from reference.curves.cam import Cam
 from reference.curves.ellipse import Ellipse
 from reference.curves.round import Circle, Line, Ring
@@ -25,6 +24,7 @@ from reference.rolling.scenes import (
     RollingOnCircle,
 )
 from reference.trajectory import energy, joint_gap, slip
+from reference.validation import InvalidMechanism
 
 SCENES = [RollingEllipse(), RollingDisc(), RollingCam(), RollingDownhill(), RollingInRing(), RollingOnCircle()]
 

@@ -12,10 +12,10 @@ import pytest
 
 import reports.pages
 from engines.lagrange import Lagrange
-from reference.checks import InvalidMechanism
 from reference.scenes import SCENES
 from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.validation import InvalidMechanism
 from reports.cells import Cell
 from reports.choice import choose_cells, known_engines
 from reports.measure import measure

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from engines import Size, Unsupported
 from reference.joints import Pin
@@ -34,8 +34,8 @@ class Disc(Scene):
         disc = Body("disc", 1.0, 0.5, (0.0, 0.0, 0.0), (0.0, 0.0, self.rate))
         return Mechanism((disc,), (Pin("axle", None, "disc", (0.0, 0.0), (0.0, 0.0)),), (0.0, -10.0))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        return turning(self.mechanism(), np.asarray(t, dtype=float))
+    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
+        return turning(self.mechanism(), times)
 
     def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
         return np.where(pose[..., 0, 0] < -0.5, -1, 1)
@@ -47,7 +47,7 @@ class ImpossibleDisc(Disc):
 
     name: ClassVar[str] = "impossible_disc"
 
-    def motion(self, t: ArrayLike) -> Trajectory:
+    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
         raise ValueError("no such motion")
 
 

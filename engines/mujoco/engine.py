@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass, field, replace
-from typing import Literal, get_args
+from typing import Literal
 
 import mujoco
 
-from engines import Size, Unsupported, check_step
+from engines import Size, Unsupported
 from engines.mujoco.model import Coordinates, DriveBy, Model, RollBy, build_model
 from engines.mujoco.roll_contact import CompletedContact, RollContact
 from engines.mujoco.roll_rows import RollRows
@@ -23,6 +22,7 @@ from engines.mujoco.solution import choose_solver
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from reference.joints import Skate
 from reference.mechanism import Mechanism
+from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 Solver = Literal["Newton", "CG", "PGS"]
@@ -44,7 +44,7 @@ def refuse_wrong_version(version: str) -> None:
 
 
 @dataclass(frozen=True)
-class MuJoCo:
+class MuJoCo(Valid):
     """A mechanism in MuJoCo; every field but `variant` is a setting.
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
@@ -58,16 +58,16 @@ class MuJoCo:
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
-    variant: str
+    variant: Name
     integrator: Integrator = "Euler"
     stiffness: Stiffness = field(default_factory=Shipped)
     coordinates: Coordinates = "tree"
     drive: DriveBy = "inertia"
-    armature: float = 1e8
-    servo_gain: float = 10.0
+    armature: Positive = 1e8
+    servo_gain: Positive = 10.0
     solvers: tuple[Solver, ...] = ("Newton",)
-    iterations: int = 100
-    tolerance: float = 1e-8
+    iterations: Count = 100
+    tolerance: NonNegative = 1e-8
     jacobian: Factorisation = "auto"
     islands: bool = True
     slots: SlotBy = "tendon"
@@ -76,33 +76,9 @@ class MuJoCo:
     rolls: RollBy = field(default_factory=RollContact)
 
     def __post_init__(self) -> None:
-        for setting, valid in (
-            ("integrator", get_args(Integrator)),
-            ("coordinates", get_args(Coordinates)),
-            ("drive", get_args(DriveBy)),
-            ("jacobian", get_args(Factorisation)),
-            ("islands", (True, False)),
-            ("slots", get_args(SlotBy)),
-            ("skates", get_args(SkateBy)),
-            ("euler_for_skates", (True, False)),
-        ):
-            if getattr(self, setting) not in valid:
-                raise ValueError(f"mujoco: {setting} is {getattr(self, setting)!r}; it must be one of {list(valid)}")
-        if not self.solvers or any(solver not in get_args(Solver) for solver in self.solvers):
-            valid = list(get_args(Solver))
-            raise ValueError(f"mujoco: solvers is {self.solvers!r}; it must be a tuple of at least one of {valid}")
-        if not isinstance(self.rolls, RollBy):
-            valid = "RollContact, CompletedContact, RollRows or RollEquality"
-            raise ValueError(f"mujoco: rolls is {self.rolls!r}; it must be {valid}")
-        if not isinstance(self.stiffness, Stiffness):
-            raise ValueError(f"mujoco: stiffness is {self.stiffness!r}; it must be Shipped, TiedToStep or Hardened")
-        if not (isinstance(self.iterations, int) and self.iterations > 0):
-            raise ValueError(f"mujoco: iterations is {self.iterations!r}; it must be a whole number greater than zero")
-        for setting, least in (("tolerance", 0.0), ("armature", math.ulp(0.0)), ("servo_gain", math.ulp(0.0))):
-            value = getattr(self, setting)
-            if not (isinstance(value, (int, float)) and math.isfinite(value) and value >= least):
-                bound = "zero or greater" if least == 0 else "greater than zero"
-                raise ValueError(f"mujoco: {setting} is {value!r}; it must be a finite number, {bound}")
+        super().__post_init__()
+        if not self.solvers:
+            raise InvalidMechanism("MuJoCo: solvers is (); it must be a tuple of at least one of Newton, CG and PGS")
 
     @property
     def step_cost(self) -> float:
@@ -113,7 +89,8 @@ class MuJoCo:
     def name(self) -> str:
         return "mujoco"
 
-    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:
         """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
         model = self.model(mechanism, dt)
         data = model.start()
@@ -125,9 +102,9 @@ class MuJoCo:
         )
         return MuJoCoRun(model, data, size)
 
-    def model(self, mechanism: Mechanism, dt: float) -> Model:
+    @validated
+    def model(self, mechanism: Mechanism, dt: Positive) -> Model:
         """The compiled model alone."""
-        check_step(dt)
         refuse_wrong_version(mujoco.__version__)
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
@@ -136,7 +113,7 @@ class MuJoCo:
             disable |= mujoco.mjtDisableBit.mjDSBL_ISLAND
         model = build_model(
             mechanism,
-            float(dt),
+            dt,
             options={
                 "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
                 "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
@@ -157,7 +134,8 @@ class MuJoCo:
         return model
 
 
-def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: float, steps: int) -> float:
+@validated
+def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
     """CPU seconds of the plainest loop over `mj_step`: what any user pays, to hold a run's cost against."""
     model = engine.model(mechanism, dt)
     compiled, data, advance = model.compiled, model.start(), mujoco.mj_step

@@ -22,6 +22,7 @@ from engines.mujoco.roll_shapes import RoundShape, add_shapes
 from engines.mujoco.roll_table import RollTable
 from engines.mujoco.stiffness import STIFFEST, Shipped
 from reference.rolling.roll import Roll
+from reference.validation import InvalidMechanism, Positive, Valid
 
 Cone = Literal["pyramidal", "elliptic"]
 # A pair that just touches must collide whatever its distance is rounded to: this part of the mechanism's length.
@@ -31,14 +32,8 @@ TOUCH = 1e-12
 CONVEX = 1e-14
 
 
-def _require_positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
-            raise ValueError(f"rolling by contact: {name} is {value!r}; it must be a finite number greater than zero")
-
-
 @dataclass(frozen=True)
-class RollContact:
+class RollContact(Valid):
     """Collision and friction: public settings only, the shipped ones unless said otherwise.
 
     `friction`: the coefficient. `steps`: the contact's time constant in steps (MuJoCo clamps it at two) with its
@@ -46,16 +41,16 @@ class RollContact:
     rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo has it in the elliptic cone only. `round_shape`: what a circle is.
     """
 
-    friction: float = 1.0
-    steps: float | None = None
+    friction: Positive = 1.0
+    steps: Positive | None = None
     stick: bool = False
     cone: Cone = "pyramidal"
     round_shape: RoundShape = "sphere"
 
     def __post_init__(self) -> None:
-        _require_positive(friction=self.friction, **({} if self.steps is None else {"steps": self.steps}))
+        super().__post_init__()
         if self.stick and self.cone != "elliptic":
-            raise ValueError(
+            raise InvalidMechanism(
                 f"rolling by contact: stick is {self.stick!r}, but MuJoCo has that in the elliptic cone only"
             )
 
@@ -75,7 +70,7 @@ class RollContact:
 
 
 @dataclass(frozen=True)
-class CompletedContact:
+class CompletedContact(Valid):
     """Real contact, of which a callback completes the rows in every stage: the missing velocity term is added.
 
     `margin`: within this part of the mechanism's length the rows are alive, so that rounding can't switch the contact
@@ -83,11 +78,8 @@ class CompletedContact:
     lost when the normal force should pull.
     """
 
-    friction: float = 10.0
-    margin: float = 0.01
-
-    def __post_init__(self) -> None:
-        _require_positive(friction=self.friction, margin=self.margin)
+    friction: Positive = 10.0
+    margin: Positive = 0.01
 
     def add(self, building: Building, rolls: Sequence[Roll]) -> None:
         """Add shapes, pairs and the callback. Raises Unsupported for curves without a shape, and for hinged bodies."""

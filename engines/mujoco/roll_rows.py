@@ -21,10 +21,11 @@ from engines.mujoco.roll_table import RollTable
 from engines.mujoco.tree import Link
 from engines.mujoco.written_rows import Row, State, WrittenJoint
 from reference.rolling.roll import Roll
+from reference.validation import Valid
 
 
 @dataclass(frozen=True)
-class RollRows:
+class RollRows(Valid):
     """Two rows a roll, exact in every stage: any curve on any other, and two bodies that both move."""
 
     def add(self, building: Building, rolls: Sequence[Roll]) -> None:
@@ -134,7 +135,7 @@ def roll_rows(table: RollTable, stiffness: float, damping: float) -> Callable[[f
 
 
 @dataclass(frozen=True)
-class RollEquality:
+class RollEquality(Valid):
     """A joint equality a coordinate, x and y as polynomials of the rotation, developed anew before every step.
 
     Public fields only, but MuJoCo's joint equalities lack the velocity term, so that this is of the first order.

@@ -15,12 +15,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Size, check_counts
+from engines import Size
 from engines.mujoco.construction import in_turn
 from engines.mujoco.model import Model
 from engines.mujoco.roll_doubts import roll_doubts
 from engines.mujoco.solution import unsolved
 from reference.trajectory import Trajectory
+from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
@@ -67,9 +68,9 @@ class MuJoCoRun:
     data: Any  # mujoco.MjData, which stepping changes
     size: Size
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already."""
-        check_counts(samples, every)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
         step = self.model.compiled.opt.timestep

@@ -6,20 +6,14 @@ times the row's force. R is (1 - d) / d of a diagonal estimate of the row's inve
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from reference.mechanism import Mechanism
+from reference.validation import Positive, Valid
 
 # MuJoCo clamps its impedance d here; all five numbers of solimp with it make d constant.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
-
-
-def _require_positive(owner: str, **values: float) -> None:
-    for name, value in values.items():
-        if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
-            raise ValueError(f"{owner}: {name} is {value!r}; it must be a finite number greater than zero")
 
 
 def _critical(constant: float) -> tuple[float, float]:
@@ -27,7 +21,7 @@ def _critical(constant: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Shipped:
+class Shipped(Valid):
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, impedance 0.9 to 0.95."""
 
     softening: ClassVar[float] = 1.0
@@ -47,18 +41,15 @@ class Shipped:
 
 
 @dataclass(frozen=True)
-class TiedToStep:
+class TiedToStep(Valid):
     """Critically damped with a time constant of some steps, impedance at its limit: documented settings only.
 
     The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
     Below two steps MuJoCo clamps the time constant.
     """
 
-    steps: float = 5.0
+    steps: Positive = 5.0
     softening: ClassVar[float] = 1.0
-
-    def __post_init__(self) -> None:
-        _require_positive("stiffness tied to the step", steps=self.steps)
 
     def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
         """solref."""
@@ -75,7 +66,7 @@ class TiedToStep:
 
 
 @dataclass(frozen=True)
-class Hardened:
+class Hardened(Valid):
     """The compliance itself multiplied by `softening`; springs as slow as the motion allows, whatever the step.
 
     The estimate in R comes from fields of the model that can be written after it is compiled. With R near zero the loop
@@ -83,12 +74,9 @@ class Hardened:
     steps: the Runge-Kutta integrator then keeps its order 4.
     """
 
-    softening: float = 1e-8
-    share: float = 0.2
-    steps: float = 5.0
-
-    def __post_init__(self) -> None:
-        _require_positive("hardened stiffness", softening=self.softening, share=self.share, steps=self.steps)
+    softening: Positive = 1e-8
+    share: Positive = 0.2
+    steps: Positive = 5.0
 
     def time_constant(self, mechanism: Mechanism, dt: float) -> float:
         """[s]"""

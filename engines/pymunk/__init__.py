@@ -27,12 +27,13 @@ from __future__ import annotations
 import time
 from itertools import repeat
 
-from engines import Engine, Unsupported, check_counts, check_step
+from engines import Engine, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
 from engines.pymunk.extended import EXTENDED, LEAPFROG, Extended
 from engines.pymunk.outlines import Contact
 from reference.mechanism import Mechanism
+from reference.validation import Count, Positive, validated
 
 DEFAULT = Pymunk("default")
 # Contact: all of the overlap is left alone, because pushing bodies apart rolls them too.
@@ -40,7 +41,8 @@ TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=Co
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
 
-def bare_loop(engine: Engine, mechanism: Mechanism, dt: float, steps: int) -> float:
+@validated
+def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
     """CPU seconds of `steps` steps of dt [s] with nothing recorded: the floor under the stepping of a run.
 
     An extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels. Raises
@@ -55,8 +57,6 @@ def bare_loop(engine: Engine, mechanism: Mechanism, dt: float, steps: int) -> fl
         raise ValueError(f"bare_loop: the engine is {engine.name}; it must be pymunk")
     if not isinstance(engine, Pymunk):
         raise Unsupported("bare_loop: a reflection has no model of joints to step")
-    check_step(dt)
-    check_counts(steps, 1)
     model = engine.model(mechanism, dt)
     step, space = model.stepper(raw=engine.leapfrog)
     dt /= model.unit

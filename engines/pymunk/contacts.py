@@ -12,9 +12,9 @@ from math import cos, sin
 from typing import Any
 
 from engines.pymunk.boundaries import Point, boundary_of, unplaced
-from reference.checks import InvalidMechanism
 from reference.curves.round import Line
 from reference.rolling.kinematics import Rolling
+from reference.validation import InvalidMechanism
 
 
 class Touch:

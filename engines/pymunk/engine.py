@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal
 
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import check_step
 from engines.pymunk import blades, rollers, slides
 from engines.pymunk.contraction import contraction, gain, sweeps
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.outlines import SHIPPED_CONTACT, Contact
 from engines.pymunk.recorder import PymunkRun
 from reference.mechanism import Mechanism
+from reference.validation import Count, Fraction, Name, Positive, Valid, validated
 
 _space = pymunk.Space()
 _pivot = PivotJoint(_space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0))
@@ -25,7 +24,7 @@ CONTRACTION = "contraction"
 
 
 @dataclass(frozen=True)
-class Pymunk:
+class Pymunk(Valid):
     """An engine in the sense of `engines.Engine`.
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
@@ -40,41 +39,22 @@ class Pymunk:
     Raises ValueError for other values: the engine would abort the process.
     """
 
-    variant: str
-    iterations: int | Literal["contraction"] = SHIPPED_ITERATIONS
-    error_bias: float | Literal["contraction"] = SHIPPED_ERROR_BIAS
+    variant: Name
+    iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
+    error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
     skate: blades.SkateConstruction = "centre"
     roll: rollers.RollConstruction = "contact"
     slot: slides.SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
 
-    def __post_init__(self) -> None:
-        counted = isinstance(self.iterations, int) and 1 <= self.iterations < 2**31
-        if not (counted or self.iterations == CONTRACTION):
-            raise ValueError(
-                f"pymunk: iterations is {self.iterations!r}; it must be a whole number from 1, or 'contraction'"
-            )
-        bias = self.error_bias
-        if bias != CONTRACTION and not (isinstance(bias, int | float) and math.isfinite(bias) and 0 <= bias <= 1):
-            raise ValueError(
-                f"pymunk: error_bias is {bias!r}; it must be from 0 (close every gap in one step) to 1 (never), "
-                "or 'contraction'"
-            )
-        for name, known in (("skate", blades), ("roll", rollers), ("slot", slides)):
-            value = getattr(self, name)
-            if value not in known.CONSTRUCTIONS:
-                choices = ", ".join(repr(each) for each in known.CONSTRUCTIONS)
-                raise ValueError(f"pymunk: {name} is {value!r}; it must be one of {choices}")
-
     @property
     def name(self) -> str:
         return "pymunk"
 
-    def build(self, mechanism: Mechanism, dt: float) -> PymunkRun:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
         """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        check_step(dt)
-        dt = float(dt)
         own = self.sweeps(mechanism)
         return PymunkRun(
             mechanism,
@@ -93,11 +73,13 @@ class Pymunk:
             return ""
         return f"ours: not converged, {own} sweeps leave {rho**own:.0%} of the slowest mode"
 
+    @validated
     def sweeps(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism."""
         return self.iterations if isinstance(self.iterations, int) else sweeps(contraction(mechanism))
 
-    def model(self, mechanism: Mechanism, dt: float, iterations: int | None = None) -> Model:
+    @validated
+    def model(self, mechanism: Mechanism, dt: Positive, iterations: Count | None = None) -> Model:
         """The engine's objects for steps of dt [s], not yet stepped; with other iterations than its own if given."""
         own = self.sweeps(mechanism)
         bias, unit = self.error_bias, 1.0

@@ -10,17 +10,18 @@ from engines.pymunk.engine import Pymunk
 from engines.pymunk.reflection import Reflected, reflectable
 from reference.joints import Skate
 from reference.mechanism import Mechanism
+from reference.validation import Name, Positive, Valid, validated
 
 
 @dataclass(frozen=True)
-class Extended:
+class Extended(Valid):
     """An engine in the sense of `engines.Engine` that takes one of three others, by the mechanism's joints alone.
 
     `single`: bodies each on one skate or contact of their own. `skates`: skates among other joints, held at the end of
     a step instead of around it, so of first order. `pins`: all others.
     """
 
-    variant: str
+    variant: Name
     single: Extrapolated
     skates: Extrapolated
     pins: Extrapolated
@@ -34,6 +35,7 @@ class Extended:
         """About what a step costs [s]: of the levels together, which is what the grid is cut by."""
         return 2e-6 * max(sum(method.levels) for method in (self.single, self.skates, self.pins))
 
+    @validated
     def chosen(self, mechanism: Mechanism) -> Extrapolated:
         """The engine that this one takes for a mechanism."""
         if reflectable(mechanism):
@@ -42,7 +44,8 @@ class Extended:
             return self.skates
         return self.pins
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Raises whatever the chosen engine raises."""
         return self.chosen(mechanism).build(mechanism, dt)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import pymunk
@@ -13,6 +14,7 @@ from engines import Unsupported
 from reference.curves.curve import Curve, Placed, Vector
 from reference.curves.round import Circle, Line
 from reference.rolling.roll import Roll
+from reference.validation import Fraction, NonNegative, Valid, from_to
 
 _space = pymunk.Space()
 SHIPPED_SLOP = _space.collision_slop  # 0.1
@@ -21,7 +23,7 @@ REACH = 1e3  # m, half the length of flat ground
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(Valid):
     """How contact is set: `slop` [m] of overlap is left alone, the fraction `bias` of the rest is left after a second.
 
     `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round, equally far apart
@@ -30,26 +32,11 @@ class Contact:
     ValueError for other values: the engine would abort the process, or give NaN.
     """
 
-    slop: float = SHIPPED_SLOP
-    bias: float = SHIPPED_BIAS
-    friction: float = 10.0  # a product of 100: no rolling here ever needs so much
-    vertices: int = 64
-    thickness: float = 0.1
-
-    def __post_init__(self) -> None:
-        for name, low, high in (
-            ("slop", 0.0, math.inf),
-            ("bias", 0.0, 1.0),
-            ("friction", 0.0, math.inf),
-            ("thickness", 0.0, math.inf),
-        ):
-            value = getattr(self, name)
-            if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
-                raise ValueError(f"pymunk contact: {name} is {value!r}; it must be a number from {low:g} to {high:g}")
-        if not (isinstance(self.vertices, int) and 3 <= self.vertices <= 10000):
-            raise ValueError(
-                f"pymunk contact: vertices is {self.vertices!r}; it must be a whole number from 3 to 10000"
-            )
+    slop: NonNegative = SHIPPED_SLOP
+    bias: Fraction = SHIPPED_BIAS
+    friction: NonNegative = 10.0  # a product of 100: no rolling here ever needs so much
+    vertices: Annotated[int, from_to(3, 10000)] = 64
+    thickness: NonNegative = 0.1
 
 
 SHIPPED_CONTACT = Contact()

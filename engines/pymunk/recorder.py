@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
-from engines import Size, check_counts
+from engines import Size
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
@@ -176,9 +177,9 @@ class PymunkRun:
             model.kick(self._dt / model.unit / 2)
         return model
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
-        check_counts(samples, every)
         if self._model is None:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         model, self._model = self._model, None

@@ -23,7 +23,7 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from engines import Size, Unsupported, check_counts, check_step
+from engines import Size, Unsupported
 from engines.pymunk.blades import along_blade
 from engines.pymunk.contacts import Touch
 from engines.pymunk.recorder import reactions
@@ -31,6 +31,7 @@ from reference.joints import Skate, Vector
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
+from reference.validation import Count, Name, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
@@ -46,23 +47,23 @@ def reflectable(mechanism: Mechanism) -> bool:
 
 
 @dataclass(frozen=True)
-class Reflected:
+class Reflected(Valid):
     """An engine in the sense of `engines.Engine`: second order, for bodies with one Skate or Roll each."""
 
-    variant: str
+    variant: Name
 
     @property
     def name(self) -> str:
         return "pymunk"
 
-    def build(self, mechanism: Mechanism, dt: float) -> ReflectedRun:
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> ReflectedRun:
         """Raises Unsupported for any other joint, ValueError for a bad dt."""
-        check_step(dt)
         if not reflectable(mechanism):
             raise Unsupported(
                 "a reflection is known in closed form only for one skate or contact of a body on the ground"
             )
-        return ReflectedRun(mechanism, float(dt))
+        return ReflectedRun(mechanism, dt)
 
 
 class ReflectedRun:
@@ -90,9 +91,9 @@ class ReflectedRun:
             reflectors.append(_reflector(joints.get(description.name), description, mechanism.gravity, self._dt))
         return space, bodies, reflectors
 
-    def __call__(self, samples: int, every: int) -> Trajectory:
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
-        check_counts(samples, every)
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.curves.curve import Array, Curve, along
 from reference.numerics.monotone import solve_increasing
+from reference.validation import InvalidMechanism, Positive
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,12 @@ class Cam(Curve):
     positive.
     """
 
-    radius: float
+    radius: Positive
     cosines: tuple[float, ...] = ()
     sines: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        require_positive("cam", radius=self.radius)
-        require_finite("cam", cosines=self.cosines, sines=self.sines)
+        super().__post_init__()
         low, _ = self._bend_range
         if not low[0] > 1e-9 * self.radius:
             raise InvalidMechanism(

@@ -20,13 +20,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite
+from reference.validation import InvalidMechanism, Valid, validated
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float]
 
 
-class Curve(ABC):
+class Curve(Valid, ABC):
     """A boundary by arc length [m], in the frame of the body that owns it; subclasses are frozen dataclasses.
 
     `length` [m] once round, infinite if it doesn't close; `limits` [m] the arcs that exist; `curvature_range` [1/m] the
@@ -78,18 +78,22 @@ class Curve(ABC):
     def curvature_of(self, p: ArrayLike) -> Array:
         """d angle / d arc (...) [1/m] at natural parameters (...)."""
 
+    @validated
     def point(self, arc: ArrayLike) -> Array:
         """Points (..., 2) [m] at arcs (...) [m]."""
         return self.point_of(self.parameter(arc))
 
+    @validated
     def angle(self, arc: ArrayLike) -> Array:
         """Unwrapped direction of traversal (...) [rad] at arcs (...) [m]."""
         return self.angle_of(self.parameter(arc))
 
+    @validated
     def curvature(self, arc: ArrayLike) -> Array:
         """d angle / d arc (...) [1/m] at arcs (...) [m]."""
         return self.curvature_of(self.parameter(arc))
 
+    @validated
     def arc(self, angle: ArrayLike) -> Array:
         """Arcs (...) [m] where the unwrapped tangent angle is `angle` (...) [rad]: the inverse of `angle`."""
         return self.arc_of(self.parameter_at(angle))
@@ -133,9 +137,6 @@ class Placed(Curve):
     curve: Curve
     shift: Vector = (0.0, 0.0)
     turn: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_finite("placed curve", shift=self.shift, turn=self.turn)
 
     @property
     def length(self) -> float:

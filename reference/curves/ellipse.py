@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipeinc
 
-from reference.checks import InvalidMechanism, require_positive
 from reference.curves.curve import Array, Curve, Vector, along
 from reference.numerics.monotone import solve_increasing
+from reference.validation import InvalidMechanism, Positive
 
 
 @dataclass(frozen=True)
@@ -23,11 +23,11 @@ class Ellipse(Curve):
     used within half a turn only, so that rounding doesn't grow with the turns by more than the arc itself.
     """
 
-    along_x: float
-    along_y: float
+    along_x: Positive
+    along_y: Positive
 
     def __post_init__(self) -> None:
-        require_positive("ellipse", along_x=self.along_x, along_y=self.along_y)
+        super().__post_init__()
         ratio = max(self.along_x / self.along_y, self.along_y / self.along_x)
         if ratio > 1e3:
             raise InvalidMechanism(

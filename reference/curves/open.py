@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.curves.curve import Array, ByArc, Curve, Vector, along, within
 from reference.numerics.monotone import solve_increasing
+from reference.validation import InvalidMechanism, Positive
 
 
 def _slope(owner: str, angle: ArrayLike) -> Array:
@@ -26,10 +26,7 @@ def _slope(owner: str, angle: ArrayLike) -> Array:
 class Parabola(Curve):
     """y = x^2 / (4 focal) [m] with its material above, traversed to +x; arc 0 is the vertex, (0, focal) the focus."""
 
-    focal: float
-
-    def __post_init__(self) -> None:
-        require_positive("parabola", focal=self.focal)
+    focal: Positive
 
     @property
     def curvature_range(self) -> tuple[float, float]:
@@ -71,10 +68,7 @@ class Parabola(Curve):
 class Catenary(ByArc):
     """y = scale cosh(x / scale) [m] with its material above, traversed to +x; arc 0 is the vertex (0, scale)."""
 
-    scale: float
-
-    def __post_init__(self) -> None:
-        require_positive("catenary", scale=self.scale)
+    scale: Positive
 
     @property
     def curvature_range(self) -> tuple[float, float]:
@@ -101,12 +95,8 @@ class LogSpiral(ByArc):
     The pole itself, arc 0, is refused: the curvature 1 / (growth arc) is infinite there.
     """
 
-    radius: float
-    growth: float
-
-    def __post_init__(self) -> None:
-        require_positive("logarithmic spiral", radius=self.radius, growth=self.growth)
-        require_finite("logarithmic spiral", radius=self.radius, growth=self.growth)
+    radius: Positive
+    growth: Positive
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.curves.curve import Array, ByArc, Vector, along, within
+from reference.validation import InvalidMechanism, Positive
 
 
 def straight_has_no_inverse(owner: str) -> InvalidMechanism:
@@ -27,9 +27,6 @@ class Line(ByArc):
 
     heading: float = math.pi
     through: Vector = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        require_finite("line", heading=self.heading, through=self.through)
 
     @property
     def curvature_range(self) -> tuple[float, float]:
@@ -55,10 +52,7 @@ class Side(ByArc):
     Beyond its ends are corners, where the curvature is infinite: any arc there is refused.
     """
 
-    side: float
-
-    def __post_init__(self) -> None:
-        require_positive("side of a square", side=self.side)
+    side: Positive
 
     @property
     def curvature_range(self) -> tuple[float, float]:
@@ -89,14 +83,10 @@ class Side(ByArc):
 class _Round(ByArc):
     """What a disc and a hole share: a circle of `radius` [m] about `centre` [m], traversed to the left or the right."""
 
-    radius: float
+    radius: Positive
     centre: Vector = (0.0, 0.0)
 
     sense: ClassVar[float] = 1.0  # +1 counter-clockwise, -1 clockwise
-
-    def __post_init__(self) -> None:
-        require_positive(type(self).__name__.lower(), radius=self.radius)
-        require_finite(type(self).__name__.lower(), centre=self.centre)
 
     @property
     def length(self) -> float:

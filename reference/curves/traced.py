@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
-from reference.checks import InvalidMechanism, require_finite
 from reference.curves.curve import Array, Curve, along, within
 from reference.numerics.monotone import solve_increasing
+from reference.validation import InvalidMechanism, of_shape
 
 DEGREE = 7
 FEWEST = 16  # points: twice the degree and more, so that half of them can still show the error
@@ -35,11 +35,11 @@ class Traced(Curve):
     numbers not finite, parameters that don't increase, and a place where the curve stands still or reverses (a cusp).
     """
 
-    parameters: Array
-    points: Array
+    parameters: Annotated[Array, of_shape("n")]
+    points: Annotated[Array, of_shape("n", 2)]
 
     def __post_init__(self) -> None:
-        require_finite("traced curve", parameters=self.parameters, points=self.points)
+        super().__post_init__()
         count = len(self.parameters)
         if count < FEWEST or self.points.shape != (count, 2):
             raise InvalidMechanism(

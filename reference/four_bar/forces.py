@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.validation import Positive, validated
+
+Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
 
 
 class Forces(NamedTuple):
@@ -23,21 +25,18 @@ class Forces(NamedTuple):
     torque: Any
 
 
-def three_densities(density: ArrayLike) -> tuple[float, float, float]:
+@validated
+def three_densities(density: Densities) -> tuple[float, float, float]:
     """Densities of crank, coupler and rocker [kg/m] from one number or three; raises InvalidMechanism."""
-    values = np.asarray(density, dtype=float)
-    if values.shape not in ((), (3,)):
-        raise InvalidMechanism(f"four-bar: density is {density!r}; give one number or three (crank, coupler, rocker)")
-    crank, coupler, rocker = (float(value) for value in np.broadcast_to(values, 3))
-    require_positive("four-bar", crank_density=crank, coupler_density=coupler, rocker_density=rocker)
-    return crank, coupler, rocker
+    return density if isinstance(density, tuple) else (density, density, density)
 
 
+@validated
 def bar_forces(
-    lengths: tuple[float, float, float],
-    density: ArrayLike,
+    lengths: tuple[Positive, Positive, Positive],
+    density: Densities,
     gravity: tuple[float, float],
-    angles: tuple[Any, Any, Any],
+    angles: tuple[ArrayLike, ArrayLike, ArrayLike],
     rates: tuple[Any, Any, Any],
     accelerations: tuple[Any, Any, Any],
 ) -> Forces:
@@ -45,7 +44,6 @@ def bar_forces(
 
     Angles, rates and accelerations are those of crank, coupler and rocker (theta, beta, phi) and broadcast.
     """
-    require_finite("four-bar", gravity=gravity)
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
     weight = complex(*gravity)
     # Plane vectors are complex numbers here: half bars, and their accelerations about their own end.

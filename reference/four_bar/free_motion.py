@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import InvalidMechanism
 from reference.four_bar.linkage import FourBar
 from reference.numerics.collocation import STAGES, integrate
+from reference.validation import InvalidMechanism, Positive, Sign, Valid, validated
 
 Array = NDArray[np.float64]
 
@@ -33,14 +33,15 @@ class BarAngles(NamedTuple):
 
 
 @dataclass(frozen=True)
-class CurveMotion:
+class CurveMotion(Valid):
     """Uniform bars of given masses [kg] under gravity [m/s^2], moving along the four-bar's configuration curve."""
 
     four_bar: FourBar
-    masses: tuple[float, float, float]
+    masses: tuple[Positive, Positive, Positive]
     gravity: tuple[float, float]
 
-    def start(self, theta: float, theta_dot: float, branch: int) -> Any:
+    @validated
+    def start(self, theta: float, theta_dot: float, branch: Sign) -> Any:
         """The state (theta, beta, phi, u) at a crank angle [rad] and rate [rad/s]; Unreachable, InvalidMechanism."""
         beta, phi = self.four_bar.angles(theta, branch)
         angle = self._closed(np.array([theta, beta, phi], dtype=np.longdouble))

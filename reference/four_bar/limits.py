@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism
 from reference.four_bar.free_motion import BarAngles
+from reference.four_bar.linkage import Unreachable
 from reference.four_bar.scenes import Array, DrivenFourBar
 from reference.joints import Vector
 from reference.trajectory import Trajectory
+from reference.validation import InvalidMechanism, Positive
 
 # Within this of a change point (the sine of the transmission angle) the rows are as good as dependent, and the
 # reactions of ideal rigid bars are not determined.
@@ -31,23 +31,22 @@ class Parallelogram(DrivenFourBar):
     name: ClassVar[str] = "parallelogram"
     source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
 
-    crank: float = 0.4
-    coupler: float = 1.2
-    rocker: float = 0.4
+    crank: Positive = 0.4
+    coupler: Positive = 1.2
+    rocker: Positive = 0.4
     ground: Vector = (1.2, 0.0)
-    revolutions: float = 2.0
+    revolutions: Positive = 2.0
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if self.crank != self.rocker or not math.isclose(self.coupler, math.hypot(*self.ground), rel_tol=1e-15):
             raise InvalidMechanism(
                 f"parallelogram: crank {self.crank!r} and rocker {self.rocker!r} must be equal, and so must coupler "
                 f"{self.coupler!r} and ground {math.hypot(*self.ground)!r}"
             )
-        super().__post_init__()
 
-    def motion(self, t: ArrayLike) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         """Reactions are NaN where the bars are in line: rigid bars then share them in no definite way."""
-        times = self._times(t)
         angles = self._angles(times)
         pose, twist, acceleration = self._bodies(angles)
         reaction = np.full((len(times), 9), np.nan)
@@ -74,12 +73,23 @@ class OverdrivenFourBar(DrivenFourBar):
     name: ClassVar[str] = "overdriven_four_bar"
     source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
 
-    crank: float = 0.8
-    coupler: float = 0.5
-    rocker: float = 0.5
+    crank: Positive = 0.8
+    coupler: Positive = 0.5
+    rocker: Positive = 0.5
     start: float = 0.0
     rate: float = 4.0
-    revolutions: float = 0.5
+    revolutions: Positive = 0.5
+
+    def _motion(self, times: Array) -> Trajectory:
+        """Raises Unreachable beyond the stopping time, also where the crank's angle alone could be reached again."""
+        motion = super()._motion(times)
+        late = times[times > self.stopping_time * (1 + 1e-12)]
+        if late.size:
+            raise Unreachable(
+                f"scene {self.name!r}: at {float(late[0])!r} s the crank has met its limit, at "
+                f"{self.stopping_time:.9g} s, and can't go on; earlier times are possible"
+            )
+        return motion
 
     @property
     def stopping_time(self) -> float:

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
-from reference.four_bar.forces import Forces, bar_forces
+from reference.four_bar.forces import Densities, Forces, bar_forces
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
 from reference.four_bar.sweep import Constants, Kinematics, OutOfReach, difference, sweep
+from reference.validation import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 
 Interval = tuple[float, float]
 
@@ -36,7 +36,7 @@ class PointMotion(NamedTuple):
 
 
 @dataclass(frozen=True)
-class FourBar:
+class FourBar(Valid):
     """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
 
     Every method broadcasts its arguments. Angles are continuous in theta (not wrapped) as long as the crank moves in
@@ -55,15 +55,14 @@ class FourBar:
     methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or -1.
     """
 
-    crank: float
-    coupler: float
-    rocker: float
+    crank: Positive
+    coupler: Positive
+    rocker: Positive
     ground: tuple[float, float]
 
     def __post_init__(self) -> None:
-        require_positive("four-bar", crank=self.crank, coupler=self.coupler, rocker=self.rocker)
-        require_finite("four-bar", ground=self.ground)
-        if np.shape(self.ground) != (2,) or self.ground_length == 0:
+        super().__post_init__()
+        if self.ground_length == 0:
             raise InvalidMechanism(
                 f"four-bar: ground is {self.ground!r}; it must be a point (x, y) other than A = (0, 0)"
             )
@@ -89,22 +88,26 @@ class FourBar:
     def _constants(self) -> Constants:
         return Constants.of(*self.lengths, self.ground)
 
-    def angles(self, theta: ArrayLike, branch: ArrayLike = 1) -> tuple[Any, Any]:
+    @validated
+    def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
         """beta and phi [rad] in closed form; the chapter calls that impossible, and integrates rates instead."""
         return self._sweep(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
-    def rates(self, theta: ArrayLike, theta_dot: ArrayLike, branch: ArrayLike = 1) -> tuple[Any, Any]:
+    @validated
+    def rates(self, theta: ArrayLike, theta_dot: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
         """beta_dot (18.71) and phi_dot (18.70) [rad/s]."""
         return self._sweep(theta, theta_dot, 0.0, branch, order=1)[2:]  # type: ignore[return-value]
 
+    @validated
     def accelerations(
-        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: ArrayLike = 1
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> tuple[Any, Any]:
         """beta_ddot and phi_ddot [rad/s^2]: the time derivative of (18.69), solved."""
         return self.kinematics(theta, theta_dot, theta_ddot, branch)[4:]
 
+    @validated
     def kinematics(
-        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: ArrayLike = 1
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> Kinematics:
         """All six at once: the fast way for many crank angles."""
         return Kinematics(*self._sweep(theta, theta_dot, theta_ddot, branch, order=2))
@@ -113,9 +116,11 @@ class FourBar:
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike, branch: ArrayLike, order: int
     ) -> tuple[Any, ...]:
         arguments = [np.asarray(value, dtype=float) for value in (theta, theta_dot, theta_ddot, branch)]
-        if not np.all(np.abs(arguments[3]) == 1):
-            raise ValueError(f"four-bar: branch is {branch!r}; it must be +1 (C left of B -> D) or -1")
-        shape = np.broadcast_shapes(*(value.shape for value in arguments))
+        try:
+            shape = np.broadcast_shapes(*(value.shape for value in arguments))
+        except ValueError:
+            shapes = ", ".join(str(value.shape) for value in arguments)
+            raise InvalidMechanism(f"four-bar: arguments of the shapes {shapes} don't go together") from None
         angle = np.broadcast_to(arguments[0], shape).ravel()
         # Single numbers stay single: a block then multiplies by a scalar.
         others = [
@@ -127,9 +132,7 @@ class FourBar:
             raise self._refusal(float(angle[refusal.index]), refusal.undetermined) from None
         return tuple(column.reshape(shape)[()] for column in columns)
 
-    def _refusal(self, theta: float, undetermined: bool) -> ValueError:
-        if not math.isfinite(theta):
-            return ValueError(f"four-bar: crank angle is {theta!r}; it must be finite")
+    def _refusal(self, theta: float, undetermined: bool) -> Unreachable:
         if undetermined:
             return Unreachable(f"four-bar: at crank angle {theta:.9g} rad B lies on D, and C is not determined")
         ranges = " or ".join(f"[{low:.9g}, {high:.9g}]" for low, high in self.crank_limits() or ())
@@ -170,7 +173,8 @@ class FourBar:
             return "change-point"
         return {"ground": "double-crank", "coupler": "double-rocker"}.get(shortest, "crank-rocker")
 
-    def transmission_angle(self, theta: ArrayLike, branch: ArrayLike = 1) -> Any:
+    @validated
+    def transmission_angle(self, theta: ArrayLike, branch: Signs = 1) -> Any:
         """The angle B C D between coupler and rocker, in [0, pi] [rad]: branch * (phi - beta) up to whole turns."""
         beta, phi = self.angles(theta, branch)
         return np.abs(np.remainder(phi - beta + np.pi, 2 * np.pi) - np.pi)
@@ -183,11 +187,13 @@ class FourBar:
         high = 2 * math.atan2(math.sqrt(c.inner_far), math.sqrt(max(c.outer_far, 0)))
         return low, high
 
-    def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: ArrayLike = 1) -> Any:
+    @validated
+    def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:
         """World position (..., 2) [m] of the coupler's point `along` BC from B and `across` to its left [m]."""
         beta, _ = self.angles(theta, branch)
         return _plane(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
 
+    @validated
     def coupler_motion(
         self,
         theta: ArrayLike,
@@ -195,7 +201,7 @@ class FourBar:
         theta_ddot: ArrayLike,
         along: ArrayLike,
         across: ArrayLike,
-        branch: ArrayLike = 1,
+        branch: Signs = 1,
     ) -> PointMotion:
         """The same point with its velocity and acceleration (18.67)."""
         motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
@@ -208,13 +214,14 @@ class FourBar:
             _plane(crank * (1j * bend - speed**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
         )
 
+    @validated
     def forces(
         self,
         theta: ArrayLike,
         theta_dot: ArrayLike,
         theta_ddot: ArrayLike = 0.0,
-        branch: ArrayLike = 1,
-        density: ArrayLike = 1.0,
+        branch: Signs = 1,
+        density: Densities = 1.0,
         gravity: tuple[float, float] = (0.0, -9.81),
     ) -> Forces:
         """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] that this motion of uniform bars needs.
@@ -233,36 +240,39 @@ class FourBar:
             (theta_ddot, motion.beta_ddot, motion.phi_ddot),
         )
 
+    @validated
     def reactions(
         self,
         theta: ArrayLike,
         theta_dot: ArrayLike,
         theta_ddot: ArrayLike = 0.0,
-        branch: ArrayLike = 1,
-        density: ArrayLike = 1.0,
+        branch: Signs = 1,
+        density: Densities = 1.0,
         gravity: tuple[float, float] = (0.0, -9.81),
     ) -> tuple[Any, Any, Any, Any]:
         """The pin forces at A, B, C, D of `forces`, signs and arguments as there."""
         return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity)[:4]
 
+    @validated
     def drive_torque(
         self,
         theta: ArrayLike,
         theta_dot: ArrayLike,
         theta_ddot: ArrayLike = 0.0,
-        branch: ArrayLike = 1,
-        density: ArrayLike = 1.0,
+        branch: Signs = 1,
+        density: Densities = 1.0,
         gravity: tuple[float, float] = (0.0, -9.81),
     ) -> Any:
         """The torque [N m] of `forces` on the crank, counter-clockwise positive; arguments as there."""
         return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity).torque
 
+    @validated
     def integrate_rates(
         self,
         t: ArrayLike,
         theta_dot: float = 10.0,
         theta: float = math.pi / 2,
-        branch: int = 1,
+        branch: Sign = 1,
         **settings: Any,
     ) -> RateIntegration:
         """The chapter's pseudocode from the given start, a method under test; settings as in `rate_integration`."""

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 
-from reference.checks import require_finite
+from reference.validation import Count, InvalidMechanism, Positive, of_shape, shown, validated
 
 Array = NDArray[np.float64]
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
-METHODS = ("euler", "rk4", *ADAPTIVE)
+Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
 
 
 class RateIntegration(NamedTuple):
@@ -32,32 +32,28 @@ class RateIntegration(NamedTuple):
     stopped: str
 
 
+@validated
 def integrate_rates(
-    lengths: tuple[float, float, float],
+    lengths: tuple[Positive, Positive, Positive],
     start: tuple[float, float, float],
     theta_dot: float,
-    t: ArrayLike,
-    method: str = "RK45",
-    rtol: float = 1e-3,
-    atol: float = 1e-6,
-    every: int = 10,
-    limit: int = 100_000,
+    t: Annotated[Array, of_shape("times")],
+    method: Method = "RK45",
+    rtol: Positive = 1e-3,
+    atol: Positive = 1e-6,
+    every: Count = 10,
+    limit: Count = 100_000,
 ) -> RateIntegration:
     """Integrate (theta, beta, phi) from `start` at t[0] with the rates (18.70), (18.71) and theta' constant.
 
     lengths l1, l2, l3 [m]; theta_dot [rad/s]; t [s] increasing. "euler" and "rk4" take `every` steps between samples;
     scipy's RK45, RK23, DOP853, Radau, BDF and LSODA choose theirs by rtol and atol, as solve_ivp does. After `limit`
     evaluations, or where scipy's method fails, it stops and says so: near sin(beta - phi) = 0, which drift reaches even
-    for a crank that turns fully, the steps shrink without end. Raises ValueError for an unknown method or bad times.
+    for a crank that turns fully, the steps shrink without end. Raises InvalidMechanism, a ValueError.
     """
-    times = np.asarray(t, dtype=float)
-    require_finite("rate integration", lengths=lengths, start=start, theta_dot=theta_dot, t=times, rtol=rtol, atol=atol)
-    if method not in METHODS:
-        raise ValueError(f"rate integration: method is {method!r}; it must be one of {', '.join(METHODS)}")
-    if times.ndim != 1 or times.size < 2 or not np.all(np.diff(times) > 0):
-        raise ValueError("rate integration: t must be a row of at least two increasing times")
-    if every < 1 or limit < 1:
-        raise ValueError(f"rate integration: every is {every!r} and limit {limit!r}; both must be at least 1")
+    times = t
+    if times.size < 2 or not np.all(np.diff(times) > 0):
+        raise InvalidMechanism(f"rate integration: t is {shown(t)}; it must be a row of at least two increasing times")
     l1, l2, l3 = lengths
 
     def odes(_: float, angles: Array) -> Array:

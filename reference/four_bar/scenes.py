@@ -9,8 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
-from reference.four_bar.forces import three_densities
+from reference.four_bar.forces import Densities, three_densities
 from reference.four_bar.free_motion import BarAngles, CurveMotion
 from reference.four_bar.linkage import FourBar
 from reference.joints import Drive, Joint, Pin, Vector
@@ -18,6 +17,7 @@ from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import InvalidMechanism, Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -36,21 +36,18 @@ class FourBarScene(Scene):
 
     page: ClassVar[str] = "four_bar"
 
-    crank: float = 0.4
-    coupler: float = 0.4 * math.sqrt(2)
-    rocker: float = 0.8 * math.sqrt(2)
+    crank: Positive = 0.4
+    coupler: Positive = 0.4 * math.sqrt(2)
+    rocker: Positive = 0.8 * math.sqrt(2)
     ground: Vector = (1.2, 0.0)
-    assembly: int = 1
+    assembly: Sign = 1
     start: float = math.pi / 2
     rate: float = 0.0
-    density: float | tuple[float, float, float] = 1.0
+    density: Densities = 1.0
     gravity: Vector = (0.0, -9.81)
 
     def __post_init__(self) -> None:
-        require_finite(f"scene {self.name!r}", start=self.start, rate=self.rate, gravity=self.gravity)
-        if self.assembly not in (1, -1):
-            raise InvalidMechanism(f"scene {self.name!r}: assembly is {self.assembly!r}; it must be +1 or -1")
-        three_densities(self.density)
+        super().__post_init__()
         self.four_bar.angles(self.start, self.assembly)
 
     @property
@@ -101,12 +98,6 @@ class FourBarScene(Scene):
             out[..., 0], out[..., 1], out[..., 2] = centre.real, centre.imag, angle
         return pose, twist, acceleration
 
-    def _times(self, t: ArrayLike) -> Array:
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        if times.ndim != 1 or not np.all(np.isfinite(times)) or np.any(times < 0):
-            raise ValueError(f"scene {self.name!r}: times must be a row of finite numbers of seconds, none below zero")
-        return times
-
 
 @dataclass(frozen=True)
 class DrivenFourBar(FourBarScene):
@@ -120,11 +111,10 @@ class DrivenFourBar(FourBarScene):
     source: ClassVar[str] = "sample 18.15, eqs. 18.67-18.71, fig. 18.66"
 
     rate: float = 10.0
-    revolutions: float = 1.0
+    revolutions: Positive = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(f"scene {self.name!r}", revolutions=self.revolutions)
         if self.rate == 0:
             raise InvalidMechanism(f"scene {self.name!r}: rate is 0; a driven crank needs a rate other than zero")
 
@@ -140,8 +130,7 @@ class DrivenFourBar(FourBarScene):
         drive = Drive("drive", None, "crank", self.rate, self.start)
         return self._mechanism(self._angles(np.zeros(1)), drive)
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        times = self._times(t)
+    def _motion(self, times: Array) -> Trajectory:
         pose, twist, _ = self._bodies(self._angles(times))
         forces = self.four_bar.forces(
             self.start + self.rate * times, self.rate, 0.0, self.assembly, self.density, self.gravity
@@ -170,11 +159,10 @@ class FreeFourBar(FourBarScene):
     name: ClassVar[str] = "free_four_bar"
     source: ClassVar[str] = "sample 18.15 with the drive removed; truth by eqs. 18.70-18.71 with Lagrange's equation"
 
-    duration: float = 1.0
+    duration: Positive = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(f"scene {self.name!r}", duration=self.duration)
         self._curve.start(self.start, self.rate, self.assembly)
 
     @property
@@ -188,15 +176,14 @@ class FreeFourBar(FourBarScene):
     def mechanism(self) -> Mechanism:
         return self._mechanism(self._angles(np.zeros(1)))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        times = self._times(t)
+    def _motion(self, times: Array) -> Trajectory:
         pose, twist, acceleration = self._bodies(self._angles(times))
         return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
 
     def own_error(self, t: ArrayLike) -> float:
         """The truth's own error up to the times t: the largest change [m, rad, m/s, rad/s] in poses and twists when it
         is computed again with steps half as long and stages of another number; rounding to double is a part of it."""
-        times = self._times(t)
+        times = self.times(t)
         first, second = self._angles(times), self._angles(times, LONGEST_STEP / 2, STAGES - 2)
         pairs = zip(self._bodies(first)[:2], self._bodies(second)[:2], strict=True)
         return max(float(np.max(np.abs(one - other))) for one, other in pairs)

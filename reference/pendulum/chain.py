@@ -16,12 +16,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import eigh, solveh_banded
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.numerics.integration import error_of, integrate
 from reference.pendulum.link import across, direction_of
+from reference.validation import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
 
@@ -30,23 +30,21 @@ TENFOLD = 10.0
 
 
 @dataclass(frozen=True)
-class Chain:
+class Chain(Valid):
     """Uniform bars from a fixed pin at the origin: `lengths` [m] and `masses` [kg] (links,), gravity [m/s^2]
     downwards.
     """
 
-    lengths: tuple[float, ...]
-    masses: tuple[float, ...]
+    lengths: tuple[Positive, ...]
+    masses: tuple[Positive, ...]
     gravity: float = 9.81
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not self.lengths:
             raise InvalidMechanism("chain: it has 0 links; give at least one")
         if len(self.lengths) != len(self.masses):
             raise InvalidMechanism(f"chain: {len(self.lengths)} lengths and {len(self.masses)} masses; give as many")
-        for index, (length, mass) in enumerate(zip(self.lengths, self.masses, strict=True)):
-            require_positive(f"chain, link {index + 1}", length=length, mass=mass)
-        require_finite("chain", gravity=self.gravity)
 
     @property
     def links(self) -> int:
@@ -65,11 +63,24 @@ class Chain:
         """About the centres of mass (links,) [kg m^2]."""
         return self._mass * self._length**2 / 12
 
+    @validated
     def forces(self, angle: Array, rate: Array) -> Array:
         """The force of every joint on the link below it (..., links, 2) [N], for angles and rates (..., links).
 
         All states of a batch are one banded system, their blocks side by side: O(states x links).
         """
+        self._refuse_other_shapes(angle, rate)
+        return self._forces(angle, rate)
+
+    def _refuse_other_shapes(self, *states: Array) -> None:
+        shapes = [state.shape for state in states]
+        if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):
+            raise InvalidMechanism(
+                f"chain: angles and rates have the shapes {', '.join(map(str, shapes))}; "
+                f"all must be of one shape (..., {self.links}), a number a link"
+            )
+
+    def _forces(self, angle: Array, rate: Array) -> Array:
         leading = angle.shape[:-1]
         half = 0.5 * self._length[:, None] * direction_of(angle)
         normal = across(half)
@@ -93,17 +104,22 @@ class Chain:
         )
         return solution.reshape(*leading, self.links, 2)
 
+    @validated
     def accelerations(self, angle: Array, rate: Array) -> Array:
         """angle'' (..., links) [rad/s^2] from the joint forces."""
-        forces = self.forces(angle, rate)
+        self._refuse_other_shapes(angle, rate)
+        return self._accelerations(angle, rate)
+
+    def _accelerations(self, angle: Array, rate: Array) -> Array:
+        forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
         normal = across(0.5 * self._length[:, None] * direction_of(angle))
         return -np.sum(normal * forces, axis=-1) / self.inertia
 
     def rates(self, state: Array) -> Array:
-        """d/dt of (angles, rates) (..., 2 links): what is integrated."""
+        """d/dt of (angles, rates) (..., 2 links): what is integrated, so nothing is checked here."""
         angle, rate = state[..., : self.links], state[..., self.links :]
-        return np.concatenate([rate, self.accelerations(angle, rate)], axis=-1)
+        return np.concatenate([rate, self._accelerations(angle, rate)], axis=-1)
 
     @cached_property
     def inertia_matrix(self) -> Array:
@@ -121,10 +137,12 @@ class Chain:
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
         return self.gravity * self._length * (self._mass / 2 + below)
 
+    @validated
     def lagrangian_accelerations(self, angle: Array, rate: Array) -> Array:
         """angle'' (links,) [rad/s^2] by Lagrange's equations, dense: O(links^3), no joint force in it; the second
         opinion.
         """
+        self._refuse_other_shapes(angle, rate)
         difference = angle[:, None] - angle
         right = -(self.inertia_matrix * np.sin(difference)) @ rate**2 - self.stiffness * np.sin(angle)
         solution: Any = np.linalg.solve(self.inertia_matrix * np.cos(difference), right)
@@ -137,8 +155,10 @@ class Chain:
         squares, shapes = eigh(np.diag(self.stiffness), self.inertia_matrix)
         return np.sqrt(squares), shapes
 
+    @validated
     def energy(self, angle: Array, rate: Array) -> Array:
         """Kinetic and potential energy (...) [J] by Lagrange's constants; zero potential at the pin."""
+        self._refuse_other_shapes(angle, rate)
         sine, cosine = np.sin(angle) * rate, np.cos(angle) * rate
         kinetic = 0.5 * (
             np.einsum("...i,ij,...j", cosine, self.inertia_matrix, cosine)
@@ -146,8 +166,10 @@ class Chain:
         )
         return kinetic - np.sum(self.stiffness * np.cos(angle), axis=-1)
 
+    @validated
     def placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
+        self._refuse_other_shapes(angle, rate, acceleration)
         half = 0.5 * self._length[:, None] * direction_of(angle)
         speed = rate[..., None] * across(half)
         change = acceleration[..., None] * across(half) - rate[..., None] ** 2 * half
@@ -161,15 +183,15 @@ class Chain:
             np.concatenate([centres(change), acceleration[..., None]], axis=-1),
         )
 
-    def divergence(self, angle: ArrayLike, rate: ArrayLike, t: ArrayLike, starts: int = 3) -> Array:
+    @validated
+    def divergence(self, angle: Array, rate: Array, t: Times, starts: Count = 3) -> Array:
         """How many times larger a small difference of starts has become at times t (times,) [s]: the worst of some.
 
         Measured, not guessed: `starts` neighbours are integrated beside the motion, their angles moved by NUDGE in
         fixed pseudo-random directions. The norm is the largest difference of an angle.
         """
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        start = np.concatenate([np.asarray(angle, dtype=float), np.asarray(rate, dtype=float)])
-        until = max(float(t.max()), math.ulp(1.0))
+        t, start = sample_times("chain", t), self._start(angle, rate)
+        until = max(float(t.max(initial=0.0)), math.ulp(1.0))
         tolerance = NUDGE * 1e-4  # its error stays far below the difference that is measured
         motion = integrate(self.rates, start, until, tolerance)(t)
         growth = np.zeros(len(t))
@@ -181,7 +203,8 @@ class Chain:
             growth = np.maximum(growth, np.abs(neighbour - motion)[:, : self.links].max(axis=-1) / NUDGE)
         return growth
 
-    def horizon(self, angle: ArrayLike, rate: ArrayLike, until: float) -> tuple[float, float]:
+    @validated
+    def horizon(self, angle: Array, rate: Array, until: Positive) -> tuple[float, float]:
         """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth from there to
         `until`).
 
@@ -197,9 +220,14 @@ class Chain:
             return float(t[first]), math.nan
         return float(t[first]), float(np.polyfit(t[first:], np.log(growth[first:]), 1)[0])
 
-    def error(self, angle: ArrayLike, rate: ArrayLike, t: ArrayLike) -> Array:
+    @validated
+    def error(self, angle: Array, rate: Array, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
-        return error_of(self.rates, np.concatenate([np.asarray(angle, float), np.asarray(rate, float)]), t)
+        return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
+
+    def _start(self, angle: Array, rate: Array) -> Array:
+        self._refuse_other_shapes(angle, rate)
+        return np.concatenate([angle, rate])
 
 
 @dataclass(frozen=True)
@@ -211,7 +239,8 @@ class TwoPoints:
     b: Array
 
 
-def velocities(length: float, angles: tuple[float, float], rates: tuple[float, float]) -> TwoPoints:
+@validated
+def velocities(length: Positive, angles: tuple[float, float], rates: tuple[float, float]) -> TwoPoints:
     """Problem 18.5.1: A and B are the lower ends of the two bars of a double pendulum, each of `length` [m].
 
     The angles phi are from the downward vertical, counter-clockwise: r_A = l (sin phi1, -cos phi1).
@@ -222,8 +251,9 @@ def velocities(length: float, angles: tuple[float, float], rates: tuple[float, f
     return TwoPoints(first, second, first + second)
 
 
+@validated
 def accelerations(
-    length: float, angles: tuple[float, float], rates: tuple[float, float], second_rates: tuple[float, float]
+    length: Positive, angles: tuple[float, float], rates: tuple[float, float], second_rates: tuple[float, float]
 ) -> TwoPoints:
     """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), B/A
     likewise.

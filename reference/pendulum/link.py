@@ -18,18 +18,18 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import require_finite, require_positive
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import NonNegative, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Pendulum:
+class Pendulum(Valid):
     """The exact motion from any start: `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t =
     0.
 
@@ -38,13 +38,9 @@ class Pendulum:
     1e-16 / |1 - k^2| / f, by whatever method. A start at rest keeps all digits: 1 - k^2 is then cos(angle/2)^2.
     """
 
-    frequency: float
+    frequency: Positive
     angle: float
     rate: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_positive("pendulum", frequency=self.frequency)
-        require_finite("pendulum", angle=self.angle, rate=self.rate)
 
     @cached_property
     def _start(self) -> tuple[float, float, float, float, float]:
@@ -91,6 +87,7 @@ class Pendulum:
         speed, _, complement = self._elliptic
         return (2 if self.excess > 0 else 4) * quarter_period(complement) / speed
 
+    @validated
     def motion(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         """Angle [rad] (not wrapped), rate [rad/s] and acceleration [rad/s^2] at times t [s] of any sign."""
         direction, turns, *_ = self._start
@@ -108,7 +105,8 @@ class Pendulum:
         angle = direction * 2 * half + 2 * math.pi * turns
         return angle, direction * factor * rate, -direction * self.frequency**2 * sine
 
-    def passages(self, angle: float, until: float) -> Array:
+    @validated
+    def passages(self, angle: float, until: NonNegative) -> Array:
         """The times [s] in [0, until] at which the pendulum stands at `angle` [rad], whole turns apart included."""
         direction, *_ = self._start
         speed, start, complement = self._elliptic
@@ -148,17 +146,13 @@ class BarPendulum(Scene):
     name: ClassVar[str] = "pendulum_1"
     page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum (1 link)"
-    length: float = 1.0
-    mass: float = 1.0
-    gravity: float = 9.81
+    length: Positive = 1.0
+    mass: Positive = 1.0
+    gravity: Positive = 9.81
     angle: float = 2.0
     rate: float = 0.0
-    duration: float = 10.0
-    horizon: float = 10.0  # not chaotic: an error in the energy makes the phase drift in proportion to time
-
-    def __post_init__(self) -> None:
-        require_positive(f"scene {self.name!r}", length=self.length, mass=self.mass, gravity=self.gravity)
-        require_finite(f"scene {self.name!r}", angle=self.angle, rate=self.rate)
+    duration: Positive = 10.0
+    horizon: Positive = 10.0  # not chaotic: an error in the energy makes the phase drift in proportion to time
 
     @cached_property
     def pendulum(self) -> Pendulum:
@@ -180,11 +174,10 @@ class BarPendulum(Scene):
         twist = np.concatenate([rate * across(arm), rate], axis=-1)
         return pose, twist, np.concatenate([acceleration * across(arm) - rate**2 * arm, acceleration], axis=-1)
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = self._bar(t)
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._bar(times)
         reaction = self.mass * (acceleration[:, :2] + np.array([0.0, self.gravity]))
-        return Trajectory(t, pose[:, None], twist[:, None], reaction)
+        return Trajectory(times, pose[:, None], twist[:, None], reaction)
 
 
 @dataclass(frozen=True)
@@ -197,10 +190,10 @@ class PointPendulum(BarPendulum):
 
     name: ClassVar[str] = "point_pendulum"
     source: ClassVar[str] = "IFToMM library of computational benchmark problems, A01 simple pendulum; section 18.5"
-    length: float = 1.5
+    length: Positive = 1.5
     angle: float = math.pi / 2
-    duration: float = 2000.0
-    horizon: float = 2000.0
+    duration: Positive = 2000.0
+    horizon: Positive = 2000.0
 
     @property
     def samples(self) -> int:

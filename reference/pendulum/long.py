@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
 from reference.pendulum.scenes import LinkPendulum
+from reference.validation import Positive
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,8 @@ class LongPendulum(LinkPendulum):
 
     name: ClassVar[str] = "pendulum_n"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum of 1, 2 and 100 links, and more"
-    duration: float = 0.5
-    horizon: float = 0.5
+    duration: Positive = 0.5
+    horizon: Positive = 0.5
 
     def mechanism(self) -> Mechanism:
         chain = super().mechanism()

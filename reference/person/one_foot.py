@@ -17,13 +17,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import require_finite, require_positive
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH, Segment
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import Positive
 
 Array = NDArray[np.float64]
 
@@ -41,26 +41,17 @@ class OneFoot(Scene):
     name: ClassVar[str] = "person_one_foot"
     page: ClassVar[str] = "person"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    weight: float = 75.0
-    height: float = 1.75
+    reach: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
+    weight: Positive = 75.0
+    height: Positive = 1.75
     gravity: float = 9.81
     left_shank: float = -0.02
     left_thigh: float = 0.05
     trunk: float = 0.0
     right_thigh: float = 1.2
     right_shank: float = -0.6
-    duration: float = 0.25  # then the lifted foot meets the ground, which is no joint
-    horizon: float = 0.25
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        require_positive(owner, weight=self.weight, height=self.height)
-        require_finite(owner, gravity=self.gravity, **self._start_fields)
-
-    @property
-    def _start_fields(self) -> dict[str, float]:
-        names = ("left_shank", "left_thigh", "trunk", "right_thigh", "right_shank")
-        return {name: getattr(self, name) for name in names}
+    duration: Positive = 0.25  # then the lifted foot meets the ground, which is no joint
+    horizon: Positive = 0.25
 
     @property
     def segments(self) -> tuple[Segment, ...]:
@@ -155,14 +146,14 @@ class OneFoot(Scene):
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """u and u' (times, freedoms) at times t >= 0 [s]."""
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        state = _integrated(self, max(self.duration, float(t.max())))(t)
+        times = self.times(t)
+        state = _integrated(self, max(self.duration, float(times.max(initial=0.0))))(times)
         half = state.shape[-1] // 2
         return state[:, :half], state[:, half:]
 
     def error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) in u and u', by two tolerances."""
-        return error_of(self.rates, np.concatenate([self.start, np.zeros(len(self.start))]), t)
+        return error_of(self.rates, np.concatenate([self.start, np.zeros(len(self.start))]), self.times(t))
 
     def mechanism(self) -> Mechanism:
         pose, _ = self.tangent(np.array(self.start))
@@ -182,10 +173,9 @@ class OneFoot(Scene):
             joints.append(Pin("right ankle", None, NAMES[4], (self.feet, 0.0), (ahead[4], 0.0)))
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, change = self.placement(t)
-        return Trajectory(t, pose, twist, self._mechanism.reaction(pose, change))
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, change = self.placement(times)
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, change))
 
     @cached_property
     def _mechanism(self) -> Mechanism:

@@ -9,19 +9,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from reference.validation import Fraction, Valid
+
 
 @dataclass(frozen=True)
-class Segment:
+class Segment(Valid):
     """Fractions: of the body's mass; of its height, the length; of the length, centre from the upper end, and gyration.
 
     `centre` is measured from the upper joint (for the trunk, whose joint is the hip, from the hip up); `gyration` is
     the radius of gyration about the centre of mass.
     """
 
-    mass: float
-    length: float
-    centre: float
-    gyration: float
+    mass: Fraction
+    length: Fraction
+    centre: Fraction
+    gyration: Fraction
 
 
 # Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about it) and figure 4.1 (length).

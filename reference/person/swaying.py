@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eig
 
 from reference.person.one_foot import OneFoot
+from reference.validation import Positive, validated
 
 Array = NDArray[np.float64]
 
@@ -35,10 +36,11 @@ class SwayingOnOneFoot(OneFoot):
     trunk: float = 0.00332792
     right_thigh: float = -0.0676988
     right_shank: float = 0.1
-    duration: float = 0.3
-    horizon: float = 0.1
+    duration: Positive = 0.3
+    horizon: Positive = 0.1
 
 
+@validated
 def modes_upright(person: OneFoot) -> tuple[Array, Array]:
     """Squares s [1/s^2] (5,) ascending, and shapes (5, 5) in columns, of small motions u'' = s u about standing
     upright.

@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import InvalidMechanism, require_finite
 from reference.person.one_foot import OneFoot
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, THIGH, Segment
+from reference.validation import InvalidMechanism, Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -33,17 +33,14 @@ class TwoFeet(OneFoot):
     stance: float = 0.5
     hip_x: float = 0.24
     hip_y: float = 0.8
-    knees: int = 1
+    knees: Sign = 1
     trunk: float = -0.1
-    duration: float = 0.3  # then a knee meets the ground
-    horizon: float = 0.3
+    duration: Positive = 0.3  # then a knee meets the ground
+    horizon: Positive = 0.3
 
     def __post_init__(self) -> None:
         super().__post_init__()
         owner = f"scene {self.name!r}"
-        require_finite(owner, stance=self.stance, hip_x=self.hip_x, hip_y=self.hip_y)
-        if self.knees not in (1, -1):
-            raise InvalidMechanism(f"{owner}: knees is {self.knees!r}; it must be 1 or -1")
         shank, thigh = (segment.length * self.height for segment in (SHANK, THIGH))
         farthest = 2 * (shank + thigh)
         if abs(self.stance) >= farthest:

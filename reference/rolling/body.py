@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.curves.curve import Array, Vector
 from reference.numerics.integration import TOLERANCE, Integrated, error_of, integrate
 from reference.rolling.kinematics import Rolling
+from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
 GRAVITY = 9.81
 # N and friction are looked at this often [s] for a change of sign, and the instant is then found to rounding.
@@ -26,7 +26,7 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 @dataclass(frozen=True)
-class RollingBody:
+class RollingBody(Valid):
     """One body rolling on fixed ground under gravity, in the one coordinate theta.
 
     M(theta) theta'' + M'(theta) theta'^2 / 2 = -V'(theta), with M = inertia + mass r^2, r the distance from the contact
@@ -38,14 +38,10 @@ class RollingBody:
     """
 
     rolling: Rolling
-    mass: float
-    inertia: float
+    mass: Positive
+    inertia: Positive
     start_rate: float
     gravity: Vector = (0.0, -GRAVITY)
-
-    def __post_init__(self) -> None:
-        require_positive("rolling body", mass=self.mass, inertia=self.inertia)
-        require_finite("rolling body", start_rate=self.start_rate, gravity=self.gravity)
 
     @property
     def start(self) -> tuple[float, float]:
@@ -61,6 +57,7 @@ class RollingBody:
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
         return (pull - change * np.asarray(rate) ** 2) / inertia
 
+    @validated
     def energy(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """Kinetic plus gravitational energy (...) [J], zero potential at the world's origin."""
         contact = self.rolling.contact(theta)
@@ -87,7 +84,7 @@ class RollingBody:
 
     def error(self, t: ArrayLike) -> Array:
         """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
-        return error_of(self._rates, self.start, t)
+        return error_of(self._rates, self.start, sample_times("rolling body", t))
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""
@@ -104,13 +101,14 @@ class RollingBody:
         with np.errstate(divide="ignore"):
             return np.where(normal > 0, np.abs(tangent) / np.where(normal > 0, normal, 1.0), np.inf)
 
-    def hop(self, until: float) -> float | None:
+    @validated
+    def hop(self, until: Positive) -> float | None:
         """The first instant [s] before `until` at which the contact would have to pull (N = 0), or None."""
         return self._first(lambda t: self.forces(t)[1], until)
 
-    def slip(self, friction: float, until: float) -> float | None:
+    @validated
+    def slip(self, friction: Positive, until: Positive) -> float | None:
         """The first instant [s] before `until` at which |T| exceeds friction N, or None; at a hop at the latest."""
-        require_positive("rolling body", friction=friction)
 
         def spare(t: ArrayLike) -> Array:
             tangent, normal = self.forces(t)
@@ -128,7 +126,8 @@ class RollingBody:
             return 0.0
         return _root(lambda t: float(spare(t)[0]), float(times[below[0] - 1]), float(times[below[0]]))
 
-    def equilibrium(self, near: float, within: float = 0.5) -> float:
+    @validated
+    def equilibrium(self, near: float, within: Positive = 0.5) -> float:
         """The rotation [rad] within `within` of `near` at which the body can rest; InvalidMechanism without one."""
         low, high = near - within, near + within
 
@@ -142,6 +141,7 @@ class RollingBody:
             )
         return _root(pull, low, high)
 
+    @validated
     def stiffness(self, theta: ArrayLike) -> Array:
         """d^2V/dtheta^2 (...) [N m/rad]."""
         contact = self.rolling.contact(theta)
@@ -149,6 +149,7 @@ class RollingBody:
         across = gravity[1] * contact.tangent[..., 0] - gravity[0] * contact.tangent[..., 1]
         return self.mass * (contact.arm @ gravity + contact.rate * across)
 
+    @validated
     def small_frequency(self, equilibrium: float) -> float:
         """sqrt(V'' / M) [rad/s] of small oscillations about a rest; InvalidMechanism if the rest is unstable."""
         stiffness = float(self.stiffness(equilibrium))

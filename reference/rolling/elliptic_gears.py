@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
@@ -18,6 +17,7 @@ from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import Positive, from_to, validated
 
 
 def _triple(values: Array) -> Triple:
@@ -41,21 +41,13 @@ class EllipticGears(Scene):
     page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66), between two moving bodies"
 
-    major: float = 0.3  # m, semi-axis a
-    eccentricity: float = 0.5
+    major: Positive = 0.3  # m, semi-axis a
+    eccentricity: Annotated[float, from_to(0, 0.99)] = 0.5
     turning_rate: float = 3.0  # rad/s of the first gear
     start_angle: float = 0.4  # rad of the first gear
-    mass: float = 1.0  # kg, each
-    duration: float = 2.0  # s
-    horizon: float = 2.0  # s
-
-    def __post_init__(self) -> None:
-        require_positive("elliptic gears", major=self.major, mass=self.mass)
-        require_finite("elliptic gears", turning_rate=self.turning_rate, start_angle=self.start_angle)
-        if not 0 <= self.eccentricity <= 0.99:
-            raise InvalidMechanism(
-                f"elliptic gears: eccentricity is {self.eccentricity!r}; it must be from 0 (round) to 0.99"
-            )
+    mass: Positive = 1.0  # kg, each
+    duration: Positive = 2.0  # s
+    horizon: Positive = 2.0  # s
 
     @property
     def samples(self) -> int:
@@ -70,6 +62,7 @@ class EllipticGears(Scene):
     def _focus(self) -> tuple[float, float]:
         return (-self.major * self.eccentricity, 0.0)
 
+    @validated
     def second_angle(self, first: ArrayLike) -> Array:
         """theta_2 (...) [rad] at theta_1 (...) [rad], both unwrapped."""
         half = np.asarray(first, dtype=float) / 2
@@ -77,6 +70,7 @@ class EllipticGears(Scene):
         sine, cosine = np.sin(half), np.cos(half)
         return -2 * (half + np.arctan2((ratio - 1) * sine * cosine, cosine**2 + ratio * sine**2))
 
+    @validated
     def second_rate(self, first: ArrayLike) -> tuple[Array, Array]:
         """theta_2' and theta_2'' (...) [rad/s, rad/s^2]: minus the ratio of the contact's distances, and its rate."""
         first = np.asarray(first, dtype=float)
@@ -122,13 +116,12 @@ class EllipticGears(Scene):
             ),
         )
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = self.kinematics(t)
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self.kinematics(times)
         mechanism = self.mechanism()
         reaction = mechanism.reaction(pose, acceleration)
         # Rows that take part in a set of forces in equilibrium by themselves: J^T null = 0.
         _, singular, right = np.linalg.svd(np.swapaxes(mechanism.rows(pose), -1, -2))
         rank = int(np.sum(singular[0] > RANK_TOLERANCE * singular[0, 0]))
         share = np.sqrt(np.sum(right[:, rank:, :] ** 2, axis=-2))
-        return Trajectory(t=t, pose=pose, twist=twist, reaction=np.where(share > 1e-9, np.nan, reaction))
+        return Trajectory(t=times, pose=pose, twist=twist, reaction=np.where(share > 1e-9, np.nan, reaction))

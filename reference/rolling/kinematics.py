@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.round import Line, Ring, Side
 from reference.numerics.monotone import solve_increasing
 from reference.rolling.contact import Contact, quarter_turned, turned
+from reference.validation import InvalidMechanism, Valid, of_shape, validated
 
 # The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
 # of a double's sixteen digits are left in it, and a truth of fewer would be none.
@@ -31,8 +32,11 @@ def _hole(curve: Curve) -> tuple[Array, float] | None:
     return turned(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
 
 
+Place = Annotated[ArrayLike, of_shape("...", 2)]
+
+
 @dataclass(frozen=True)
-class Rolling:
+class Rolling(Valid):
     """The curve `body` rolls without slip on the fixed curve `ground`; see `reference.curves.curve` for the convention.
 
     At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]; make one with `Rolling.at_angle` or
@@ -51,7 +55,7 @@ class Rolling:
     body_arc: float
 
     def __post_init__(self) -> None:
-        require_finite("rolling", theta=self.theta, ground_arc=self.ground_arc, body_arc=self.body_arc)
+        super().__post_init__()
         mismatch = float(self.ground.angle(self.ground_arc) + math.pi - self.theta - self.body.angle(self.body_arc))
         mismatch = math.remainder(mismatch, 2 * math.pi)
         if abs(mismatch) > 1e-9:
@@ -64,16 +68,16 @@ class Rolling:
             self._refuse_overlap(np.asarray(self.theta))
 
     @classmethod
+    @validated
     def at_angle(cls, body: Curve, ground: Curve, theta: float = 0.0, ground_arc: float = 0.0) -> Rolling:
         """Start at a rotation [rad] of the body, touching the ground at an arc [m]; the body must not be straight."""
-        require_finite("rolling", theta=theta, ground_arc=ground_arc)
         wanted = math.remainder(float(ground.angle(ground_arc)) + math.pi - theta, 2 * math.pi)
         return cls(body, ground, theta, ground_arc, float(body.arc(wanted)))
 
     @classmethod
+    @validated
     def at_arcs(cls, body: Curve, ground: Curve, ground_arc: float = 0.0, body_arc: float = 0.0) -> Rolling:
         """Start with these arcs [m] touching; the rotation is then known up to turns, and taken within half a turn."""
-        require_finite("rolling", ground_arc=ground_arc, body_arc=body_arc)
         theta = math.remainder(float(ground.angle(ground_arc) + math.pi - body.angle(body_arc)), 2 * math.pi)
         return cls(body, ground, theta, ground_arc, body_arc)
 
@@ -238,20 +242,22 @@ class Rolling:
                 "the ring must be larger than its roller everywhere"
             )
 
+    @validated
     def contact(self, theta: ArrayLike) -> Contact:
         """The contact on both curves at rotations theta (...) [rad]."""
         theta = np.asarray(theta, dtype=float)
-        require_finite("rolling", theta=theta)
         contact = self._contact_at(theta, self._body_parameter(theta))
         self._refuse_conformal(contact)
         if not self._apart_everywhere:
             self._refuse_overlap(theta)
         return contact
 
+    @validated
     def advance(self, theta: ArrayLike) -> Array:
         """s (...) [m]: how far the contact has moved along the ground since the start."""
         return self.contact(theta).ground_arc - self.ground_arc
 
+    @validated
     def pose(self, theta: ArrayLike) -> Array:
         """Poses (..., 3) [m, m, rad] of the body's frame at rotations theta (...) [rad]."""
         contact = self.contact(theta)
@@ -261,34 +267,38 @@ class Rolling:
         """r_{P/C} (..., 2) [m] of a point P of the body, in its own frame."""
         return contact.arm + turned(contact.theta, np.asarray(point, dtype=float))
 
-    def position(self, theta: ArrayLike, point: ArrayLike = (0.0, 0.0)) -> Array:
+    @validated
+    def position(self, theta: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """Positions (..., 2) [m] of a point of the body, given in its own frame [m]: the roulette."""
         contact = self.contact(theta)
         return contact.point + self._arm(contact, point)
 
-    def velocity(self, theta: ArrayLike, rate: ArrayLike, point: ArrayLike = (0.0, 0.0)) -> Array:
+    @validated
+    def velocity(self, theta: ArrayLike, rate: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """(18.66) v = omega x r_{P/C} (..., 2) [m/s] of a point of the body at the rate omega (...) [rad/s]."""
         return np.asarray(rate)[..., None] * quarter_turned(self._arm(self.contact(theta), point))
 
+    @validated
     def contact_velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """v_C = omega / (curvature_A + curvature_B) e_t (..., 2) [m/s]: of no material point."""
         contact = self.contact(theta)
         return (np.asarray(rate) * contact.rate)[..., None] * contact.tangent
 
+    @validated
     def pinned_acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: ArrayLike = (0.0, 0.0)
+        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)
     ) -> Array:
         """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration as if the body were pinned at C."""
         arm = self._arm(self.contact(theta), point)
         return np.asarray(growth)[..., None] * quarter_turned(arm) - np.asarray(rate)[..., None] ** 2 * arm
 
+    @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2]: what rolling adds, the same for every point."""
         contact = self.contact(theta)
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 
-    def acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: ArrayLike = (0.0, 0.0)
-    ) -> Array:
+    @validated
+    def acceleration(self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """Accelerations (..., 2) [m/s^2] of a point at the rate omega [rad/s] and its growth alpha [rad/s^2] (...)."""
         return self.pinned_acceleration(theta, rate, growth, point) + self.rolling_acceleration(theta, rate)

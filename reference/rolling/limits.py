@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.integrate import quad
 
-from reference.checks import sample_times
-from reference.curves.curve import Curve, Placed, Vector
+from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.open import Catenary
 from reference.curves.round import Circle, Ring, Side
 from reference.rolling.body import RollingBody
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingScene
 from reference.trajectory import Trajectory
+from reference.validation import Positive, Rule
+
+Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1")]
 
 
 @dataclass(frozen=True)
@@ -31,11 +32,11 @@ class DiscInHole(RollingScene):
 
     name: ClassVar[str] = "disc_in_hole"
 
-    hole: float = 1.0  # m, radius
-    clearance: float = 0.1  # of the hole's radius
+    hole: Positive = 1.0  # m, radius
+    clearance: Clearance = 0.1  # of the hole's radius
     start_rate: float = 1.0
     gravity: Vector = (0.0, 0.0)
-    duration: float = 1.0
+    duration: Positive = 1.0
 
     @property
     def radius(self) -> float:
@@ -57,17 +58,16 @@ class DiscInHole(RollingScene):
         """The hole presses with mass clearance hole (w radius / (clearance hole))^2 and needs no friction: always."""
         return math.inf
 
-    def motion(self, t: ArrayLike) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         """In closed form, since an integrator would follow rounding round the hole."""
-        t = sample_times("disc in a hole", t)
         rolling = self.motion_law.rolling
-        theta = rolling.theta + self.start_rate * t
+        theta = rolling.theta + self.start_rate * times
         contact = rolling.contact(theta)
         force = self.mass * rolling.acceleration(theta, self.start_rate, 0.0)
         velocity = rolling.velocity(theta, self.start_rate)
-        rate = np.full((len(t), 1), self.start_rate)
+        rate = np.full((len(times), 1), self.start_rate)
         return Trajectory(
-            t=t,
+            t=times,
             pose=np.concatenate([contact.point + contact.arm, theta[:, None]], axis=-1)[:, None, :],
             twist=np.concatenate([velocity, rate], axis=-1)[:, None, :],
             reaction=np.stack(
@@ -86,9 +86,9 @@ class SquareOnCatenaries(RollingScene):
     name: ClassVar[str] = "square_on_catenary"
     source: ClassVar[str] = "rolling of not round objects: a corner is a curve of infinite curvature"
 
-    side: float = 1.0  # m
+    side: Positive = 1.0  # m
     start_rate: float = 1.0
-    duration: float = 1.5
+    duration: Positive = 1.5
 
     def body_curve(self) -> Curve:
         return Side(self.side)

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.curves.curve import Vector
 from reference.rolling.kinematics import Rolling
+from reference.validation import Name, Valid
 
 
 @dataclass(frozen=True)
-class Roll:
+class Roll(Valid):
     """Ideal rolling of two bodies (18.66): at the contact, the material of the second has the velocity of the first's.
 
     `rolling` holds both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
@@ -33,9 +34,9 @@ class Roll:
     labels: ClassVar[tuple[str, ...]] = ("tangent", "normal")
     stackable: ClassVar[bool] = False  # curves don't stack as numbers do
 
-    name: str
-    first: str | None
-    second: str | None
+    name: Name
+    first: Name | None
+    second: Name | None
     rolling: Rolling
 
     @property

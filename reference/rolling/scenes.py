@@ -9,11 +9,9 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from reference.checks import sample_times
 from reference.curves.cam import Cam
-from reference.curves.curve import Curve, Placed, Vector
+from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.ellipse import Ellipse
 from reference.curves.round import Circle, Line, Ring
 from reference.mechanism import Body, Mechanism
@@ -22,6 +20,7 @@ from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import Positive
 
 
 @dataclass(frozen=True)
@@ -31,13 +30,15 @@ class RollingScene(Scene):
     page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
-    mass: float = 1.0  # kg
+    reach: ClassVar[float] = 2.0  # the contact is searched for at every step, and bodies roll ever faster downhill
+
+    mass: Positive = 1.0  # kg
     start_angle: float = 0.0  # rad
     start_rate: float = 4.0  # rad/s
     ground_arc: float = 0.0  # m, where the contact begins
     gravity: Vector = (0.0, -GRAVITY)  # m/s^2
-    duration: float = 2.0  # s
-    friction: float = 1.0  # the coefficient up to which a real contact is taken to hold
+    duration: Positive = 2.0  # s
+    friction: Positive = 1.0  # the coefficient up to which a real contact is taken to hold
 
     @abstractmethod
     def body_curve(self) -> Curve:
@@ -80,14 +81,13 @@ class RollingScene(Scene):
         body = Body("roller", self.mass, self.inertia, (x, y, angle), (vx, vy, self.start_rate))
         return Mechanism((body,), (Roll("contact", None, "roller", law.rolling),), self.gravity)
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times("rolling", t)
+    def _motion(self, times: Array) -> Trajectory:
         law = self.motion_law
-        theta, rate = law.states(t)
+        theta, rate = law.states(times)
         velocity = law.rolling.velocity(theta, rate)
-        tangent, normal = law.forces(t)
+        tangent, normal = law.forces(times)
         return Trajectory(
-            t=t,
+            t=times,
             pose=law.rolling.pose(theta)[:, None, :],
             twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
             reaction=np.stack([tangent, normal], axis=-1),
@@ -100,8 +100,8 @@ class RollingEllipse(RollingScene):
 
     name: ClassVar[str] = "rolling_ellipse"
 
-    along_x: float = 0.5  # m, semi-axis
-    along_y: float = 0.3
+    along_x: Positive = 0.5  # m, semi-axis
+    along_y: Positive = 0.3
 
     def body_curve(self) -> Curve:
         return Ellipse(self.along_x, self.along_y)
@@ -117,7 +117,7 @@ class RollingDisc(RollingScene):
 
     name: ClassVar[str] = "rolling_disc"
 
-    radius: float = 0.4  # m
+    radius: Positive = 0.4  # m
     eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre
 
     def body_curve(self) -> Curve:
@@ -134,10 +134,10 @@ class RollingCam(RollingScene):
 
     name: ClassVar[str] = "rolling_cam"
 
-    radius: float = 0.4  # m, mean of the support function
+    radius: Positive = 0.4  # m, mean of the support function
     cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics
     sines: tuple[float, ...] = (0.0, 0.02)
-    gyration: float = 0.28  # m, radius of gyration
+    gyration: Positive = 0.28  # m, radius of gyration
 
     def body_curve(self) -> Curve:
         return Cam(self.radius, self.cosines, self.sines)
@@ -154,7 +154,7 @@ class RollingDownhill(RollingEllipse):
     name: ClassVar[str] = "rolling_incline"
 
     slope: float = 0.1  # rad, the ground rises to +x
-    along_y: float = 0.4
+    along_y: Positive = 0.4
     start_rate: float = 2.5
 
     def ground_curve(self) -> Curve:
@@ -167,7 +167,7 @@ class RollingInRing(RollingEllipse):
 
     name: ClassVar[str] = "rolling_in_ring"
 
-    ring: float = 1.5  # m, radius of the hole about the origin
+    ring: Positive = 1.5  # m, radius of the hole about the origin
     start_rate: float = 2.0
 
     @property
@@ -185,11 +185,11 @@ class RollingOnCircle(RollingDisc):
 
     name: ClassVar[str] = "rolling_on_circle"
 
-    hill: float = 1.0  # m, radius of the hill about the origin
-    radius: float = 0.25
+    hill: Positive = 1.0  # m, radius of the hill about the origin
+    radius: Positive = 0.25
     eccentricity: float = 0.05
     start_rate: float = 1.0
-    duration: float = 1.2
+    duration: Positive = 1.2
 
     def ground_curve(self) -> Curve:
         return Placed(Circle(self.hill), turn=math.pi / 2)  # arc 0 at the top

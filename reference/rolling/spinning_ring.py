@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import LARGEST_COUNT, Positive, from_to
 
 Array = NDArray[np.float64]
 
@@ -33,19 +33,12 @@ class SpinningRing(Scene):
     name: ClassVar[str] = "spinning_ring"
     page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: the simplest with many links"
-    links: int = 100
-    length: float = 0.1
-    mass: float = 0.1
+    links: Annotated[int, from_to(3, LARGEST_COUNT)] = 100
+    length: Positive = 0.1
+    mass: Positive = 0.1
     rate: float = 2.0
-    duration: float = 1.0
-    horizon: float = 1.0
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        if not (isinstance(self.links, int) and self.links >= 3):
-            raise InvalidMechanism(f"{owner}: links is {self.links!r}; a ring needs a whole number of at least 3")
-        require_positive(owner, length=self.length, mass=self.mass)
-        require_finite(owner, rate=self.rate)
+    duration: Positive = 1.0
+    horizon: Positive = 1.0
 
     def _placement(self, t: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, links, 3)."""
@@ -78,7 +71,6 @@ class SpinningRing(Scene):
     def mechanism(self) -> Mechanism:
         return self._mechanism
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = self._placement(t)
-        return Trajectory(t, pose, twist, self._mechanism.reaction(pose, acceleration))
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._placement(times)
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))

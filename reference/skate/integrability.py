@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from reference.checks import InvalidMechanism
 from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.validation import InvalidMechanism, validated
 
 Array = NDArray[np.float64]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
@@ -33,6 +33,7 @@ SPREAD = 0.1
 PLACES = 4
 
 
+@validated
 def null_space(rows: Array) -> Array:
     """An orthonormal basis (coordinates, freedoms) of the motions that rows (rows, coordinates) allow."""
     _, singular, right = np.linalg.svd(np.atleast_2d(rows))
@@ -40,6 +41,7 @@ def null_space(rows: Array) -> Array:
     return right[rank:].T
 
 
+@validated
 def exterior_derivatives(rows: Rows, place: Array) -> Array:
     """dw_i (rows, coordinates, coordinates) of the one-forms w_i at a place: d_j w_ik - d_k w_ij, by complex step."""
     shifted = place + 1j * COMPLEX_STEP * np.eye(len(place))
@@ -49,12 +51,14 @@ def exterior_derivatives(rows: Rows, place: Array) -> Array:
     return slope - np.swapaxes(slope, 1, 2)
 
 
+@validated
 def obstruction(rows: Rows, place: Array) -> Array:
     """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions: zero everywhere iff integrable."""
     basis = null_space(rows(place))
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
 
+@validated
 def curl_along(form: Rows, place: Array) -> float:
     """w . curl w of a one-form in three coordinates: Frobenius' test for one row; -1 everywhere for a skate (18.64)."""
     if len(place) != 3:
@@ -69,6 +73,7 @@ def _around(place: Array) -> list[Array]:
     return [place, *(place + SPREAD * np.sin(angles))]
 
 
+@validated
 def is_integrable(rows: Rows, place: Array) -> bool:
     """Whether the obstruction vanishes at a place and around it. Raises InvalidMechanism where the rank changes."""
     places = _around(place)
@@ -111,6 +116,7 @@ def _fields(rows: Rows, place: Array) -> list[Rows]:
     return [projected(motion) for motion in null_space(here).T]
 
 
+@validated
 def growth(rows: Rows, place: Array) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]], ... at a place, until nothing is added.
 
@@ -148,6 +154,7 @@ def _rank_basis(known: Array, vectors: list[Array]) -> Array:
     return known
 
 
+@validated
 def mechanism_rows(mechanism: Mechanism) -> Rows:
     """The one-forms of a mechanism's rows in (q, t), lengths and time in units of its own scales."""
     scale = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
@@ -164,6 +171,7 @@ def mechanism_rows(mechanism: Mechanism) -> Rows:
     return rows
 
 
+@validated
 def mechanism_place(mechanism: Mechanism, pose: Array | None = None) -> Array:
     """The coordinates of `mechanism_rows` for a pose (bodies, 3), the start unless given."""
     scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
@@ -171,11 +179,13 @@ def mechanism_place(mechanism: Mechanism, pose: Array | None = None) -> Array:
     return np.append((pose / scale).ravel(), 0.0)
 
 
+@validated
 def mechanism_is_integrable(mechanism: Mechanism, pose: Array | None = None) -> bool:
     """Whether all rows together are derivatives of positions (and time), near a pose, the start unless given."""
     return is_integrable(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
 
 
+@validated
 def freedoms_by_brackets(mechanism: Mechanism, pose: Array | None = None) -> tuple[int, ...]:
     """The growth of a mechanism's freedoms, time left out: first of velocity, last of configuration.
 

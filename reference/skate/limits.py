@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.joints import Skate, Vector
 from reference.mechanism import Body, Mechanism, Triple
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import Floats, InvalidMechanism, Positive
 
 
 @dataclass(frozen=True)
@@ -30,20 +29,14 @@ class SkateOnSlope(Scene):
     page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eq. 18.64, under gravity"
 
-    mass: float = 2.0
-    inertia: float = 0.3
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
     slope: float = 1.0
     heading: float = 0.0
     speed: float = 0.0
     turning_rate: float = 0.0
-    duration: float = 5.0
-    horizon: float = 5.0
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        positive = {"mass": self.mass, "inertia": self.inertia, "duration": self.duration, "horizon": self.horizon}
-        require_positive(owner, **positive)
-        require_finite(owner, slope=self.slope, heading=self.heading, speed=self.speed, turning_rate=self.turning_rate)
+    duration: Positive = 5.0
+    horizon: Positive = 5.0
 
     def mechanism(self) -> Mechanism:
         start = self.motion(0.0)
@@ -51,8 +44,8 @@ class SkateOnSlope(Scene):
         body = Body("skate", self.mass, self.inertia, tuple(pose), tuple(twist))
         return Mechanism((body,), (Skate("blade", None, "skate", (0.0, 0.0)),), (0.0, -self.slope))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times(f"scene {self.name!r}", t)
+    def _motion(self, times: Floats) -> Trajectory:
+        t = times
         first, rate = self.heading, self.turning_rate
         angle, half = first + rate * t, 0.5 * rate * t
         # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
@@ -99,20 +92,18 @@ class HeldBySkates(Scene):
     page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, degrees of freedom by rank"
 
-    mass: float = 2.0
-    inertia: float = 0.3
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
     points: tuple[Vector, ...] = ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4))
     angles: tuple[float, ...] = (0.5, -0.5, 1.5)
     slope: float = 1.0
     pose: Triple = (0.0, 0.0, 0.3)
-    duration: float = 3.0
-    horizon: float = 3.0
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         owner = f"scene {self.name!r}"
-        positive = {"mass": self.mass, "inertia": self.inertia, "duration": self.duration, "horizon": self.horizon}
-        require_positive(owner, **positive)
-        require_finite(owner, points=self.points, angles=self.angles, slope=self.slope, pose=self.pose)
         if len(self.points) != len(self.angles):
             raise InvalidMechanism(
                 f"{owner}: {len(self.points)} points and {len(self.angles)} angles; each skate has one"
@@ -131,8 +122,7 @@ class HeldBySkates(Scene):
         )
         return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.slope))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times(f"scene {self.name!r}", t)
-        pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(t), 1, 3)).copy()
+    def _motion(self, times: Floats) -> Trajectory:
+        pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()
         still = np.zeros_like(pose)
-        return Trajectory(t, pose, still, self.mechanism().reaction(pose, still))
+        return Trajectory(times, pose, still, self.mechanism().reaction(pose, still))

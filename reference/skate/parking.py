@@ -8,29 +8,26 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.mechanism import Triple
+from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Move:
+class Move(Valid):
     """First turn about C [rad], then slide along the skate [m]; either may be zero or negative."""
 
     turn: float = 0.0
     slide: float = 0.0
 
-    def __post_init__(self) -> None:
-        require_finite("move", turn=self.turn, slide=self.slide)
 
-
+@validated
 def park(start: Triple, goal: Triple, backwards: bool = True) -> tuple[Move, Move]:
     """Turn, slide, turn from one pose of the skate (x, y, theta) to any other, theta's whole turns included.
 
     With `backwards` the skate may slide the other way, so that the first turn is never beyond a quarter.
     """
-    require_finite("parking", start=start, goal=goal)
     distance = math.hypot(goal[0] - start[0], goal[1] - start[1])
     turn = 0.0
     if distance > 0:
@@ -40,6 +37,7 @@ def park(start: Triple, goal: Triple, backwards: bool = True) -> tuple[Move, Mov
     return Move(turn, distance), Move(turn=goal[2] - start[2] - turn)
 
 
+@validated
 def stops(start: Triple, moves: tuple[Move, ...]) -> Array:
     """The poses (moves + 1, 3) at the start and after every move."""
     pose = np.array(start, dtype=float)
@@ -53,7 +51,8 @@ def stops(start: Triple, moves: tuple[Move, ...]) -> Array:
     return np.array(out)
 
 
-def trace(start: Triple, moves: tuple[Move, ...], samples: int = 16) -> Array:
+@validated
+def trace(start: Triple, moves: tuple[Move, ...], samples: Count = 16) -> Array:
     """The poses along the way (points, 3), every turn and slide in `samples` parts, to be drawn; no part skids."""
     parts = [np.array([start], dtype=float)]
     along = np.linspace(0.0, 1.0, samples + 1)[1:, None]
@@ -67,11 +66,13 @@ def trace(start: Triple, moves: tuple[Move, ...], samples: int = 16) -> Array:
     return np.concatenate(parts)
 
 
+@validated
 def commutator(turn: float, slide: float) -> tuple[Move, ...]:
     """Turn, slide, turn back, slide back: what is undone one by one does not undo the whole."""
     return Move(turn, slide), Move(-turn, -slide)
 
 
+@validated
 def commutator_displacement(turn: ArrayLike, slide: ArrayLike) -> Array:
     """The commutator's exact net displacement of C (..., 2) in the start's frame [m]: slide (cos turn - 1, sin turn).
 
@@ -82,15 +83,14 @@ def commutator_displacement(turn: ArrayLike, slide: ArrayLike) -> Array:
     return np.stack([-2 * slide * np.sin(turn / 2) ** 2, slide * np.sin(turn)], axis=-1)
 
 
-def sidestep(distance: float, room: float, most_turn: float) -> tuple[Move, ...]:
+@validated
+def sidestep(distance: float, room: Positive, most_turn: Positive) -> tuple[Move, ...]:
     """Straight sideways by `distance` [m] (left, or right if negative), never turned more than `most_turn` [rad] nor
     further along than `room` [m], and no net turn or advance.
 
     The symmetric manoeuvre turn, slide, twice the turn back, slide back, turn moves C by exactly (0, 2 slide sin turn);
     it is repeated as often as the room asks, and the turn fits the distance. Raises InvalidMechanism for no room.
     """
-    require_finite("sidestep", distance=distance)
-    require_positive("sidestep", room=room, most_turn=most_turn)
     if most_turn > math.pi / 2:
         raise InvalidMechanism(f"sidestep: most_turn is {most_turn!r} rad; it must be at most a quarter turn, pi/2")
     if distance == 0:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.joints import Vector
 from reference.mechanism import Triple
 from reference.numerics.antiderivative import Antiderivative
+from reference.validation import Complexes, InvalidMechanism, Positive, Valid, of_shape, sample_times, validated
 
 Array = NDArray[np.float64]
 Rate = float | Callable[[Any], Any]
@@ -21,7 +21,8 @@ Rate = float | Callable[[Any], Any]
 COMPLEX_STEP = 1e-100
 
 
-def pin_rows(angle: ArrayLike, point: Vector) -> Array:
+@validated
+def pin_rows(angle: Complexes, point: Vector) -> Array:
     """The rows of (18.62) (..., 2, 3) in the rates of x_O', y_O', theta, for C at `point` [m] in the body's frame."""
     angle = np.asarray(angle)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -35,19 +36,22 @@ def pin_rows(angle: ArrayLike, point: Vector) -> Array:
     )
 
 
-def skate_row(angle: ArrayLike, point: Vector) -> Array:
+@validated
+def skate_row(angle: Complexes, point: Vector) -> Array:
     """The row of (18.64) (..., 1, 3): C can't move across the body's i'. The coordinate y'_C drops out."""
     angle = np.asarray(angle)
     return np.stack([-np.sin(angle), np.cos(angle), np.full_like(np.cos(angle), point[0])], axis=-1)[..., None, :]
 
 
-def pin_constants(pose: ArrayLike, point: Vector) -> Array:
+@validated
+def pin_constants(pose: Annotated[Complexes, of_shape("...", 3)], point: Vector) -> Array:
     """C_1 and C_2 of (18.63) (..., 2) [m] for poses (..., 3): the pin's place, which integrates (18.62)."""
     x, y, angle = np.moveaxis(np.asarray(pose), -1, 0)
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.stack([x + cosine * point[0] - sine * point[1], y + sine * point[0] + cosine * point[1]], axis=-1)
 
 
+@validated
 def pinned_pose(angle: ArrayLike, constants: Vector, point: Vector) -> Array:
     """Poses (..., 3) of the pinned body at an angle [rad]: (18.63) solved for x_O' and y_O'."""
     angle = np.asarray(angle, dtype=float)
@@ -78,7 +82,7 @@ def _derivative(function: Callable[[Any], Any], t: Array, name: str) -> Array:
 
 
 @dataclass(frozen=True)
-class SkatePath:
+class SkatePath(Valid):
     """The motion of a skate at C with a given speed v_C [m/s] along i' (signed) and turning rate [rad/s].
 
     Each is a number, or a function that takes an array of times [s] from 0 on and gives an array. `start` is the pose
@@ -90,14 +94,7 @@ class SkatePath:
     speed: Rate
     turning_rate: Rate
     start: Triple = (0.0, 0.0, 0.0)
-    panel: float = 0.5
-
-    def __post_init__(self) -> None:
-        require_finite("skate path", start=self.start)
-        require_positive("skate path", panel=self.panel)
-        for name, value in (("speed", self.speed), ("turning_rate", self.turning_rate)):
-            if not callable(value):
-                require_finite("skate path", **{name: value})
+    panel: Positive = 0.5
 
     def _given(self, name: str, t: Array) -> Array:
         value = getattr(self, name)
@@ -137,12 +134,12 @@ class SkatePath:
 
     def _arm(self, times: Array, point: Vector) -> tuple[Array, Array]:
         """i' (times, 2) and r_G/C (times, 2) in world components."""
-        require_finite("skate path", point=point)
         heading = self._heading(times)
         along = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         left = np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
         return along, point[0] * along + point[1] * left
 
+    @validated
     def velocity(self, t: ArrayLike, point: Vector = (0.0, 0.0)) -> Array:
         """v_G = v_C i' + theta_dot k x r_G/C (times, 2) [m/s]; `point` is G from C in the frame of i', j' [m]."""
         times = sample_times("skate path", t)
@@ -150,6 +147,7 @@ class SkatePath:
         turning = self._given("turning_rate", times)[:, None]
         return self._given("speed", times)[:, None] * along + turning * _left_of(arm)
 
+    @validated
     def acceleration(self, t: ArrayLike, point: Vector = (0.0, 0.0)) -> Array:
         """a_G = v_C' i' + v_C theta_dot j' + theta_ddot k x r_G/C - theta_dot^2 r_G/C (times, 2) [m/s^2].
 

@@ -8,15 +8,15 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from reference.checks import require_finite, require_positive, sample_times
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.link import Pendulum
 from reference.scene import Scene
 from reference.skate.path import pinned_pose
 from reference.trajectory import Trajectory
+from reference.validation import Positive
 
 Array = NDArray[np.float64]
 
@@ -34,22 +34,15 @@ class PinnedBody(Scene):
     page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eqs. 18.62-18.63"
 
-    mass: float = 2.0
-    inertia: float = 0.3
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
     point: Vector = (-0.5, 0.0)
     pin: Vector = (0.0, 0.0)
     angle: float = 0.5
     turning_rate: float = 2.0
     gravity: Vector = (0.0, -9.81)
-    duration: float = 3.0
-    horizon: float = 3.0  # an error in the energy makes the phase drift in proportion to time
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        positive = {"mass": self.mass, "inertia": self.inertia, "duration": self.duration, "horizon": self.horizon}
-        require_positive(owner, **positive)
-        require_finite(owner, point=self.point, pin=self.pin, angle=self.angle, turning_rate=self.turning_rate)
-        require_finite(owner, gravity=self.gravity)
+    duration: Positive = 3.0
+    horizon: Positive = 3.0  # an error in the energy makes the phase drift in proportion to time
 
     @cached_property
     def _lag(self) -> float:
@@ -76,15 +69,14 @@ class PinnedBody(Scene):
         body = Body("body", self.mass, self.inertia, tuple(pose), tuple(twist))
         return Mechanism((body,), (Pin("pin", None, "body", self.pin, self.point),), self.gravity)
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times(f"scene {self.name!r}", t)
-        angle, rate, acceleration = self._turning(t)
+    def _motion(self, times: Array) -> Trajectory:
+        angle, rate, acceleration = self._turning(times)
         pose = pinned_pose(angle, self.pin, self.point)
         arm = pose[:, :2] - np.array(self.pin)
         across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
         twist = np.concatenate([rate[:, None] * across, rate[:, None]], axis=-1)
         pull = acceleration[:, None] * across - rate[:, None] ** 2 * arm - np.array(self.gravity)
-        return Trajectory(t, pose[:, None, :], twist[:, None, :], self.mass * pull)
+        return Trajectory(times, pose[:, None, :], twist[:, None, :], self.mass * pull)
 
 
 @dataclass(frozen=True)

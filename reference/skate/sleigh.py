@@ -15,12 +15,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism, Triple
 from reference.numerics.antiderivative import Antiderivative
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import InvalidMechanism, NonNegative, Positive, sample_times, validated
 
 Array = NDArray[np.float64]
 
@@ -38,31 +38,21 @@ class ChaplyginSleigh(Scene):
     page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eqs. 18.64-18.65; ideal wheels and skates, looking down"
 
-    mass: float = 2.0
-    inertia: float = 0.3
+    mass: Positive = 2.0
+    inertia: NonNegative = 0.3
     offset: float = 0.5
     speed: float = 1.0
     turning_rate: float = 2.0
     start: Triple = (0.0, 0.0, 0.0)
-    duration: float = 3.0
-    horizon: float = 3.0
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
 
     def __post_init__(self) -> None:
-        owner = f"sleigh {self.name!r}"
-        require_positive(owner, mass=self.mass, duration=self.duration, horizon=self.horizon)
-        require_finite(
-            owner,
-            inertia=self.inertia,
-            offset=self.offset,
-            speed=self.speed,
-            turning_rate=self.turning_rate,
-            start=self.start,
-        )
-        if self.inertia < 0:
-            raise InvalidMechanism(f"{owner}: inertia is {self.inertia!r}; it must be zero or greater")
+        super().__post_init__()
         if self.inertia == 0 and self.offset == 0:
             raise InvalidMechanism(
-                f"{owner}: inertia and offset are both 0, so nothing resists turning; one of them must differ from zero"
+                f"{self._owner()}: inertia and offset are both 0, so nothing resists turning; "
+                "one of them must differ from zero"
             )
 
     @cached_property
@@ -102,6 +92,7 @@ class ChaplyginSleigh(Scene):
         remaining = 2 * math.atan(math.exp(-math.copysign(self._phase, self._phase * self.offset)))
         return math.copysign(self._arm / abs(self.offset) * remaining, self.turning_rate)
 
+    @validated
     def rates(self, t: ArrayLike) -> tuple[Array, Array]:
         """The skate's speed u [m/s] and the turning rate w [rad/s] at times t."""
         t = np.asarray(t, dtype=float)
@@ -112,6 +103,7 @@ class ChaplyginSleigh(Scene):
         sech = 2 * decayed / (1 + decayed**2)
         return self._top_speed * np.tanh(phase), math.copysign(self._top_speed / self._arm, self.turning_rate) * sech
 
+    @validated
     def heading(self, t: ArrayLike) -> Array:
         """theta at times t [rad, not wrapped]: a difference of Gudermannians, k/a (gd p - gd c), free of cancellation.
 
@@ -145,7 +137,7 @@ class ChaplyginSleigh(Scene):
 
     def skate_pose(self, t: ArrayLike) -> Array:
         """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding of the distance."""
-        t = sample_times(f"sleigh {self.name!r}", t)
+        t = sample_times(self._owner(), t)
         heading, (x, y, angle) = self.heading(t), self.start
         if self.turning_rate == 0 or self.offset == 0:
             half = 0.5 * self.turning_rate * t
@@ -158,7 +150,7 @@ class ChaplyginSleigh(Scene):
 
     def lateral_force(self, t: ArrayLike) -> Array:
         """The skate's force on the body, to the left of its heading [N]: I u w / k^2."""
-        speed, turning = self.rates(sample_times(f"sleigh {self.name!r}", t))
+        speed, turning = self.rates(sample_times(self._owner(), t))
         return self.inertia * speed * turning / self._arm**2
 
     def mechanism(self) -> Mechanism:
@@ -167,8 +159,8 @@ class ChaplyginSleigh(Scene):
         body = Body("sleigh", self.mass, self.inertia, tuple(pose), tuple(twist))
         return Mechanism((body,), (Skate("skate", None, "sleigh", (-self.offset, 0.0)),))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times(f"sleigh {self.name!r}", t)
+    def _motion(self, times: Array) -> Trajectory:
+        t = times
         pose = self.skate_pose(t)
         speed, turning = self.rates(t)
         cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
@@ -186,5 +178,5 @@ class SleighBackwards(ChaplyginSleigh):
 
     speed: float = -1.0
     turning_rate: float = 1e-3
-    duration: float = 10.0
-    horizon: float = 0.8  # 1 / growth rate: later, errors grow exponentially until the sleigh has turned round
+    duration: Positive = 10.0
+    horizon: Positive = 0.8  # 1 / growth rate: later, errors grow exponentially until the sleigh has turned round

@@ -7,13 +7,14 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from reference.joints import Pin, Slot
 from reference.mechanism import Mechanism
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import Trajectory
+from reference.validation import Positive
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,9 @@ class RodEndInSlot(DrivenSliderCrank):
             joints=(*kept, replace(guide, second="rod", second_point=end.first_point)),
         )
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = (part[:, :2] for part in self._placement(*self.crank_motion(t)))
-        return Trajectory(t, pose, twist, self._mechanism.reaction(pose, acceleration))
+    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
+        pose, twist, acceleration = (part[:, :2] for part in self._placement(*self.crank_motion(times)))
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     def branch(self, pose: Any) -> Any:
         """+1 where the rod points to the right, -1 to the left."""
@@ -71,8 +71,8 @@ class SliderAtDeadCentre(FreeSliderCrank):
     name: ClassVar[str] = "slider_at_dead_centre"
     angle: float = 1e-6
     rate: float = 0.0
-    duration: float = 1.5
-    horizon: float = 1.5
+    duration: Positive = 1.5
+    horizon: Positive = 1.5
 
     @cached_property
     def moving(self) -> MovingSliderCrank:

@@ -16,33 +16,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.validation import InvalidMechanism, Positive, Sign, Valid
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SliderCrank:
+class SliderCrank(Valid):
     """Crank and rod [m], the slot's height `offset` [m], and the assembly, +1 or -1.
 
     Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank: at equality the assemblies meet.
     """
 
-    crank: float
-    rod: float
+    crank: Positive
+    rod: Positive
     offset: float = 0.0
-    assembly: int = 1
+    assembly: Sign = 1
 
     def __post_init__(self) -> None:
-        require_positive("slider-crank", crank=self.crank, rod=self.rod)
-        require_finite("slider-crank", offset=self.offset)
+        super().__post_init__()
         if not abs(self.offset) < self.rod - self.crank:
             raise InvalidMechanism(
                 f"slider-crank: offset is {self.offset!r}; for a full turn it must stay below rod - crank = "
                 f"{self.rod - self.crank:.6g} in size"
             )
-        if self.assembly not in (1, -1):
-            raise InvalidMechanism(f"slider-crank: assembly is {self.assembly!r}; it must be 1 or -1")
 
     def rod_sine(self, theta: Any) -> Any:
         """sin(beta) (...) [1] for crank angles (...) [rad]."""
@@ -95,22 +92,16 @@ class SliderCrank:
 
 
 @dataclass(frozen=True)
-class MovingSliderCrank:
+class MovingSliderCrank(Valid):
     """A slider-crank with masses: uniform crank and rod, a slider, all [kg]; gravity [m/s^2] downwards, across the
     slot.
     """
 
     shape: SliderCrank
-    crank_mass: float
-    rod_mass: float
-    slider_mass: float
+    crank_mass: Positive
+    rod_mass: Positive
+    slider_mass: Positive
     gravity: float
-
-    def __post_init__(self) -> None:
-        require_positive(
-            "slider-crank", crank_mass=self.crank_mass, rod_mass=self.rod_mass, slider_mass=self.slider_mass
-        )
-        require_finite("slider-crank", gravity=self.gravity)
 
     def _centre_of_rod(self, theta: Any) -> tuple[Any, Any]:
         """First and second derivatives with respect to theta of the rod's centre: each (x, y) (...) [m]."""

@@ -14,13 +14,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import require_finite, require_positive
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.scene import Scene
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.trajectory import Trajectory
+from reference.validation import Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -46,23 +46,22 @@ class DrivenSliderCrank(Scene):
     page: ClassVar[str] = "slider_crank"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a slider-crank"
     driven: ClassVar[bool] = True
-    crank: float = 0.3
-    rod: float = 1.0
+    crank: Positive = 0.3
+    rod: Positive = 1.0
     offset: float = 0.0
-    assembly: int = 1
-    crank_mass: float = 0.3
-    rod_mass: float = 1.0
-    slider_mass: float = 0.5
-    slider_inertia: float = 1e-3
+    assembly: Sign = 1
+    crank_mass: Positive = 0.3
+    rod_mass: Positive = 1.0
+    slider_mass: Positive = 0.5
+    slider_inertia: Positive = 1e-3
     gravity: float = 9.81
     angle: float = 0.5
     rate: float = 10.0
-    duration: float = 2 * math.pi / 10
-    horizon: float = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
+    duration: Positive = 2 * math.pi / 10
+    horizon: Positive = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
 
     def __post_init__(self) -> None:
-        require_positive(f"scene {self.name!r}", slider_inertia=self.slider_inertia)
-        require_finite(f"scene {self.name!r}", angle=self.angle, rate=self.rate)
+        super().__post_init__()
         _ = self.moving  # refuses lengths and masses that can't be
 
     @cached_property
@@ -123,10 +122,9 @@ class DrivenSliderCrank(Scene):
     def mechanism(self) -> Mechanism:
         return self._mechanism
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        pose, twist, acceleration = self._placement(*self.crank_motion(t))
-        return Trajectory(t, pose, twist, self._mechanism.reaction(pose, acceleration))
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._placement(*self.crank_motion(times))
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     def branch(self, pose: Array) -> NDArray[np.int_]:
         """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
@@ -140,14 +138,14 @@ class FreeSliderCrank(DrivenSliderCrank):
 
     name: ClassVar[str] = "free_slider_crank"
     driven: ClassVar[bool] = False
-    duration: float = 2.0
-    horizon: float = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
+    duration: Positive = 2.0
+    horizon: Positive = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
 
     def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
-        until = max(self.duration, float(t.max()))
+        until = max(self.duration, float(t.max(initial=0.0)))
         state = _integrated(self.moving, self.angle, self.rate, until)(t)
         return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
 
     def error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) [rad, rad/s], by two tolerances."""
-        return error_of(lambda state: _rates(self.moving, state), [self.angle, self.rate], t)
+        return error_of(lambda state: _rates(self.moving, state), [self.angle, self.rate], self.times(t))

@@ -15,12 +15,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.joints import Joint, Pin, Skate
 from reference.mechanism import Body, Mechanism, Triple
 from reference.numerics.antiderivative import Antiderivative
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+from reference.validation import InvalidMechanism, Positive, validated
 from reference.wheels.tractrix import Tow
 from reference.wheels.trailers import towed
 
@@ -46,31 +46,25 @@ class CarAndTrailer(Scene):
     page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
-    masses: tuple[float, float] = (2.0, 1.0)
-    inertias: tuple[float, float] = (0.5, 0.2)
+    masses: tuple[Positive, Positive] = (2.0, 1.0)
+    inertias: tuple[Positive, Positive] = (0.5, 0.2)
     centres: tuple[float, float] = (0.4, 0.15)
-    wheelbase: float = 1.0
+    wheelbase: Positive = 1.0
     steering: float = 0.4
     hitch: float = 0.2
-    length: float = 0.8
+    length: Positive = 0.8
     speed: float = 1.0
     bend: float = 1.2
     pose: Triple = (0.0, 0.0, 0.0)
-    track: float = 0.4
+    track: Positive = 0.4
     redundant: bool = False
-    duration: float = 5.0
-    horizon: float = 5.0
+    duration: Positive = 5.0
+    horizon: Positive = 5.0
 
     def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        for index, vehicle in enumerate(("car", "trailer")):
-            require_positive(f"{owner}, {vehicle}", mass=self.masses[index], inertia=self.inertias[index])
-        positive = ("wheelbase", "length", "track", "duration", "horizon")
-        require_positive(owner, **{name: getattr(self, name) for name in positive})
-        finite = ("centres", "steering", "hitch", "speed", "bend", "pose")
-        require_finite(owner, **{name: getattr(self, name) for name in finite})
+        super().__post_init__()
         if not abs(self.steering) < math.pi / 2:
-            raise InvalidMechanism(f"{owner}: steering is {self.steering!r} rad; it must be less than a right angle")
+            raise InvalidMechanism(f"{self._owner()}: steering is {self.steering!r} rad; a right angle is too much")
 
     @property
     def curvature(self) -> float:
@@ -109,6 +103,7 @@ class CarAndTrailer(Scene):
     def _weights(self) -> Array:
         return np.array([(mass, mass, own) for mass, own in zip(self.masses, self.inertias, strict=True)])
 
+    @validated
     def apparent_mass(self, way: ArrayLike) -> Array:
         """M(s) [kg]: twice the kinetic energy for a speed of 1 m/s of the rear axle."""
         per_way = self._per_way(self._headings(np.asarray(way, dtype=float)))
@@ -128,7 +123,7 @@ class CarAndTrailer(Scene):
 
     def way(self, t: ArrayLike) -> Array:
         """The rear axle's way s (times,) [m], backwards negative."""
-        goal = abs(self.speed) * np.asarray(t, dtype=float)
+        goal = abs(self.speed) * self.times(t)
         first = float(self.apparent_mass(0.0))
         low, high = np.zeros_like(goal), goal.copy()
         while np.any(short := self._stretch(high) < goal):
@@ -186,9 +181,8 @@ class CarAndTrailer(Scene):
         pose = np.concatenate([np.stack([car, trailer], axis=1), headings[..., None]], axis=-1)
         return pose, per_way * speeds, acceleration
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        t = sample_times(f"scene {self.name!r}", t)
-        way = self.way(t)
+    def _motion(self, times: Array) -> Trajectory:
+        way = self.way(times)
         speed = self.speed * np.sqrt(self.apparent_mass(0.0) / self.apparent_mass(way))
         pose, twist, acceleration = self._moving(way, speed)
-        return Trajectory(t, pose, twist, self.mechanism().reaction(pose, acceleration))
+        return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))

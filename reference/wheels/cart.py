@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import require_finite, require_positive
 from reference.joints import Joint, Pin, Skate
 from reference.mechanism import Body, Mechanism, Triple
+from reference.validation import Positive
 from reference.wheels.casters import Casters
 from reference.wheels.coasting import CoastingScene
 
@@ -32,29 +32,22 @@ class Cart(CoastingScene):
     page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
-    mass: float = 2.0
-    inertia: float = 0.3
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
     centre: float = 0.4
     front: float = 0.7
-    width: float = 0.4
-    trail: float = 0.1
-    caster_mass: float = 0.1
-    caster_inertia: float = 1e-3
+    width: Positive = 0.4
+    trail: Positive = 0.1
+    caster_mass: Positive = 0.1
+    caster_inertia: Positive = 1e-3
     caster_centre: float = 0.05
     speed: float = 1.0
     turning_rate: float = 1.0
     angles: tuple[float, float] = (1.5, -2.5)
     pose: Triple = (0.0, 0.0, 0.0)
     redundant: bool = False
-    duration: float = 3.0
-    horizon: float = 3.0
-
-    def __post_init__(self) -> None:
-        owner = f"scene {self.name!r}"
-        positive = ("mass", "inertia", "caster_mass", "caster_inertia", "trail", "width", "duration", "horizon")
-        require_positive(owner, **{name: getattr(self, name) for name in positive})
-        finite = ("centre", "front", "caster_centre", "speed", "turning_rate", "angles", "pose")
-        require_finite(owner, **{name: getattr(self, name) for name in finite})
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
 
     @property
     def casters(self) -> Casters:

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from reference.checks import require_finite, require_positive, sample_times
 from reference.joints import Vector
 from reference.numerics.integration import error_of, integrate
+from reference.validation import Positive, Times, Valid, sample_times, validated
 from reference.wheels.tractrix import Tow
 
 Array = NDArray[np.float64]
@@ -26,15 +26,11 @@ Input = float | Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
-class Casters:
+class Casters(Valid):
     """Kingpins at `places` [m] from the middle of the fixed axle, x ahead, y to the left; all with one trail [m]."""
 
     places: tuple[Vector, ...]
-    trail: float
-
-    def __post_init__(self) -> None:
-        require_finite("casters", places=self.places)
-        require_positive("casters", trail=self.trail)
+    trail: Positive
 
     def turning_rates(self, angles: Any, speed: Any, turning_rate: Any) -> Any:
         """The casters' own rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
@@ -42,6 +38,7 @@ class Casters:
         speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]
         return (x * turning_rate * np.cos(angles) - (speed - y * turning_rate) * np.sin(angles)) / self.trail
 
+    @validated
     def tow(self, caster: int, angle: float, speed: float, turning_rate: float) -> tuple[Tow, float]:
         """For a constant speed and turning rate: the caster as a tow in closed form, and its kingpin's speed [m/s].
 
@@ -54,14 +51,14 @@ class Casters:
         direction = math.atan2(across, along)
         return Tow(self.trail, math.remainder(angle - direction, 2 * math.pi), radius), size
 
-    def swing(self, angles: tuple[float, ...], speed: Input, turning_rate: Input, t: ArrayLike) -> tuple[Array, Array]:
+    @validated
+    def swing(self, angles: tuple[float, ...], speed: Input, turning_rate: Input, t: Times) -> tuple[Array, Array]:
         """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and the integration's error (times,).
 
         speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. Straight back from a small
         angle the caster swings round to pi; from exactly zero it stays, which no real one does.
         """
         times = sample_times("casters", t)
-        require_finite("casters", angles=angles)
 
         def rates(state: Array) -> Array:
             time = state[..., 0]

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import sample_times
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -78,23 +77,23 @@ class CoastingScene(Scene):
 
     def states(self, t: ArrayLike) -> Array:
         """(times, states) at times t >= 0."""
-        times = sample_times(f"scene {self.name!r}", t)
+        times = self.times(t)
         last = float(times.max(initial=0.0))
         motion = self._integrated if last <= self.duration else integrate(self.rates, self.start, last)
         return motion(times)
 
     def truth_error(self, t: ArrayLike) -> Array:
         """A bound on this truth's own error (times,) [m, rad]: what a coarser tolerance changes."""
-        return error_of(self.rates, self.start, sample_times(f"scene {self.name!r}", t))
+        return error_of(self.rates, self.start, self.times(t))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
-        state = self.states(t)
+    def _motion(self, times: Array) -> Trajectory:
+        state = self.states(times)
         c, nu = state[:, : self.coordinates], state[:, self.coordinates :]
         _, velocity, acceleration = self._accelerations(c, nu)
         pose = self.poses(c)
         twist, acceleration = velocity.reshape(pose.shape), acceleration.reshape(pose.shape)
         reaction = self.mechanism().reaction(pose, acceleration)
-        return Trajectory(np.atleast_1d(np.asarray(t, dtype=float)), pose, twist, reaction)
+        return Trajectory(times, pose, twist, reaction)
 
     def motion_with_error(self, t: ArrayLike) -> Trajectory:
         """The motion, with its own error as the trajectory's estimate."""

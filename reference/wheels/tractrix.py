@@ -14,18 +14,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.mechanism import Triple
+from reference.validation import NOT_FINITE, Positive, Rule, Valid, from_to, validated
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Tow:
+class Tow(Valid):
     """A drawbar of `length` L [m], whose hitch travels from `start` (x, y, direction of travel) on a circle of `radius`
     R [m]: positive to the left, negative to the right, infinite straight on.
 
@@ -34,18 +35,10 @@ class Tow:
     Raises InvalidMechanism for a length that is not positive, a radius of 0 or not a number, an angle beyond +-pi.
     """
 
-    length: float
-    angle: float
-    radius: float = math.inf
+    length: Positive
+    angle: Annotated[float, from_to(-math.pi, math.pi)]
+    radius: Annotated[float, NOT_FINITE, Rule(lambda value: abs(value) > 0, "other than 0, or infinite")] = math.inf
     start: Triple = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        require_positive("tow", length=self.length)
-        require_finite("tow", angle=self.angle, start=self.start)
-        if math.isnan(self.radius) or self.radius == 0:
-            raise InvalidMechanism(f"tow: radius is {self.radius!r}; it must be a length other than 0, or infinite")
-        if abs(self.angle) > math.pi:
-            raise InvalidMechanism(f"tow: angle is {self.angle!r} rad; it must lie between -pi and pi")
 
     @cached_property
     def curvature(self) -> float:
@@ -64,6 +57,7 @@ class Tow:
         """The angle at which the towed wheel settles [rad], on its own circle; None for R < L, when it never does."""
         return -math.asin(self.length * self.curvature) if self._discriminant >= 0 else None
 
+    @validated
     def relative_angle(self, way: ArrayLike) -> Array:
         """psi [rad, not wrapped] after the hitch has gone `way` s [m] (...); negative when it is pushed back."""
         way = np.asarray(way, dtype=float)
@@ -96,11 +90,13 @@ class Tow:
         along = np.where(near, 1 + tangent * cosine, forward)
         return np.arctan2(across, along)
 
+    @validated
     def heading(self, way: ArrayLike) -> Array:
         """The drawbar's direction in the world, from the wheel to the hitch [rad]."""
         way = np.asarray(way, dtype=float)
         return self.start[2] + self.curvature * way + self.relative_angle(way)
 
+    @validated
     def hitch(self, way: ArrayLike) -> Array:
         """Where the hitch is (..., 2) [m]."""
         way = np.asarray(way, dtype=float)
@@ -109,6 +105,7 @@ class Tow:
         angle = self.start[2] + half
         return np.stack([self.start[0] + chord * np.cos(angle), self.start[1] + chord * np.sin(angle)], axis=-1)
 
+    @validated
     def wheel(self, way: ArrayLike) -> Array:
         """Where the towed wheel is (..., 2) [m]."""
         heading = self.heading(way)

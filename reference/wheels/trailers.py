@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import InvalidMechanism, require_finite, require_positive, sample_times
 from reference.mechanism import Triple
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
+from reference.validation import InvalidMechanism, Positive, Times, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
@@ -33,13 +33,10 @@ def towed(v: Any, w: Any, bend: Any, hitch: float, length: float) -> tuple[Any, 
 
 
 @dataclass(frozen=True)
-class Tricycle:
+class Tricycle(Valid):
     """One steered wheel `wheelbase` [m] ahead of the rear axle; two wheels on that axle are one constraint."""
 
-    wheelbase: float
-
-    def __post_init__(self) -> None:
-        require_positive("tricycle", wheelbase=self.wheelbase)
+    wheelbase: Positive
 
     def rates(self, front_speed: ArrayLike, steering: ArrayLike) -> tuple[Array, Array]:
         """Speed of the rear axle and turning rate, with the front wheel driven and steered by any angle [rad].
@@ -49,8 +46,9 @@ class Tricycle:
         front_speed, steering = np.asarray(front_speed), np.asarray(steering)
         return front_speed * np.cos(steering), front_speed * np.sin(steering) / self.wheelbase
 
+    @validated
     def path(
-        self, front_speed: Input, steering: Input, start: Triple = (0.0, 0.0, 0.0), panel: float = 0.5
+        self, front_speed: Input, steering: Input, start: Triple = (0.0, 0.0, 0.0), panel: Positive = 0.5
     ) -> SkatePath:
         """The rear axle's motion: the section's skate with v_C and theta_dot from the front wheel; see SkatePath."""
         if not callable(front_speed) and not callable(steering):
@@ -83,25 +81,22 @@ class Convoy:
 
 
 @dataclass(frozen=True)
-class CarWithTrailers:
+class CarWithTrailers(Valid):
     """A car, `wheelbase` [m] from rear axle to steered wheel, and trailers with drawbars `lengths` [m] from hitch to
     axle, hitched `hitches` [m] behind the axle before (0: on it, negative: ahead of it). Raises InvalidMechanism for a
     length that is not positive, or unequal numbers of lengths and hitches.
     """
 
-    wheelbase: float
-    lengths: tuple[float, ...]
+    wheelbase: Positive
+    lengths: tuple[Positive, ...]
     hitches: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        require_positive("car", wheelbase=self.wheelbase)
-        require_finite("car", hitches=self.hitches)
+        super().__post_init__()
         if len(self.lengths) != len(self.hitches):
             raise InvalidMechanism(
                 f"car: {len(self.lengths)} lengths and {len(self.hitches)} hitches; every trailer has one of each"
             )
-        for index, length in enumerate(self.lengths):
-            require_positive(f"trailer {index + 1}", length=length)
 
     def axle_rates(self, headings: Any, speed: Any, turning_rate: Any) -> tuple[Any, Any]:
         """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from the car's."""
@@ -117,6 +112,7 @@ class CarWithTrailers:
         """Of the car, from its rear axle's speed and its steered wheel's angle [rad/s]: v tan(steering)/wheelbase."""
         return speed * np.tan(steering) / self.wheelbase
 
+    @validated
     def bend_rates(self, bends: ArrayLike, speed: float, steering: float) -> Array:
         """Rates of the joint angles theta_trailer - theta_before (..., trailers) [rad/s]; speed < 0 reverses."""
         bends = np.asarray(bends, dtype=float)
@@ -124,6 +120,7 @@ class CarWithTrailers:
         _, rates = self.axle_rates(headings, speed, self.turning_rate(speed, steering))
         return np.diff(rates, axis=-1)
 
+    @validated
     def steady_bend(self, steering: float) -> float | None:
         """The joint angle of the first trailer at which it circles with the car [rad]; None if there is none.
 
@@ -137,14 +134,15 @@ class CarWithTrailers:
             return None
         return -(math.asin(reach) + math.atan(hitch * curvature))
 
+    @validated
     def drive(
         self,
         speed: Input,
         steering: Input,
         start: Triple,
         bends: tuple[float, ...],
-        t: ArrayLike,
-        limit: float = math.pi / 2,
+        t: Times,
+        limit: Positive = math.pi / 2,
     ) -> Convoy:
         """Follow the car from the pose `start` of its rear axle and joint angles `bends` [rad], at times t [s].
 
@@ -152,15 +150,10 @@ class CarWithTrailers:
         [rad] is a jack-knife: it is dated, and the motion goes on, as ideal wheels would (bodies that touch would not).
         """
         times = sample_times("car", t)
-        require_finite("car", start=start, bends=bends)
-        require_positive("car", limit=limit)
         if len(bends) != len(self.lengths):
             raise InvalidMechanism(
                 f"car: {len(bends)} joint angles for {len(self.lengths)} trailers; give one for each"
             )
-        for name, value in (("speed", speed), ("steering", steering)):
-            if not callable(value):
-                require_finite("car", **{name: value})
 
         def inputs(time: Array) -> tuple[Array, Array]:
             v = speed(time) if callable(speed) else np.full(np.shape(time), speed)

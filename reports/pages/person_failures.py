@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
-from reference.checks import InvalidMechanism
 from reference.person.one_foot import OneFoot
 from reference.person.swaying import SwayingOnOneFoot, modes_upright
 from reference.person.two_feet import TwoFeet
 from reference.scene import Scene
+from reference.validation import InvalidMechanism
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap
 

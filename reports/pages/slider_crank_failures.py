@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.checks import InvalidMechanism
 from reference.scene import Scene
 from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.validation import InvalidMechanism
 from reports.cells import Cell
 from reports.page import Failure, Observation, StabilityMap
 from reports.tables import number
