@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,13 +11,18 @@ from numpy.typing import NDArray
 from engines import Engine, Run, Size
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Name, Positive, Valid, validated
+from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
 
-def extrapolation_weights(levels: Sequence[int], powers: Sequence[int]) -> Array:
+@validated
+def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
     """Weights w (levels,) of runs at steps dt / level: sum w = 1, and sum w level^-power = 0 for every power."""
+    if len(set(levels)) != len(levels) or len(set(powers)) != len(powers) or len(levels) != len(powers) + 1:
+        raise InvalidMechanism(
+            f"extrapolation: levels are {levels!r} and powers {powers!r}; all must differ, with one power fewer"
+        )
     steps = levels[0] / np.array(levels, dtype=float)
     matrix = np.array([steps**power for power in (0, *powers)])
     return np.linalg.solve(matrix, np.eye(len(levels))[0])
@@ -96,7 +100,8 @@ class ExtrapolatedRun:
         )
 
 
-def combine(values: Array, weights: Array) -> Array:
+@validated
+def combine(values: Numbers, weights: Array) -> Array:
     """sum of weights (levels,) times values (levels, ...), NaN wherever a level is not finite.
 
     Taken as the finest plus weighted differences from it: what all levels agree on, such as the start, comes out exact.

@@ -19,9 +19,10 @@ from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
 from engines import Size
+from reference.kinds import Rule
 from reference.mechanism import RANK_TOLERANCE, Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Positive, Rule, Valid, validated
+from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4", "dop853"]

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from reference.curves.curve import Array
 from reference.curves.traced import FEWEST, STILL, Traced, spline
+from reference.kinds import NOT_FINITE, of_shape
 from reference.rolling.kinematics import Rolling
 from reference.trajectory import Trajectory
-from reference.validation import NOT_FINITE, InvalidMechanism, Numbers, Valid, of_shape, validated
+from reference.validation import InvalidMechanism, Numbers, Valid, validated
 
 # A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is
 # large: for the shapes it is at infinity.

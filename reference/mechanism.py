@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.joints import Drive, Joint, Vector
-from reference.validation import AnyComplexes, Floats, InvalidMechanism, Name, Numbers, Positive, Valid, validated
+from reference.kinds import Floats
+from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Triple = tuple[float, float, float]
 States = AnyComplexes  # (..., bodies, 3)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.link import Pendulum, across, direction_of
-from reference.scene import Scene
+from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validation import Count, NonNegative, Positive, validated
 
@@ -116,6 +116,7 @@ class NFourBar(Scene):
         pose, twist, _ = self._placement(angle, rate, acceleration)
         return Trajectory(times, pose, twist, self.forces(angle, rate, acceleration))
 
+    @validated
     def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
         """The reactions (times, rows) [N] in closed form: near a singular position they are large, not inaccurate.
 
@@ -143,7 +144,8 @@ class NFourBar(Scene):
             left = -(coupler[:, 0] - on_coupler)
         return out
 
-    def branch(self, pose: Array) -> NDArray[np.int_]:
+    @validated
+    def branch(self, pose: Poses) -> NDArray[np.int_]:
         """+1 while every loop is a parallelogram, -1 once one has folded: its coupler then lies on one of its cranks.
 
         Equal bars fold in two ways: one crank lies along the ground and the other under the coupler. The way whose

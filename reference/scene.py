@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import fields
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.kinds import Floats, of_shape
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Floats, InvalidMechanism, Valid, sample_times, shown
+from reference.validation import InvalidMechanism, Numbers, Valid, sample_times, shown, validated
 
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
+Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN where an engine gave up
 
 
 class Scene(Valid, ABC):
@@ -82,7 +84,8 @@ class Scene(Valid, ABC):
     def _owner(self) -> str:
         return f"scene {self.name!r}"
 
-    def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
+    @validated
+    def branch(self, pose: Poses) -> NDArray[np.int_]:
         """The assembly mode (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
         return np.zeros(np.shape(pose)[:-2], dtype=int)
 

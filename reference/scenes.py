@@ -24,6 +24,7 @@ from reference.scene import Scene
 from reference.skate.pinned_body import FreelyPinnedBody, PinnedBody
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.validation import Name, validated
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 
@@ -60,7 +61,8 @@ SCENES: tuple[Scene, ...] = (
 )
 
 
-def scene(name: str) -> Scene:
+@validated
+def scene(name: Name) -> Scene:
     """The scene of that name; raises ValueError that suggests the nearest name."""
     known = {each.name: each for each in SCENES}
     if name in known:

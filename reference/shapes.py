@@ -11,16 +11,8 @@ import numpy as np
 
 from reference.centrodes import Centrodes, from_poses
 from reference.curves.curve import Array
-from reference.validation import (
-    LARGEST_COUNT,
-    NOT_FINITE,
-    InvalidMechanism,
-    Positive,
-    Valid,
-    from_to,
-    of_shape,
-    validated,
-)
+from reference.kinds import NOT_FINITE, from_to, of_shape
+from reference.validation import LARGEST_COUNT, InvalidMechanism, Positive, Valid, validated
 
 COLUMNS = ("t", "x", "y", "angle")
 Places = Annotated[Array, of_shape("n", 2)]

@@ -8,8 +8,9 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.kinds import NOT_FINITE, of_shape
 from reference.mechanism import Mechanism
-from reference.validation import NOT_FINITE, Numbers, Valid, of_shape, validated
+from reference.validation import Numbers, Valid, validated
 
 Array = NDArray[np.float64]
 

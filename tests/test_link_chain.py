@@ -164,14 +164,14 @@ def test_bad_chains_are_refused() -> None:
             LinkPendulum(**wrong)
     with pytest.raises(InvalidMechanism, match="0 links"):
         Chain((), ())
-    with pytest.raises(InvalidMechanism, match="link 2: length"):
+    with pytest.raises(InvalidMechanism, match=r"lengths is \(1.0, 0.0\)"):
         Chain((1.0, 0.0), (1.0, 1.0))
     with pytest.raises(InvalidMechanism, match="1 lengths and 2 masses"):
         Chain((1.0,), (1.0, 1.0))
 
 
 def test_times_before_the_start_are_refused_and_a_singular_motion_is_reported() -> None:
-    with pytest.raises(ValueError, match="times must lie"):
+    with pytest.raises(ValueError, match="none below zero"):
         LinkPendulum(links=1).motion([-1.0])
     with pytest.raises(IntegrationFailed, match="the motion stops at t = "), np.errstate(all="ignore"):
         integrate(lambda state: state**2, [1.0], 2.0)  # 1 / (1 - t)

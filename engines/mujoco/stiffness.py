@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from reference.mechanism import Mechanism
-from reference.validation import Positive, Valid
+from reference.validation import Positive, Valid, validated
 
 # MuJoCo clamps its impedance d here; all five numbers of solimp with it make d constant.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
@@ -26,11 +26,13 @@ class Shipped(Valid):
 
     softening: ClassVar[float] = 1.0
 
-    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """solref."""
         return 0.02, 1.0
 
-    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
         return _critical(0.02)
 
@@ -51,11 +53,13 @@ class TiedToStep(Valid):
     steps: Positive = 5.0
     softening: ClassVar[float] = 1.0
 
-    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """solref."""
         return self.steps * dt, 1.0
 
-    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
         return _critical(max(self.steps, 2.0) * dt)
 
@@ -78,16 +82,19 @@ class Hardened(Valid):
     share: Positive = 0.2
     steps: Positive = 5.0
 
-    def time_constant(self, mechanism: Mechanism, dt: float) -> float:
+    @validated
+    def time_constant(self, mechanism: Mechanism, dt: Positive) -> float:
         """[s]"""
         return max(self.steps * dt, self.share * mechanism.time_scale)
 
-    def reference(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """solref in its direct form, -stiffness and -damping of a unit mass: this one MuJoCo doesn't clamp."""
         constant = self.time_constant(mechanism, dt)
         return -1 / constant**2, -2 / constant
 
-    def gains(self, mechanism: Mechanism, dt: float) -> tuple[float, float]:
+    @validated
+    def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
         """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
         return _critical(self.time_constant(mechanism, dt))
 

@@ -18,6 +18,7 @@ and begins to grow between two and three times these within 2 s; with all of the
 from __future__ import annotations
 
 from math import ceil, log
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,9 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.drives import find_cranks, find_turned
+from reference.kinds import Rule
 from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
@@ -34,9 +37,12 @@ MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
 FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a smaller step brings
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 
+Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
+
 _latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
 
 
+@validated
 def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
     if _latest and _latest[0][0] is mechanism:
@@ -97,12 +103,14 @@ def _smallest(matrix: Array, lower: Array) -> float:
     return value
 
 
-def sweeps(rho: float) -> int:
+@validated
+def sweeps(rho: Contraction) -> int:
     """Iterations in a step after which LEFT of the slowest mode is left, within FEWEST and MOST."""
     return min(MOST, max(FEWEST, ceil(log(LEFT) / log(rho)))) if rho > 0 else FEWEST
 
 
-def gain(rho: float, iterations: int) -> float:
+@validated
+def gain(rho: Contraction, iterations: Count) -> float:
     """The fraction of a gap that may be closed in a step."""
     left = rho**iterations
     return 1.0 if left <= LEFT else min(1.0, MARGIN * (1 - left) / left)

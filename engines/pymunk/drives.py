@@ -13,6 +13,7 @@ from pymunk.constraints import SimpleMotor
 
 from reference.joints import Drive, Pin, Vector
 from reference.mechanism import Body, Mechanism
+from reference.validation import validated
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Crank:
     turning_rate: float  # rad/s, of the body in the world
 
 
+@validated
 def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
     """The bodies that are pinned to the ground and driven against it, by name; each by its first pin and drive."""
     pins: dict[str, Pin] = {}
@@ -43,6 +45,7 @@ def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
     return cranks
 
 
+@validated
 def find_turned(mechanism: Mechanism) -> dict[str, Drive]:
     """The first drive against the ground of every body that has one, cranks or not, by the body's name."""
     turned: dict[str, Drive] = {}

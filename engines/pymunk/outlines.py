@@ -13,8 +13,9 @@ import pymunk
 from engines import Unsupported
 from reference.curves.curve import Curve, Placed, Vector
 from reference.curves.round import Circle, Line
+from reference.kinds import from_to
 from reference.rolling.roll import Roll
-from reference.validation import Fraction, NonNegative, Valid, from_to
+from reference.validation import Fraction, NonNegative, Valid
 
 _space = pymunk.Space()
 SHIPPED_SLOP = _space.collision_slop  # 0.1

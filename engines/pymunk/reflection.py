@@ -39,6 +39,7 @@ Triple = tuple[float, float, float]
 Reflector = Callable[[Any], tuple[Triple, Triple]]
 
 
+@validated
 def reflectable(mechanism: Mechanism) -> bool:
     """Whether every joint is a Skate or Roll of a body on the ground that has no other joint."""
     held = [joint.second for joint in mechanism.joints]

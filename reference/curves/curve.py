@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.validation import InvalidMechanism, Valid, validated
+from reference.validation import InvalidMechanism, Numbers, Valid, take, validated
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float]
@@ -113,8 +113,8 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Arcs or angles as an array of floats."""
-    return np.asarray(arc, dtype=float)
+    """Arcs or angles as an array of floats, refused if they are no numbers; NaN stays NaN, a search may pass there."""
+    return take("curve", "the place", arc, Numbers)
 
 
 def within(owner: str, arc: ArrayLike, limits: tuple[float, float], why: str) -> Array:

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
 from reference.curves.curve import Array, Curve, along, within
+from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
-from reference.validation import InvalidMechanism, of_shape
+from reference.validation import InvalidMechanism
 
 DEGREE = 7
 FEWEST = 16  # points: twice the degree and more, so that half of them can still show the error

@@ -10,12 +10,14 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import bisect
 
 from reference.errata.erratum import Array, Erratum, Values
+from reference.validation import Positive, validated
 
 # l1, l2, l3, l4 [m], at a crank angle [rad] more than a turn after the start.
 BARS, CRANK_ANGLE = (0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), 1.2), 2.0 + 2 * math.pi
 START = (math.pi / 2, math.pi / 4, 3 * math.pi / 4)  # theta, beta, phi [rad]
 
 
+@validated
 def rates(theta: float, beta: float, phi: float) -> tuple[float, float]:
     """beta' and phi' (18.71), (18.70) for a unit rate of the crank, literally as printed; they are right."""
     l1, l2, l3, _ = BARS
@@ -23,6 +25,7 @@ def rates(theta: float, beta: float, phi: float) -> tuple[float, float]:
     return l1 * math.sin(phi - theta) / (l2 * common), l1 * math.sin(beta - theta) / (l3 * common)
 
 
+@validated
 def closed_form(theta: float) -> tuple[float, float]:
     """beta and phi [rad]: C is the intersection of the circle about B with the circle about D that lies left."""
     l1, l2, l3, l4 = BARS
@@ -33,7 +36,8 @@ def closed_form(theta: float) -> tuple[float, float]:
     return beta, math.atan2(by + l2 * math.sin(beta), bx + l2 * math.cos(beta) - l4)
 
 
-def integrated(theta: float, tolerance: float = 1e-3) -> Array:
+@validated
+def integrated(theta: float, tolerance: Positive = 1e-3) -> Array:
     """beta and phi (2,) [rad] as printed, by integration; the tolerance is that of the usual packages."""
     span = (START[0], theta)
     return solve_ivp(lambda at, state: rates(at, *state), span, START[1:], rtol=tolerance, atol=1e-3 * tolerance).y[

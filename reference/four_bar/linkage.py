@@ -277,7 +277,7 @@ class FourBar(Valid):
     ) -> RateIntegration:
         """The chapter's pseudocode from the given start, a method under test; settings as in `rate_integration`."""
         beta, phi = self.angles(theta, branch)
-        return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, t, **settings)
+        return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)
 
 
 def _arm(along: ArrayLike, across: ArrayLike) -> Any:

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 
-from reference.validation import Count, InvalidMechanism, Positive, of_shape, shown, validated
+from reference.kinds import of_shape
+from reference.validation import Count, InvalidMechanism, Positive, shown, validated
 
 Array = NDArray[np.float64]
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}

@@ -15,9 +15,9 @@ from reference.four_bar.linkage import FourBar
 from reference.joints import Drive, Joint, Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
-from reference.scene import Scene
+from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism, Positive, Sign
+from reference.validation import InvalidMechanism, Positive, Sign, validated
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,8 @@ class FourBarScene(Scene):
         crank, coupler, rocker = three_densities(self.density)
         return crank * self.crank, coupler * self.coupler, rocker * self.rocker
 
-    def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
+    @validated
+    def branch(self, pose: Poses) -> NDArray[np.int_]:
         """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
         angle = np.asarray(pose)[..., 2]
         return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
-from reference.scene import Scene
+from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validation import NonNegative, Positive, Valid, validated
 
@@ -200,7 +200,8 @@ class PointPendulum(BarPendulum):
         """Two a second, as in the benchmark: a hundred a second would be 200,000."""
         return max(1, round(2 * self.duration))
 
-    def bob(self, pose: Array) -> Array:
+    @validated
+    def bob(self, pose: Poses) -> Array:
         """Where the point mass is (..., 2) [m], for poses (..., 1, 3): 2/3 of the bar from the pin."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

@@ -13,18 +13,20 @@ from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
 from reference.pendulum.scenes import LinkPendulum
-from reference.validation import Positive
+from reference.validation import Numbers, Positive, validated
 
 
 @dataclass(frozen=True)
 class OpenChain(Mechanism):
     """Bodies hung on one another by pins, body i by pin i, which is its `second`: an open chain, so never singular."""
 
+    @validated
     def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
         """One angle a body, whatever the pose."""
         return len(self.bodies), len(self.bodies)
 
-    def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    @validated
+    def reaction(self, pose: Numbers, acceleration: Numbers) -> NDArray[np.float64]:
         """Newton's law from the free end upwards: pin i carries what all bodies below it need (..., rows) [N]."""
         needed = self.inertias[:, :2] * (np.asarray(acceleration) - self.free_fall)[..., :2]
         carried = np.flip(np.cumsum(np.flip(needed, axis=-2), axis=-2), axis=-2)

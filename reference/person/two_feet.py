@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from reference.person.one_foot import OneFoot
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, THIGH, Segment
-from reference.validation import InvalidMechanism, Positive, Sign
+from reference.scene import Poses
+from reference.validation import InvalidMechanism, Positive, Sign, validated
 
 Array = NDArray[np.float64]
 
@@ -99,7 +100,8 @@ class TwoFeet(OneFoot):
         hip = np.arccos((square + thigh**2 - shank**2) / (2 * thigh * reach))
         return bearing + self.knees * ankle, bearing - self.knees * hip
 
-    def branch(self, pose: Array) -> NDArray[np.int_]:
+    @validated
+    def branch(self, pose: Poses) -> NDArray[np.int_]:
         """+1 where both knees bend to the left of their legs, -1 where both bend to the right, 0 otherwise."""
         pose = np.asarray(pose)
         left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))

@@ -47,6 +47,7 @@ class RollingBody(Valid):
     def start(self) -> tuple[float, float]:
         return (self.rolling.theta, self.start_rate)
 
+    @validated
     def growth(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """theta'' (...) [rad/s^2] at rotations [rad] and rates [rad/s] (...)."""
         contact = self.rolling.contact(theta)

@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike
 from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
+from reference.kinds import from_to
 from reference.mechanism import RANK_TOLERANCE, Body, Mechanism, Triple
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import Positive, from_to, validated
+from reference.validation import Positive, validated
 
 
 def _triple(values: Array) -> Triple:
@@ -80,6 +81,7 @@ class EllipticGears(Scene):
         receding = -(near**2) * e * np.sin(first) / bend * self.turning_rate
         return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
 
+    @validated
     def kinematics(self, t: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2, 3)."""
         first = self.start_angle + self.turning_rate * t

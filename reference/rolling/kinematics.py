@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.round import Line, Ring, Side
+from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
 from reference.rolling.contact import Contact, quarter_turned, turned
-from reference.validation import InvalidMechanism, Valid, of_shape, validated
+from reference.validation import InvalidMechanism, Valid, validated
 
 # The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
 # of a double's sixteen digits are left in it, and a truth of fewer would be none.

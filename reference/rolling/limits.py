@@ -13,11 +13,12 @@ from scipy.integrate import quad
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.open import Catenary
 from reference.curves.round import Circle, Ring, Side
+from reference.kinds import Rule
 from reference.rolling.body import RollingBody
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingScene
 from reference.trajectory import Trajectory
-from reference.validation import Positive, Rule
+from reference.validation import Positive
 
 Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1")]
 

@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.joints import Pin
+from reference.kinds import from_to
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import LARGEST_COUNT, Positive, from_to
+from reference.validation import LARGEST_COUNT, Positive
 
 Array = NDArray[np.float64]
 

@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from reference.joints import Skate, Vector
+from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism, Triple
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import Floats, InvalidMechanism, Positive
+from reference.validation import InvalidMechanism, Positive
 
 
 @dataclass(frozen=True)

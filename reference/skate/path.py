@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Vector
+from reference.kinds import of_shape
 from reference.mechanism import Triple
 from reference.numerics.antiderivative import Antiderivative
-from reference.validation import Complexes, InvalidMechanism, Positive, Valid, of_shape, sample_times, validated
+from reference.validation import Complexes, InvalidMechanism, Positive, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
 Rate = float | Callable[[Any], Any]

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from reference.joints import Pin, Slot
 from reference.mechanism import Mechanism
+from reference.scene import Poses
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import Trajectory
-from reference.validation import Positive
+from reference.validation import Complexes, Positive, validated
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class RodEndInSlot(DrivenSliderCrank):
         pose, twist, acceleration = (part[:, :2] for part in self._placement(*self.crank_motion(times)))
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
-    def branch(self, pose: Any) -> Any:
+    @validated
+    def branch(self, pose: Poses) -> Any:
         """+1 where the rod points to the right, -1 to the left."""
         return np.sign(np.cos(np.asarray(pose)[..., 1, 2])).astype(int)
 
@@ -51,7 +53,8 @@ class RodEndInSlot(DrivenSliderCrank):
 class PushedSliderCrank(MovingSliderCrank):
     """Gravity acts along the slot, towards the crank's pivot."""
 
-    def potential(self, theta: Any) -> tuple[Any, Any]:
+    @validated
+    def potential(self, theta: Complexes) -> tuple[Any, Any]:
         """V(theta) [J] and its derivative: everything is pushed to -x."""
         r, x = self.shape.crank, self.shape.position(theta)
         first, _ = self.shape.position_rates(theta)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.validation import InvalidMechanism, Positive, Sign, Valid
+from reference.validation import Complexes, InvalidMechanism, Positive, Sign, Valid, validated
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,8 @@ class SliderCrank(Valid):
                 f"{self.rod - self.crank:.6g} in size"
             )
 
-    def rod_sine(self, theta: Any) -> Any:
+    @validated
+    def rod_sine(self, theta: Complexes) -> Any:
         """sin(beta) (...) [1] for crank angles (...) [rad]."""
         return (self.offset - self.crank * np.sin(theta)) / self.rod
 
@@ -49,22 +50,26 @@ class SliderCrank(Valid):
         sine = self.rod_sine(theta)
         return sine, self.assembly * np.sqrt((1 - sine) * (1 + sine))
 
+    @validated
     def rod_angle(self, theta: ArrayLike) -> Array:
         """beta (...) [rad], from the crank pin to the slider, continuous in theta."""
         sine = self.rod_sine(np.asarray(theta))
         return np.arcsin(sine) if self.assembly == 1 else math.pi - np.arcsin(sine)
 
-    def rod_rates(self, theta: Any) -> tuple[Any, Any]:
+    @validated
+    def rod_rates(self, theta: Complexes) -> tuple[Any, Any]:
         """beta' and beta'' with respect to theta (...): r cos(theta) + l cos(beta) beta' = 0, and once more."""
         sine, cosine = self._rod(theta)
         first = -self.crank * np.cos(theta) / (self.rod * cosine)
         return first, (self.crank * np.sin(theta) / self.rod + sine * first**2) / cosine
 
-    def position(self, theta: Any) -> Any:
+    @validated
+    def position(self, theta: Complexes) -> Any:
         """x (...) [m] of the slider; analytic, so a complex step passes."""
         return self.crank * np.cos(theta) + self.rod * self._rod(theta)[1]
 
-    def position_rates(self, theta: Any) -> tuple[Any, Any]:
+    @validated
+    def position_rates(self, theta: Complexes) -> tuple[Any, Any]:
         """x' and x'' with respect to theta (...) [m]: velocity x' w, acceleration x'' w^2 + x' alpha."""
         sine, cosine = self._rod(theta)
         first, second = self.rod_rates(theta)
@@ -113,7 +118,8 @@ class MovingSliderCrank(Valid):
             ((second - r * np.cos(theta)) / 2, -r * np.sin(theta) / 2),
         )
 
-    def inertia(self, theta: Any) -> tuple[Any, Any]:
+    @validated
+    def inertia(self, theta: Complexes) -> tuple[Any, Any]:
         """The reduced inertia J(theta) [kg m^2] and its derivative: the kinetic energy is J w^2 / 2."""
         x1, x2 = self.shape.position_rates(theta)
         b1, b2 = self.shape.rod_rates(theta)
@@ -128,22 +134,26 @@ class MovingSliderCrank(Valid):
         change = 2 * (self.rod_mass * (cx1 * cx2 + cy1 * cy2) + rod_inertia * b1 * b2 + self.slider_mass * x1 * x2)
         return value, change
 
-    def potential(self, theta: Any) -> tuple[Any, Any]:
+    @validated
+    def potential(self, theta: Complexes) -> tuple[Any, Any]:
         """V(theta) [J] and its derivative; the slider keeps its height."""
         weight = self.gravity * self.shape.crank * (self.crank_mass + self.rod_mass) / 2
         return weight * np.sin(theta), weight * np.cos(theta)
 
-    def acceleration(self, theta: Any, rate: Any) -> Any:
+    @validated
+    def acceleration(self, theta: Complexes, rate: Complexes) -> Any:
         """theta'' (...) [rad/s^2] when nothing drives it: J theta'' + J' theta'^2 / 2 + V' = 0."""
         inertia, change = self.inertia(theta)
         return -(change * rate**2 / 2 + self.potential(theta)[1]) / inertia
 
-    def torque(self, theta: Any, rate: Any, acceleration: Any) -> Any:
+    @validated
+    def torque(self, theta: Complexes, rate: Complexes, acceleration: Complexes) -> Any:
         """What the drive must give the crank (...) [N m] for this motion."""
         inertia, change = self.inertia(theta)
         return inertia * acceleration + change * rate**2 / 2 + self.potential(theta)[1]
 
-    def guide_force(self, theta: Any, rate: Any, acceleration: Any) -> Any:
+    @validated
+    def guide_force(self, theta: Complexes, rate: Complexes, acceleration: Complexes) -> Any:
         """The slot's force on the slider (...) [N], upwards: from the rod's and the slider's balance alone.
 
         Moments about the crank pin of rod and slider together: the slot's force has the lever l cos(beta).

@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.numerics.integration import Integrated, error_of, integrate
-from reference.scene import Scene
+from reference.scene import Poses, Scene
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.trajectory import Trajectory
-from reference.validation import Positive, Sign
+from reference.validation import Positive, Sign, validated
 
 Array = NDArray[np.float64]
 
@@ -126,7 +126,8 @@ class DrivenSliderCrank(Scene):
         pose, twist, acceleration = self._placement(*self.crank_motion(times))
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
-    def branch(self, pose: Array) -> NDArray[np.int_]:
+    @validated
+    def branch(self, pose: Poses) -> NDArray[np.int_]:
         """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
         pin = 2 * np.asarray(pose)[..., 0, 0]  # the crank's centre is halfway out to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)

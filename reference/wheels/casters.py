@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Vector
 from reference.numerics.integration import error_of, integrate
-from reference.validation import Positive, Times, Valid, sample_times, validated
+from reference.validation import Complexes, Positive, Times, Valid, sample_times, validated
 from reference.wheels.tractrix import Tow
 
 Array = NDArray[np.float64]
@@ -32,7 +32,8 @@ class Casters(Valid):
     places: tuple[Vector, ...]
     trail: Positive
 
-    def turning_rates(self, angles: Any, speed: Any, turning_rate: Any) -> Any:
+    @validated
+    def turning_rates(self, angles: Complexes, speed: Complexes, turning_rate: Complexes) -> Any:
         """The casters' own rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
         x, y = np.array(self.places, dtype=float).T
         speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]

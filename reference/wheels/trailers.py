@@ -20,13 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 from reference.mechanism import Triple
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
-from reference.validation import InvalidMechanism, Positive, Times, Valid, sample_times, validated
+from reference.validation import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
 
 
-def towed(v: Any, w: Any, bend: Any, hitch: float, length: float) -> tuple[Any, Any]:
+@validated
+def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Positive) -> tuple[Any, Any]:
     """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle before it; bend b in [rad]."""
     cosine, sine = np.cos(bend), np.sin(bend)
     return v * cosine + hitch * w * sine, (v * sine - hitch * w * cosine) / length
@@ -38,6 +39,7 @@ class Tricycle(Valid):
 
     wheelbase: Positive
 
+    @validated
     def rates(self, front_speed: ArrayLike, steering: ArrayLike) -> tuple[Array, Array]:
         """Speed of the rear axle and turning rate, with the front wheel driven and steered by any angle [rad].
 
@@ -98,7 +100,8 @@ class CarWithTrailers(Valid):
                 f"car: {len(self.lengths)} lengths and {len(self.hitches)} hitches; every trailer has one of each"
             )
 
-    def axle_rates(self, headings: Any, speed: Any, turning_rate: Any) -> tuple[Any, Any]:
+    @validated
+    def axle_rates(self, headings: Complexes, speed: Complexes, turning_rate: Complexes) -> tuple[Any, Any]:
         """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from the car's."""
         speeds, rates = [speed], [turning_rate]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):
@@ -108,7 +111,8 @@ class CarWithTrailers(Valid):
             rates.append(w)
         return np.stack(np.broadcast_arrays(*speeds), axis=-1), np.stack(np.broadcast_arrays(*rates), axis=-1)
 
-    def turning_rate(self, speed: Any, steering: Any) -> Any:
+    @validated
+    def turning_rate(self, speed: Complexes, steering: Complexes) -> Any:
         """Of the car, from its rear axle's speed and its steered wheel's angle [rad/s]: v tan(steering)/wheelbase."""
         return speed * np.tan(steering) / self.wheelbase
 
