@@ -19,7 +19,8 @@ from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
 from engines import Size, check_counts, check_step
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]

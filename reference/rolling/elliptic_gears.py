@@ -13,7 +13,8 @@ from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
-from reference.mechanism import RANK_TOLERANCE, Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism, Triple
+from reference.row_system import undetermined
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
@@ -127,8 +128,5 @@ class EllipticGears(Scene):
         pose, twist, acceleration = self.kinematics(t)
         mechanism = self.mechanism()
         reaction = mechanism.reaction(pose, acceleration)
-        # Rows that take part in a set of forces in equilibrium by themselves: J^T null = 0.
-        _, singular, right = np.linalg.svd(np.swapaxes(mechanism.rows(pose), -1, -2))
-        rank = int(np.sum(singular[0] > RANK_TOLERANCE * singular[0, 0]))
-        share = np.sqrt(np.sum(right[:, rank:, :] ** 2, axis=-2))
-        return Trajectory(t=t, pose=pose, twist=twist, reaction=np.where(share > 1e-9, np.nan, reaction))
+        loose = undetermined(mechanism.rows(pose), mechanism.length_scale)
+        return Trajectory(t=t, pose=pose, twist=twist, reaction=np.where(loose, np.nan, reaction))

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from reference.checks import InvalidMechanism
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
