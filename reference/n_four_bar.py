@@ -71,10 +71,12 @@ class NFourBar(Scene):
     @property
     def period(self) -> float:
         """A whole turn of the cranks [s]; infinite when they never leave the top."""
-        return self.pendulum.period
+        return self.pendulum.period if self.speed else math.inf
 
     def singular_times(self, until: float) -> Array:
         """When, in [0, until] s, the cranks lie along the couplers: one freedom becomes N + 1."""
+        if not self.speed:
+            return np.zeros(0)
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
         return np.sort(np.concatenate(sides))
 
@@ -119,7 +121,9 @@ class NFourBar(Scene):
 
     def motion(self, t: ArrayLike) -> Trajectory:
         t = np.atleast_1d(np.asarray(t, dtype=float))
-        angle, rate, acceleration = self.pendulum.motion(t)
+        # The double nearest to pi is not quite the top, from which a chain at rest must not fall.
+        still = np.zeros(len(t))
+        angle, rate, acceleration = self.pendulum.motion(t) if self.speed else (still + math.pi, still, still)
         pose, twist, _ = self._placement(angle, rate, acceleration)
         return Trajectory(t, pose, twist, self.forces(angle, rate, acceleration))
 

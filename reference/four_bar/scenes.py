@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.four_bar.forces import three_densities
 from reference.four_bar.free_motion import BarAngles, CurveMotion
-from reference.four_bar.linkage import FourBar
+from reference.four_bar.linkage import FourBar, Unreachable
 from reference.joints import Drive, Joint, Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
@@ -205,7 +205,16 @@ class FreeFourBar(FourBarScene):
         curve = self._curve
         start = curve.start(self.start, self.rate, self.assembly)
         order, where = np.unique(times, return_inverse=True)
-        return curve.bar_angles(curve.states(start, order, longest * self._time_scale, stages)[where])
+        try:
+            states = curve.states(start, order, longest * self._time_scale, stages)
+        except ArithmeticError as failure:
+            if self.four_bar.grashof() != "change-point":
+                raise
+            raise Unreachable(
+                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that change "
+                f"point, beyond which two motions are possible and none is the truth ({failure})"
+            ) from None
+        return curve.bar_angles(states[where])
 
     @property
     def _time_scale(self) -> float:

@@ -14,9 +14,9 @@ from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism, Triple
-from reference.row_system import undetermined
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
+from reference.row_system import undetermined
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 
