@@ -62,8 +62,8 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array) -> Array
     rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
     less that of free fall. Where rows are dependent the forces are not unique, and the smallest are given, counted in
     `size` (rows,) [N or N m], the force of each row that is as large as one of any other. NaN where a number is not
-    finite. The columns of M^(-1/2) rows^T are made equally long first: a light body's rows then weigh as much as a heavy
-    one's, and what is lost is the square root of what the product J M^-1 J^T loses.
+    finite. The columns of M^(-1/2) rows^T are made equally long first: a light body's rows then weigh as much as a
+    heavy one's, and what is lost is the square root of what the product J M^-1 J^T loses.
     """
     root = np.sqrt(inertias)
     matrix = np.swapaxes(rows / root, -1, -2)

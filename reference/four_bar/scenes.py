@@ -211,8 +211,8 @@ class FreeFourBar(FourBarScene):
             if self.four_bar.grashof() != "change-point":
                 raise
             raise Unreachable(
-                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that change "
-                f"point, beyond which two motions are possible and none is the truth ({failure})"
+                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that "
+                f"change point, beyond which two motions are possible and none is the truth ({failure})"
             ) from None
         return curve.bar_angles(states[where])
 
