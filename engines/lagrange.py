@@ -20,7 +20,8 @@ from scipy.linalg import get_lapack_funcs
 
 from engines import Size
 from reference.kinds import Rule
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 from reference.trajectory import Trajectory
 from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpbsv  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
+from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -59,10 +59,21 @@ def banded_reaction(mechanism: Mechanism, pose: Array, acceleration: Array) -> A
         low, high = sorted((place[row], place[column]))
         matrix[:, high - low, low] = values  # LAPACK's lower band storage
     out = np.full_like(right, np.nan)
+    factors: dict[int, Array] = {}
     for time in range(times):
         factor, solution, failed = dpbsv(matrix[time], right[time, order], lower=1)
         if not failed and factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
             out[time, order] = solution
+            factors[time] = factor
+    # Once more with what the forces leave of the accelerations: the product J M^-1 J^T has squared the condition of J,
+    # and this gives the digits back (Bjorck 1987, corrected seminormal equations).
+    missing = np.zeros_like(right)
+    for body, own in ends.items():
+        left = excess[:, body] - weight[body] * sum(np.einsum("trc,tr->tc", b, out[:, rows]) for rows, b in own)
+        for rows, block in own:
+            missing[:, rows] += np.einsum("trc,tc->tr", block, left)
+    for time, factor in factors.items():
+        out[time, order] += dpbtrs(factor, missing[time, order], lower=1)[0]
     return out
 
 

@@ -19,14 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.joints import Drive, Joint, Vector
 from reference.kinds import Floats
+from reference.row_system import rank, reactions
 from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Triple = tuple[float, float, float]
 States = AnyComplexes  # (..., bodies, 3)
 
-# A row is counted as dependent below this fraction of the largest singular value, and a start that misses a row by
-# more than this fraction of the mechanism's own length or speed is refused: far above rounding, far below a mistake.
-RANK_TOLERANCE = 1e-9
+# A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
+# rounding, far below a mistake.
 START_TOLERANCE = 1e-9
 
 
@@ -242,11 +242,10 @@ class Mechanism(Valid):
         return self._dense_reaction(pose, acceleration)
 
     def _dense_reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
-        rows = self.rows(pose)
-        weighted = rows / self.inertias.reshape(-1)
-        excess = _column(acceleration - self.free_fall)
-        matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ excess
-        return solve_rows(matrix, right)[..., 0]
+        turning = np.array([label == "torque" for joint in self.joints for label in joint.labels], dtype=bool)
+        excess = _column(acceleration - self.free_fall)[..., 0]
+        size = np.where(turning, self.length_scale, 1.0)
+        return reactions(self.rows(pose), self.inertias.reshape(-1), excess, size)
 
     @validated
     def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:
@@ -256,7 +255,8 @@ class Mechanism(Valid):
         """
         rows = self.rows(self.pose if pose is None else pose)
         coordinates = rows.shape[-1]
-        return coordinates - _rank(rows[self.holonomic]), coordinates - _rank(rows)
+        length = self.length_scale
+        return coordinates - rank(rows[self.holonomic], length), coordinates - rank(rows, length)
 
     @cached_property
     def length_scale(self) -> float:
@@ -287,22 +287,3 @@ def _column(per_body: NDArray[Any]) -> NDArray[Any]:
     """(..., bodies, 3) as columns (..., 3 bodies, 1)."""
     per_body = np.asarray(per_body)
     return per_body.reshape((*per_body.shape[:-2], 3 * per_body.shape[-2], 1))
-
-
-def _rank(rows: NDArray[np.float64]) -> int:
-    if rows.size == 0:
-        return 0
-    singular = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(singular > RANK_TOLERANCE * singular[0]))
-
-
-def solve_rows(matrix: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solve the symmetric row system (..., rows, rows) x = (..., rows, 1); the smallest solution if it is singular."""
-    try:
-        solution: NDArray[np.float64] = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
-        # An LU that meets exact dependence may still end, with garbage of the order of 1/eps.
-        if np.all(np.isfinite(solution)) and np.all(np.linalg.cond(matrix) < 1 / RANK_TOLERANCE):
-            return solution
-    except np.linalg.LinAlgError:
-        pass
-    return np.asarray(np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right, dtype=np.float64)

@@ -64,11 +64,13 @@ class NFourBar(Scene):
     @property
     def period(self) -> float:
         """A whole turn of the cranks [s]; infinite when they never leave the top."""
-        return self.pendulum.period
+        return self.pendulum.period if self.speed else math.inf
 
     @validated
     def singular_times(self, until: NonNegative) -> Array:
         """When, in [0, until] s, the cranks lie along the couplers: one freedom becomes N + 1."""
+        if not self.speed:
+            return np.zeros(0)
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
         return np.sort(np.concatenate(sides))
 
@@ -112,7 +114,9 @@ class NFourBar(Scene):
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
-        angle, rate, acceleration = self.pendulum.motion(times)
+        # The double nearest to pi is not quite the top, from which a chain at rest must not fall.
+        still = np.zeros(len(times))
+        angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (still + math.pi, still, still)
         pose, twist, _ = self._placement(angle, rate, acceleration)
         return Trajectory(times, pose, twist, self.forces(angle, rate, acceleration))
 

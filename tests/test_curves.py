@@ -194,3 +194,28 @@ def test_a_root_out_of_reach_is_an_error_and_not_a_number():
         solve_increasing(lambda x: (np.tanh(x), 1 / np.cosh(np.clip(x, -300, 300)) ** 2), [2.0], [0.0], 1.0)
     with pytest.raises(ArithmeticError, match="finite"):
         solve_increasing(lambda x: (x, np.ones_like(x)), [np.nan], [0.0], 1.0)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 30.0, 257.0, 1000.0])
+@pytest.mark.parametrize("tall", [False, True])
+def test_slender_ellipses_keep_their_digits_at_their_sharp_ends(ratio, tall):
+    axes = (1.0, ratio) if tall else (ratio, 1.0)
+    ellipse = Ellipse(*axes)
+    arcs = np.array([-0.0009810452078227172, 1e-12, 1e-6, 1e-3, 0.3, 0.2 * ellipse.length, -0.9 * ellipse.length])
+    angles = ellipse.angle(arcs)
+    with mp.workdps(40):
+        a, b = map(mp.mpf, axes)
+        half = 2 * b * mp.ellipe(1 - (a / b) ** 2)
+        for arc, angle in zip(arcs, angles, strict=True):
+            turns = mp.nint(mp.mpf(float(arc)) / half)
+            rest = mp.mpf(float(arc)) - turns * half
+
+            def missing(u, rest=rest):
+                return b * mp.ellipe(u, 1 - (a / b) ** 2) - rest
+
+            u = mp.findroot(missing, (-mp.pi / 2, mp.pi / 2), solver="anderson", tol=1e-70, maxsteps=300)
+            curvature = a * b / mp.sqrt((a * mp.sin(u)) ** 2 + (b * mp.cos(u)) ** 2) ** 3
+            exact = mp.atan2(b * mp.cos(u), -a * mp.sin(u))
+            off = abs((mp.mpf(float(angle)) - exact) / mp.pi % 1)
+            # The rounding of the arc itself turns the tangent by curvature x arc x 1e-16.
+            assert float(min(off, 1 - off) * mp.pi) < 8 * 2.2e-16 * (2 + float(curvature) * abs(float(arc)))

@@ -459,3 +459,55 @@ def test_the_bench_says_what_is_missing(monkeypatch):
     with pytest.raises(RuntimeError, match="'bench' extra"):
         pylinkage_ratio(count=1000)
     assert floor_ratio(count=1000)["floor"] > 0
+
+
+def closed_in_sixty_digits(lengths, ground, theta, branch):
+    """beta and phi by the triangle B C D, or None where it doesn't close."""
+    with mpmath.workdps(60):
+        crank, coupler, rocker = map(mpmath.mpf, lengths)
+        there = mpmath.mpc(*map(mpmath.mpf, ground))
+        b = crank * mpmath.expj(mpmath.mpf(theta))
+        across = there - b
+        cosine = (abs(across) ** 2 + coupler**2 - rocker**2) / (2 * abs(across) * coupler)
+        if abs(cosine) > 1:
+            return None
+        beta = mpmath.arg(across) + branch * mpmath.acos(cosine)
+        return beta, mpmath.arg(b + coupler * mpmath.expj(beta) - there)
+
+
+def missed(found, exact):
+    return abs(float((mpmath.mpf(float(found)) - exact + mpmath.pi) % (2 * mpmath.pi) - mpmath.pi))
+
+
+@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("branch", [1, -1])
+def test_angles_of_very_short_bars_far_from_the_pivot_keep_their_digits(short, branch):
+    lengths, ground, theta = (1.0, short, short), (1.0 + short / 2, 0.0), short / 2
+    found = FourBar(*lengths, ground).angles(theta, branch)
+    for angle, exact in zip(found, closed_in_sixty_digits(lengths, ground, theta, branch), strict=True):
+        # The ground's own rounding, 1e-16 of a metre, turns bars of `short` metres by 1e-16 / short; no more than that.
+        assert missed(angle, exact) < 4e-16 * (1 + 1e-3 / short)
+
+
+def test_angles_of_random_four_bars_at_all_scales_are_those_of_sixty_digits():
+    generator = np.random.default_rng(5)
+    compared = 0
+    for _ in range(600):
+        lengths = (10 ** (generator.uniform(-1.5, 1.0, 3) + generator.uniform(-9, 9))).tolist()
+        heading = generator.uniform(-math.pi, math.pi)
+        size = max(lengths) * 10 ** generator.uniform(-1, 0.3)
+        ground = (size * math.cos(heading), size * math.sin(heading))
+        try:
+            bar = FourBar(*lengths, ground)
+        except InvalidMechanism:
+            continue
+        low, high = (bar.crank_limits() or ((-3.0, 3.0),))[0]
+        theta = low + (high - low) * generator.uniform(0.02, 0.98)
+        for branch in (1, -1):
+            rates = bar.rates(theta, 1.0, branch)
+            exact = closed_in_sixty_digits(lengths, ground, theta, branch)
+            for angle, value, rate in zip(bar.angles(theta, branch), exact, rates, strict=True):
+                # What the roundings of the crank angle and of the ground's heading cause by themselves, times 60.
+                assert missed(angle, value) < 60 * 2.2e-16 * (1 + abs(rate) * (abs(theta) + abs(heading) + 1))
+                compared += 1
+    assert compared > 400

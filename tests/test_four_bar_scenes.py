@@ -240,3 +240,9 @@ def test_scenes_are_found_by_name_and_the_nearest_is_suggested():
     assert scene("spinning_four_bar") == SpinningFourBar()
     with pytest.raises(ValueError, match="did you mean 'free_four_bar'"):
         scene("fre_fourbar")
+
+
+def test_a_free_motion_that_comes_to_a_change_point_is_refused_by_name():
+    scene = FreeFourBar(0.5, 1.2, 0.5, (1.2, 0.0), 1, 1.0, 8.0)
+    with pytest.raises(ValueError, match="change point, beyond which two motions are possible"):
+        scene.motion(1.0)

@@ -128,3 +128,12 @@ def test_bad_chains_are_refused() -> None:
     for wrong in ({"loops": 0}, {"loops": 1.5}, {"length": 0.0}, {"mass": math.nan}, {"speed": math.inf}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             NFourBar(**wrong)
+
+
+def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
+    scene = NFourBar(speed=0.0)
+    assert scene.period == math.inf
+    assert scene.singular_times(1e6).size == 0
+    motion = scene.motion([0.0, 50.0, 1000.0])
+    assert np.abs(motion.pose - motion.pose[0]).max() == 0
+    assert np.abs(motion.twist).max() == 0

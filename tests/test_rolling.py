@@ -419,3 +419,40 @@ def test_a_roll_that_starts_open_is_refused():
     rolling = Rolling.at_angle(Circle(0.5), Line())
     with pytest.raises(InvalidMechanism, match=r"roll normal.*open"):
         Mechanism((Body("wheel", 1.0, 1.0, (0.0, 0.501, 0.0)),), (Roll("roll", None, "wheel", rolling),))
+
+
+SPIRAL = LogSpiral(0.5, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("body", "ground"),
+    [
+        (SPIRAL, Line()),
+        (SPIRAL, Circle(1.0)),
+        (Circle(0.3), SPIRAL),
+        (Ellipse(0.5, 0.3), SPIRAL),
+        (SPIRAL, LogSpiral(0.7, 0.2)),
+        (SPIRAL, Ring(3.0)),
+    ],
+)
+def test_a_logarithmic_spiral_rolls_on_every_curve_and_under_every_curve(body, ground):
+    rolling = Rolling.at_arcs(body, ground, 1.0, 1.0)
+    theta = rolling.theta + np.array([-3.0, -0.1, 0.0, 1.0, 6.0])
+    contact = rolling.contact(theta)
+    assert contact.ground_arc + contact.body_arc == pytest.approx(np.full(5, 2.0), abs=1e-12)
+    # The tangents are opposite and the material of both is on the left: what touching means.
+    mismatch = ground.angle(contact.ground_arc) + math.pi - theta - body.angle(contact.body_arc)
+    assert np.abs(np.remainder(mismatch + math.pi, 2 * math.pi) - math.pi).max() < 1e-12
+    step = 1e-5
+    slope = (rolling.position(theta + step) - rolling.position(theta - step)) / (2 * step)
+    assert slope == pytest.approx(rolling.velocity(theta, np.ones(5)), abs=1e-7)
+
+
+def test_a_spiral_winds_round_its_pole_without_end():
+    assert Rolling.at_arcs(SPIRAL, Line(), 0.0, 1.0).limits == (-math.inf, math.inf)
+    assert Rolling.at_arcs(Circle(0.3), SPIRAL, 1.0, 0.0).limits == (-math.inf, math.inf)
+    # A logarithmic spiral on a line carries its pole along a straight line: the classical roulette.
+    rolling = Rolling.at_arcs(SPIRAL, Line(), 0.0, 1.0)
+    path = rolling.position(rolling.theta + np.linspace(-2.0, 8.0, 7))
+    along, across = np.diff(path, axis=0).T
+    assert across / along == pytest.approx(np.full(6, across[0] / along[0]), rel=1e-9)

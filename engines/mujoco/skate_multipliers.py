@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.written_rows import Rows, WrittenJoint, row_writer
-from reference.mechanism import solve_rows
+from reference.row_system import solve_symmetric
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def _row_system(model: Any, data: Any, rows: Rows) -> tuple[Array, Array, Callab
     matrix = jacobian @ moved.T
     if len(right) == 1:
         return jacobian, np.array(right), lambda value: value / matrix[0, 0]
-    return jacobian, np.array(right), lambda value: solve_rows(matrix, value[:, None])[:, 0]
+    return jacobian, np.array(right), lambda value: solve_symmetric(matrix, value)
 
 
 def add_forces(building: Building, joints: Sequence[WrittenJoint]) -> None:

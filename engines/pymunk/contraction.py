@@ -27,7 +27,8 @@ from scipy.sparse.linalg import splu
 
 from engines.pymunk.drives import find_cranks, find_turned
 from reference.kinds import Rule
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 from reference.validation import Count, validated
 
 Array = NDArray[np.float64]

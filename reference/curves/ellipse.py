@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ellipe, ellipeinc
+from scipy.special import ellipe, ellipeinc, elliprd, elliprf
 
 from reference.curves.curve import Array, Curve, Vector, along
 from reference.numerics.monotone import solve_increasing
@@ -63,9 +63,12 @@ class Ellipse(Curve):
         a, b = self.along_x, self.along_y
         if a <= b:
             part = b * ellipeinc(rest, 1 - (a / b) ** 2)
-        else:  # the same integral counted from the nearest minor vertex: the parameter stays between 0 and 1
-            shifted = rest - np.copysign(math.pi / 2, rest)
-            part = a * ellipeinc(shifted, 1 - (b / a) ** 2) + np.copysign(self.length / 4, rest)
+        else:  # Carlson's form: its terms are both positive, so that short arcs at a sharp end keep their digits
+            sine, cosine = np.sin(rest), np.cos(rest)
+            square, excess = (a / b) ** 2, (a - b) * (a + b) / b**2
+            slope = cosine**2 + square * sine**2
+            one = np.ones_like(slope)
+            part = b * sine * (elliprf(cosine**2, slope, one) + excess / 3 * sine**2 * elliprd(cosine**2, slope, one))
         return half_turns * (self.length / 2) + part
 
     @property

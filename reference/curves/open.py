@@ -89,10 +89,11 @@ class Catenary(ByArc):
 
 
 @dataclass(frozen=True)
-class LogSpiral(ByArc):
-    """r = radius exp(growth phi) [m] about its pole, the origin, traversed outwards; arc is measured from the pole.
+class LogSpiral(Curve):
+    """r = radius exp(growth p) [m] about its pole, the origin, traversed outwards; arc is measured from the pole.
 
-    The pole itself, arc 0, is refused: the curvature 1 / (growth arc) is infinite there.
+    The natural parameter p is the polar angle [rad]: it goes to -infinity at the pole, which the curve winds round for
+    ever on a finite arc. The pole itself, arc 0, is refused: the curvature 1 / (growth arc) is infinite there.
     """
 
     radius: Positive
@@ -107,30 +108,47 @@ class LogSpiral(ByArc):
         return (0.0, math.inf)
 
     @property
-    def _per_arc(self) -> float:
-        """Radius per arc."""
-        return self.growth / math.hypot(1, self.growth)
+    def _stretch(self) -> float:
+        """Arc per radius."""
+        return math.hypot(1, self.growth) / self.growth
 
-    def _polar(self, arc: ArrayLike) -> tuple[Array, Array]:
-        arc = within("logarithmic spiral", arc, self.limits, "at the pole; arcs must be greater than zero")
-        if np.any(arc <= 0):
+    def _refuse_pole(self, arc: ArrayLike) -> None:
+        if np.any(along(arc) == 0):
             raise InvalidMechanism(
                 "logarithmic spiral: arc 0 is its pole, of infinite curvature; arcs must be positive"
             )
-        radius = self._per_arc * arc
-        return radius, np.log(radius / self.radius) / self.growth
 
-    def point_of(self, p: ArrayLike) -> Array:
-        radius, polar = self._polar(p)
-        return np.stack([radius * np.cos(polar), radius * np.sin(polar)], axis=-1)
+    def angle(self, arc: ArrayLike) -> Array:
+        self._refuse_pole(arc)
+        return super().angle(arc)
 
-    def angle_of(self, p: ArrayLike) -> Array:
-        return self._polar(p)[1] + math.atan2(1, self.growth)
+    def curvature(self, arc: ArrayLike) -> Array:
+        self._refuse_pole(arc)
+        return super().curvature(arc)
 
-    def curvature_of(self, p: ArrayLike) -> Array:
-        radius, _ = self._polar(p)
-        return 1 / (radius * math.hypot(1, self.growth))
+    def parameter(self, arc: ArrayLike) -> Array:
+        arc = within("logarithmic spiral", arc, self.limits, "at the pole; arcs must be greater than zero")
+        with np.errstate(divide="ignore"):
+            return np.log(arc / (self._stretch * self.radius)) / self.growth
 
     def parameter_at(self, angle: ArrayLike) -> Array:
-        polar = along(angle) - math.atan2(1, self.growth)
-        return self.radius * np.exp(self.growth * polar) / self._per_arc
+        return along(angle) - math.atan2(1, self.growth)
+
+    def arc_of(self, p: ArrayLike) -> Array:
+        return self._stretch * self.radius * np.exp(self.growth * along(p))
+
+    def speed_of(self, p: ArrayLike) -> Array:
+        return self.growth * self.arc_of(p)
+
+    def point_of(self, p: ArrayLike) -> Array:
+        p = along(p)
+        radius = self.radius * np.exp(self.growth * p)
+        turn = np.where(np.isfinite(p), p, 0.0)  # the pole has no direction, and needs none
+        return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
+
+    def angle_of(self, p: ArrayLike) -> Array:
+        return along(p) + math.atan2(1, self.growth)
+
+    def curvature_of(self, p: ArrayLike) -> Array:
+        with np.errstate(divide="ignore"):
+            return 1 / (self.growth * self.arc_of(p))

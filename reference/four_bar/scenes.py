@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.four_bar.forces import Densities, three_densities
 from reference.four_bar.free_motion import BarAngles, CurveMotion
-from reference.four_bar.linkage import FourBar
+from reference.four_bar.linkage import FourBar, Unreachable
 from reference.joints import Drive, Joint, Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
@@ -193,7 +193,16 @@ class FreeFourBar(FourBarScene):
         curve = self._curve
         start = curve.start(self.start, self.rate, self.assembly)
         order, where = np.unique(times, return_inverse=True)
-        return curve.bar_angles(curve.states(start, order, longest * self._time_scale, stages)[where])
+        try:
+            states = curve.states(start, order, longest * self._time_scale, stages)
+        except ArithmeticError as failure:
+            if self.four_bar.grashof() != "change-point":
+                raise
+            raise Unreachable(
+                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that "
+                f"change point, beyond which two motions are possible and none is the truth ({failure})"
+            ) from None
+        return curve.bar_angles(states[where])
 
     @property
     def _time_scale(self) -> float:

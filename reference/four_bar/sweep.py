@@ -5,7 +5,9 @@ other assembly, the triangle B C D has the side s = |DB| and, as exact differenc
 
     s^2               = (l1 - d)^2              + 4 l1 d sin^2(theta'/2)
     U = (l2+l3)^2-s^2 = (l2+l3)^2 - (l1+d)^2    + 4 l1 d cos^2(theta'/2)
+                      = (l2+l3)^2 - (l1-d)^2    - 4 l1 d sin^2(theta'/2)
     W = s^2-(l2-l3)^2 = (l1-d)^2 - (l2-l3)^2    + 4 l1 d sin^2(theta'/2)
+                      = (l1+d)^2 - (l2-l3)^2    - 4 l1 d cos^2(theta'/2)
     q = 4 area(BCD) = sqrt(U W)                       (Heron)
     p = s^2 + l3^2 - l2^2,  r = s^2 - l3^2 + l2^2     (2 s l3 cos, 2 s l2 cos of the triangle's angles at D and B)
 
@@ -157,8 +159,15 @@ def _block(
 
     cosine *= 4 * c.l1 * c.d
     np.multiply(sine, 4 * c.l1 * c.d, out=s)
-    np.add(cosine, c.outer_far, out=u)
-    np.add(s, c.inner_near, out=w)
+    # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
+    if abs(c.outer_near) < abs(c.outer_far):
+        np.subtract(c.outer_near, s, out=u)
+    else:
+        np.add(cosine, c.outer_far, out=u)
+    if abs(c.inner_near) < abs(c.inner_far):
+        np.add(s, c.inner_near, out=w)
+    else:
+        np.subtract(c.inner_far, cosine, out=w)
     s += (c.l1 - c.d) ** 2
     _refuse_out_of_reach(c, u, w, s)
     np.multiply(u, w, out=q)

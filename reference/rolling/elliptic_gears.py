@@ -13,9 +13,10 @@ from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
 from reference.kinds import from_to
-from reference.mechanism import RANK_TOLERANCE, Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism, Triple
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
+from reference.row_system import undetermined
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reference.validation import Positive, validated
@@ -122,8 +123,5 @@ class EllipticGears(Scene):
         pose, twist, acceleration = self.kinematics(times)
         mechanism = self.mechanism()
         reaction = mechanism.reaction(pose, acceleration)
-        # Rows that take part in a set of forces in equilibrium by themselves: J^T null = 0.
-        _, singular, right = np.linalg.svd(np.swapaxes(mechanism.rows(pose), -1, -2))
-        rank = int(np.sum(singular[0] > RANK_TOLERANCE * singular[0, 0]))
-        share = np.sqrt(np.sum(right[:, rank:, :] ** 2, axis=-2))
-        return Trajectory(t=times, pose=pose, twist=twist, reaction=np.where(share > 1e-9, np.nan, reaction))
+        loose = undetermined(mechanism.rows(pose), mechanism.length_scale)
+        return Trajectory(t=times, pose=pose, twist=twist, reaction=np.where(loose, np.nan, reaction))

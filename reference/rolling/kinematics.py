@@ -96,10 +96,20 @@ class Rolling(Valid):
         """Whether no two places of the curves could fit or cut: a property of the ranges of curvature alone."""
         return self.ground.curvature_range[0] + self.body.curvature_range[0] >= 0
 
+    def _ground_arc(self, body_arc: Array) -> Array:
+        """Where on the ground the body stands when it touches at `body_arc` (...) [m].
+
+        A place that misses an end of the ground by the rounding of the difference is that end.
+        """
+        arc = self.ground_arc + (self.body_arc - body_arc)
+        rounding = 4 * np.finfo(float).eps * (abs(self.ground_arc) + abs(self.body_arc))
+        for end in self.ground.limits:
+            arc = np.where(np.abs(arc - end) <= rounding, end, arc)
+        return arc
+
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
         """-(theta - start) (...) and its slope, as a function of the body's parameter: increasing where it can roll."""
-        ground_arc = self.ground_arc + (self.body_arc - self.body.arc_of(body_parameter))
-        ground = self.ground.parameter(ground_arc)
+        ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)
         curvature = self.ground.curvature_of(ground) + self.body.curvature_of(body_parameter)
@@ -129,8 +139,10 @@ class Rolling(Valid):
 
         def free(arc: ArrayLike) -> Array:
             total = self.ground_arc + self.body_arc
-            body, ground = self.body.curvature(arc), self.ground.curvature(total - np.asarray(arc))
-            return ground + body - NEAR_CONFORMAL * np.maximum(np.abs(ground), np.abs(body))
+            body = self.body.curvature_of(self.body.parameter(arc))
+            ground = self.ground.curvature_of(self.ground.parameter(total - np.asarray(arc)))
+            with np.errstate(invalid="ignore"):  # at a pole, where rolling never ends
+                return ground + body - NEAR_CONFORMAL * np.maximum(np.abs(ground), np.abs(body))
 
         arcs = np.linspace(self.body_arc, reach, SCAN)
         blocked = np.flatnonzero(free(arcs) <= 0)
@@ -146,8 +158,9 @@ class Rolling(Valid):
     def limits(self) -> tuple[float, float]:
         """Rotations [rad] between which the body can roll: infinite, or where the curves fit or a curve ends."""
         low, high = self._parameter_limits
-        later = self.theta - float(self._rotation(np.asarray(low))[0]) if math.isfinite(low) else math.inf
-        earlier = self.theta - float(self._rotation(np.asarray(high))[0]) if math.isfinite(high) else -math.inf
+        with np.errstate(invalid="ignore"):
+            later = self.theta - float(self._rotation(np.asarray(low))[0]) if math.isfinite(low) else math.inf
+            earlier = self.theta - float(self._rotation(np.asarray(high))[0]) if math.isfinite(high) else -math.inf
         return (earlier, later)
 
     def _body_parameter(self, theta: Array) -> Array:
@@ -184,7 +197,7 @@ class Rolling(Valid):
 
     def _contact_at(self, theta: Array, body_parameter: Array) -> Contact:
         body_arc = self.body.arc_of(body_parameter)
-        ground_arc = self.ground_arc + (self.body_arc - body_arc)
+        ground_arc = self._ground_arc(body_arc)
         ground = self.ground.parameter(ground_arc)
         return Contact(
             theta=theta,

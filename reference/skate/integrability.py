@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 from reference.validation import InvalidMechanism, validated
 
 Array = NDArray[np.float64]
