@@ -34,6 +34,9 @@ def run_cells(
     `timed`: whether a cell is run again for the least of several times. Raises WorkersLost (`supervise`).
     """
     workers = worker_count(timed) if workers is None else workers
+    cells = tuple(cells)
+    for cell in cells:
+        _ = cell.key  # travels with the cell: each new worker would read all sources for it, half a second long
     for cell, result, note in supervise(partial(measure, repeat=timed), cells, limit, workers, watch, wall):
         if not isinstance(result, Loss):
             told = f"the first try {note}, the second went through" if note else ""

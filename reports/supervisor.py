@@ -21,26 +21,22 @@ import contextlib
 import multiprocessing
 import os
 import pickle
-import signal
 import tempfile
 import time
-import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
+from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
 from reports.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.worker import READY, SPENT, describe, timed_out, work
+from reports.worker import READY, SPENT, describe, timed_out
+from reports.worker_process import Job, Worker, interrupts_held, last_words, start_worker
 
 TICK = 0.2  # s between two looks at the clock
 START_LIMIT = 120.0  # s of wall time until a worker says that it is there
 MOST_FAILED_STARTS = 5  # one after the other
 MOST_WORKERS = 60  # Windows waits for 63 things at most
-PATIENCE = 5.0  # s for a process to be gone after it was killed
 
 Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
@@ -48,25 +44,6 @@ Answer = tuple[Any, Any, str]
 
 class WorkersLost(RuntimeError):
     """Something outside kills the workers: work is left that can be done at another time."""
-
-
-@dataclass
-class Job:
-    """An item to be worked on; `earlier`: how its first worker ended, empty if it was not tried before."""
-
-    item: Any
-    earlier: str = ""
-    earlier_outside: bool = False
-
-
-@dataclass
-class Worker:
-    process: BaseProcess
-    connection: Connection
-    ready: bool = False
-    used: bool = False
-    job: Job | None = None
-    awake: float = 0.0  # s since it was started or given its job, as far as this process was awake
 
 
 def usable_cores() -> int:
@@ -161,23 +138,10 @@ class Crew:
         wanted = min(self._most, len(self._waiting) + len(self._again) + len(self._busy()))
         while len(self._workers) < wanted:
             try:
-                self._start_worker()
+                with interrupts_held():
+                    self._workers.append(start_worker(self._context, self._folder, self._limit, self._wall))
             except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
                 self._start_failed(describe(error))
-
-    def _start_worker(self) -> None:
-        ours, theirs = self._context.Pipe()
-        arguments = (theirs, str(self._folder), self._limit, self._wall)
-        process = self._context.Process(target=work, args=arguments, daemon=True)
-        # The standard library warns when its resource tracker was killed and starts another; nothing here needs it.
-        with _interrupts_held(), theirs, warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                process.start()
-            except BaseException:
-                ours.close()
-                raise
-            self._workers.append(Worker(process, ours))
 
     def _start_failed(self, words: str) -> None:
         self._failed_starts += 1
@@ -226,10 +190,9 @@ class Crew:
 
     def _bury(self, worker: Worker) -> Iterator[Answer]:
         """A worker has ended: its job is tried again, unless it was the second time or its CPU time was used up."""
-        worker.process.join(PATIENCE)
-        code, pid, job = worker.process.exitcode, worker.process.pid, worker.job
+        code, pid, job = worker.exit_code(), worker.process.pid, worker.job
         self._dismiss(worker)
-        words = ": ".join(filter(None, (describe_exit(code), _last_words(self._folder / f"{pid}.log"))))
+        words = ": ".join(filter(None, (describe_exit(code), last_words(self._folder, pid))))
         if not worker.ready:
             self._start_failed(words)
         if job is None:
@@ -255,36 +218,4 @@ class Crew:
 
     def _dismiss(self, worker: Worker) -> None:
         self._workers.remove(worker)
-        worker.job = None
-        worker.process.kill()
-        worker.process.join(PATIENCE)
-        worker.connection.close()
-        if worker.process.exitcode is not None:
-            worker.process.close()
-
-
-@contextlib.contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
-
-    The new process inherits this, and so does the fork server, as long as it lives.
-    """
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _last_words(log: Path) -> str:
-    """The line in which native code said why it aborts, if it did."""
-    with contextlib.suppress(OSError):
-        text = log.read_text(encoding="utf-8", errors="replace")
-        lines = [line.strip() for line in text.splitlines() if line.strip()]
-        telling = [line for line in lines if "abort" in line.lower() or "error" in line.lower()]
-        for line in (telling or lines)[:1]:
-            return line[:200]
-    return ""
+        worker.stop()
