@@ -36,6 +36,7 @@ from reports.worker_process import Job, Worker, interrupts_held, last_words, sta
 TICK = 0.2  # s between two looks at the clock
 START_LIMIT = 120.0  # s of wall time until a worker says that it is there
 MOST_FAILED_STARTS = 5  # one after the other
+PAUSE = 0.1  # s after a failed start, and as much more after each further one
 MOST_WORKERS = 60  # Windows waits for 63 things at most
 
 Watch = Callable[[list[Any]], None]
@@ -147,6 +148,8 @@ class Crew:
         self._failed_starts += 1
         if self._failed_starts >= MOST_FAILED_STARTS:
             raise WorkersLost(f"{self._failed_starts} worker processes in a row ended while they started: {words}")
+        # A fork server that was killed is replaced only when it is quite gone; a full system may have room again.
+        time.sleep(PAUSE * self._failed_starts)
 
     def _employ(self, worker: Worker) -> Iterator[Answer]:
         """Give an idle worker a job, or end it if there is none that it may do."""

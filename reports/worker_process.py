@@ -7,6 +7,7 @@ import signal
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -53,7 +54,7 @@ def start_worker(context: Any, folder: Path, limit: float, wall: float) -> Worke
     """Start a process that runs `work`. Raises OSError or EOFError if none can be started."""
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, str(folder), limit, wall), daemon=True)
-    # The standard library warns when its resource tracker was killed and starts another; nothing here needs it.
+    # About a resource tracker killed in this moment.
     with theirs, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
@@ -73,6 +74,11 @@ def interrupts_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it. Starting
+    # one ends the holding of Ctrl-C, so it comes first.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -158,6 +158,9 @@ ACTIONS = {
 }
 
 
+DAMAGE: list[str] = []
+
+
 def act(name: str) -> object:
     """One of the actions without an engine, or a result of another kind."""
     match name:
@@ -165,6 +168,12 @@ def act(name: str) -> object:
             return os.getpid()
         case "probe":
             return probe()
+        case "damage":
+            time.sleep(0.3)
+            DAMAGE.append("something in native memory")
+            return None
+        case "crash where damaged":
+            return os.abort() if DAMAGE else "sound"
         case "unreadable":
             return Unreadable()
         case "unsendable":

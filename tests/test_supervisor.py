@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import os
 import random
@@ -160,13 +161,39 @@ def test_workers_that_end_while_they_start_are_replaced(monkeypatch):
     real, starts = worker_process.work, iter(range(100))
     start = supervisor.start_worker
 
-    def some_die(*arguments):
-        monkeypatch.setattr(worker_process, "work", dies if next(starts) < 4 else real)
+    def mostly_dies(*arguments):
+        monkeypatch.setattr(worker_process, "work", dies if next(starts) % 5 < 4 else real)
         return start(*arguments)
 
-    monkeypatch.setattr(supervisor, "start_worker", some_die)
-    rows = list(run_cells([Cell(Disc(), Toy(), every) for every in (1, 2, 3)]))
-    assert {row.every: row.outcome for row in rows} == dict.fromkeys((1, 2, 3), Outcome.FINISHED)
+    monkeypatch.setattr(supervisor, "start_worker", mostly_dies)
+    # Each exception makes another worker necessary: twelve die, never five in a row.
+    told = [result.sentence for _, result, _ in supervise(act, ["needs two"] * 3, limit=60.0, workers=1)]
+    assert told == ["NeedsTwo: 1 and 2"] * 3
+    assert next(starts) == 15
+
+
+def test_without_fork_server_and_resource_tracker_others_are_started_and_nothing_is_printed(monkeypatch, capfd):
+    start, starts = supervisor.start_worker, iter(range(100))
+
+    def after_a_kill(*arguments):
+        if next(starts) < 2:
+            for number in (forkserver._forkserver._forkserver_pid, resource_tracker._resource_tracker._pid):
+                if number is not None:
+                    os.kill(number, signal.SIGKILL)
+        return start(*arguments)
+
+    list(supervise(act, ["process"], limit=60.0, workers=1))
+    monkeypatch.setattr(supervisor, "start_worker", after_a_kill)
+    told = [result for _, result, _ in supervise(act, ["process", "nap"], limit=60.0, workers=2)]
+    assert not any(isinstance(result, Loss) for result in told)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_second_try_is_in_a_worker_that_has_run_nothing_else():
+    """Else the damage that one item leaves in native memory would be told as the next one's crash."""
+    items = ["damage", "damage", "crash where damaged"]
+    told = {item: result for item, result, _ in supervise(act, items, limit=60.0, workers=2)}
+    assert told == {"damage": None, "crash where damaged": "sound"}
 
 
 def test_a_pool_whose_workers_never_start_is_told_in_one_line(monkeypatch):
@@ -210,7 +237,7 @@ class Killer:
     """Kills workers, the fork server and the resource tracker, at moments and with signals that follow from a seed."""
 
     def __init__(self, seed: int, kills: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.kills = self.crashes = 0
+        self.kills = 0
         self._random, self._wanted, self._timers = random.Random(seed), kills, []
         self._crew: supervisor.Crew | None = None
         made = supervisor.Crew
@@ -231,16 +258,18 @@ class Killer:
             self._timers.append(timer)
 
     def _kill(self, target: str, how: int, which: float) -> None:
-        workers = self._crew._workers if self._crew else []
-        if target == "fork server":
-            number, how = forkserver._forkserver._forkserver_pid, signal.SIGKILL
-        elif target == "resource tracker":
-            number, how = resource_tracker._resource_tracker._pid, signal.SIGKILL
-        else:
-            number = workers[int(which * len(workers))].process.pid if workers else None
-        if number is not None:
-            os.kill(number, how)
-            self.kills += 1
+        # Any of them may have ended by now.
+        with contextlib.suppress(ProcessLookupError, ValueError, IndexError):
+            if target == "fork server":
+                number, how = forkserver._forkserver._forkserver_pid, signal.SIGKILL
+            elif target == "resource tracker":
+                number, how = resource_tracker._resource_tracker._pid, signal.SIGKILL
+            else:
+                workers = self._crew._workers if self._crew else []
+                number = workers[int(which * len(workers))].process.pid
+            if number is not None:
+                os.kill(number, how)
+                self.kills += 1
 
     def wait(self) -> None:
         for timer in self._timers:
@@ -269,20 +298,23 @@ def test_among_kills_every_row_is_there_once_and_right(monkeypatch, seed, kills)
 
 SCRIPT = """
 import sys
+import threading
 from reports.cells import Cell
 from reports.pool import run_cells
 from tests.rough_toys import RoughToy
 from tests.toys import Disc
 
+def run(wall, kinds):
+    list(run_cells([Cell(Disc(), RoughToy(kind, folder=sys.argv[1]), 1) for kind in kinds], limit=2.0, wall=wall))
+
 if __name__ == "__main__":
-    kinds = ("held sleep", "held native spin", "held native sleep")
-    cells = [Cell(Disc(), RoughToy(kind, folder=sys.argv[1]), 1) for kind in kinds]
-    list(run_cells(cells, limit=2.0, wall=4.0, workers=3))
+    threading.Thread(target=run, args=(4.0, ["held native sleep"])).start()
+    run(1000.0, ["held sleep", "held native spin"])
 """
 
 
 def test_workers_end_when_their_parent_is_gone(tmp_path):
-    """One that sleeps at once; in native code that holds the interpreter, by the timers of CPU and of wall time."""
+    """What sleeps ends at once; native code that holds the interpreter by the timers of CPU time and of wall time."""
     (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen([sys.executable, tmp_path / "script.py", tmp_path], env=environment)
@@ -295,6 +327,39 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
     for kind in kinds:
         with (tmp_path / kind).open("w", encoding="utf-8") as file:
             wait_until(lambda file=file: is_free(file))
+
+
+INTERRUPTED = """
+import sys
+import time
+from reports.pool import TIME_LIMIT
+from reports.supervisor import supervise
+
+if __name__ == "__main__":
+    try:
+        print("starting", flush=True)
+        list(supervise(time.sleep, [1000.0, 1000.0], TIME_LIMIT, 2))
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.5, 3.0])
+def test_ctrl_c_reaches_all_processes_of_a_terminal_and_the_parent_alone_tells_it(tmp_path, delay):
+    (tmp_path / "script.py").write_text(INTERRUPTED, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        [sys.executable, tmp_path / "script.py"],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"starting\n"
+    time.sleep(delay)  # workers are started, or imported, or at work: what comes out is the same
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.communicate(timeout=60) == (b"interrupted\n", b"")
 
 
 def is_free(file) -> bool:
