@@ -74,8 +74,8 @@ def interrupts_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it. Starting
-    # one ends the holding of Ctrl-C, so it comes first.
+    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it.
+    # Starting one ends the holding of Ctrl-C, so it comes first.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         resource_tracker.ensure_running()
