@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import random
 import signal
@@ -25,6 +24,7 @@ from reports.supervisor import WorkersLost, supervise
 from tests.rough_toys import ACTIONS, RoughToy, act, dies, spoiled
 from tests.toys import Disc, Toy
 
+fcntl = pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 ROOT = Path(__file__).resolve().parent.parent
 
 # What becomes of each, and a part of its sentence.
@@ -211,17 +211,29 @@ def test_a_system_without_room_for_processes_is_told_in_one_line(monkeypatch):
         list(run_cells([Cell(Disc(), Toy(), 1)]))
 
 
+def test_a_system_that_has_room_again_a_moment_later_is_waited_for(monkeypatch):
+    start, again = supervisor.start_worker, time.monotonic() + 0.25
+
+    def full_at_first(*arguments):
+        if time.monotonic() < again:
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+        return start(*arguments)
+
+    monkeypatch.setattr(supervisor, "start_worker", full_at_first)
+    assert [type(result) for _, result, _ in supervise(act, ["process"], limit=60.0, workers=1)] == [int]
+
+
 @pytest.mark.parametrize(
     ("code", "outside", "words"),
     [
-        (-9, True, "killed from outside with signal 9 (SIGKILL)"),
-        (-15, True, "killed from outside with signal 15 (SIGTERM)"),
-        (-1, True, "killed from outside with signal 1 (SIGHUP)"),
-        (-2, True, "killed from outside with signal 2 (SIGINT)"),
-        (-11, False, "aborted with signal 11 (SIGSEGV)"),
-        (-7, False, "aborted with signal 7 (SIGBUS)"),
-        (-8, False, "aborted with signal 8 (SIGFPE)"),
-        (-4, False, "aborted with signal 4 (SIGILL)"),
+        (-signal.SIGKILL, True, f"killed from outside with signal {signal.SIGKILL:d} (SIGKILL)"),
+        (-signal.SIGTERM, True, f"killed from outside with signal {signal.SIGTERM:d} (SIGTERM)"),
+        (-signal.SIGHUP, True, f"killed from outside with signal {signal.SIGHUP:d} (SIGHUP)"),
+        (-signal.SIGINT, True, f"killed from outside with signal {signal.SIGINT:d} (SIGINT)"),
+        (-signal.SIGSEGV, False, f"aborted with signal {signal.SIGSEGV:d} (SIGSEGV)"),
+        (-signal.SIGBUS, False, f"aborted with signal {signal.SIGBUS:d} (SIGBUS)"),
+        (-signal.SIGFPE, False, f"aborted with signal {signal.SIGFPE:d} (SIGFPE)"),
+        (-signal.SIGILL, False, f"aborted with signal {signal.SIGILL:d} (SIGILL)"),
         (-200, False, "aborted with signal 200 (unknown)"),
         (3, False, "the process ended by itself with exit status 3"),
         (0xC0000005, False, "aborted with status 0xC0000005"),
