@@ -22,6 +22,7 @@ from reports.choice import (
 from reports.errata_command import errata
 from reports.measure import Measurement
 from reports.shapes_command import shapes
+from reports.supervisor import WorkersLost
 
 RESULTS = Path(__file__).parent / "results"
 README = Path(__file__).parents[1] / "README.md"
@@ -76,7 +77,7 @@ def run(
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     every: Annotated[list[int] | None, typer.Option(help="Only this many steps between samples (repeatable).")] = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
-    limit: Annotated[float, typer.Option(help="Seconds after which a cell is ended.")] = 60.0,
+    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
     results: Folder = RESULTS,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
@@ -97,18 +98,18 @@ def run(
         step or (),
     )
     with Store(results / STORE) as store:
-        waiting = cells if fresh else missing(cells, store)
+        waiting = cells if fresh else missing(cells, store, limit)
         try:
             with progress(console, len(waiting)) as (done, watch):
-                run_into(store, cells, fresh, limit, done=done, watch=watch)
+                count = run_into(store, cells, fresh, limit, done=done, watch=watch)
         except KeyboardInterrupt:
-            left = len(missing(cells, store))
+            left = len(missing(cells, store, limit))
             console.print(
                 f"Stopped: {len(cells) - left} of {len(cells)} cells are stored; the next run goes on from there."
             )
             raise typer.Exit(INTERRUPTED) from None
         print_summary(list(store.get(cells).values()))
-    console.print(f"{len(waiting)} of {len(cells)} cells run, the others were stored. Next: crosscheck report")
+    console.print(f"{count} of {len(cells)} cells run, the others were stored. Next: crosscheck report")
 
 
 def print_summary(rows: list[Measurement]) -> None:
@@ -225,12 +226,15 @@ app.command("errata")(errata)
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Entry point. Bad input is one line on stderr and exit status 2; Ctrl-C is status 130."""
+    """Entry point. Bad input is one line on stderr and exit status 2, lost workers are status 1; Ctrl-C is 130."""
     try:
         status = app(arguments, standalone_mode=False, prog_name="crosscheck")
     except BadInput as error:
         print(f"crosscheck: {error}", file=sys.stderr)
         sys.exit(2)
+    except WorkersLost as error:
+        print(f"crosscheck: {error}", file=sys.stderr)
+        sys.exit(1)
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     except Exception as error:

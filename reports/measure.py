@@ -69,6 +69,7 @@ class Measurement:
     cpu: float = NAN  # of stepping per simulated second
     runs: int = 0  # that `cpu` is the minimum of
     build: float = NAN
+    limit: float = NAN  # CPU seconds, of a cell that was timed out: with more it might have ended
 
     @property
     def method(self) -> str:

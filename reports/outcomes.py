@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -22,6 +23,7 @@ class Outcome(StrEnum):
     ABORTED = "aborted"
     TIMED_OUT = "timed out"
     FAILED = "failed"
+    LOST = "lost"  # never stored: it says nothing about the engine
 
     @property
     def meaning(self) -> str:
@@ -53,6 +55,7 @@ MEANINGS = {
     Outcome.ABORTED: "native code ended the process",
     Outcome.TIMED_OUT: "did not end within its time limit",
     Outcome.FAILED: "an unexpected exception",
+    Outcome.LOST: "its process was killed from outside, twice",
 }
 
 LETTERS = {
@@ -69,15 +72,43 @@ LETTERS = {
     Outcome.ABORTED: "A",
     Outcome.TIMED_OUT: "L",
     Outcome.FAILED: "F",
+    Outcome.LOST: "x",
 }
 
 
-def describe_exit(code: int) -> str:
+@dataclass(frozen=True)
+class Loss:
+    """Why a cell has no result: what a supervised process leaves instead of one."""
+
+    outcome: Outcome
+    sentence: str
+
+
+# Sent by somebody else: a user, a batch system at its own limits, the kernel for want of memory (SIGKILL). All other
+# signals that end a process are raised by what runs in it. Windows has few of these names.
+FROM_OUTSIDE = {
+    getattr(signal, name)
+    for name in ("SIGKILL", "SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT", "SIGXCPU", "SIGXFSZ")
+    if hasattr(signal, name)
+}
+
+
+def from_outside(code: int | None) -> bool:
+    """Whether a process with this exit code was ended by somebody else; None: nobody knows how it ended."""
+    return code is None or -code in FROM_OUTSIDE
+
+
+def describe_exit(code: int | None) -> str:
     """The words for a process that ended with this exit code; negative codes are signals."""
+    if code is None:
+        return "the process ended, nobody knows how"
     if code < 0:
         try:
             name = signal.Signals(-code).name
         except ValueError:
             name = "unknown"
-        return f"aborted with signal {-code} ({name})"
+        how = "killed from outside" if from_outside(code) else "aborted"
+        return f"{how} with signal {-code} ({name})"
+    if code >= 2**31:  # Windows ends a process that does what it may not with such a status
+        return f"aborted with status 0x{code:08X}"
     return f"the process ended by itself with exit status {code}"

@@ -1,21 +1,29 @@
-"""Running cells into a store: only those that are missing, each kept as soon as it is done."""
+"""Running cells into a store: only those without an answer, each kept as soon as it is done."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from reference.trajectory import Trajectory
 from reports.cells import Cell
 from reports.measure import Measurement
-from reports.pool import TIME_LIMIT, WORKERS, Loss, run_cells, supervise
+from reports.outcomes import Loss, Outcome
+from reports.pool import TIME_LIMIT, run_cells, worker_count
 from reports.store import Store
+from reports.supervisor import WorkersLost, supervise
 
 
-def missing(cells: Iterable[Cell], store: Store) -> tuple[Cell, ...]:
-    """The cells without a stored row."""
+def missing(cells: Iterable[Cell], store: Store, limit: float = TIME_LIMIT) -> tuple[Cell, ...]:
+    """The cells without an answer to a run with this limit [s]: not stored, or timed out within a smaller limit."""
     cells = tuple(cells)
     known = store.get(cells)
-    return tuple(cell for cell in cells if cell not in known)
+    return tuple(cell for cell in cells if cell not in known or not answers(known[cell], limit))
+
+
+def answers(row: Measurement, limit: float) -> bool:
+    """Whether a run with this limit [s] would say the same as a stored row."""
+    return row.outcome != Outcome.LOST and (row.outcome != Outcome.TIMED_OUT or row.limit >= limit)
 
 
 def run_into(
@@ -23,21 +31,29 @@ def run_into(
     cells: Sequence[Cell],
     fresh: bool = False,
     limit: float = TIME_LIMIT,
-    workers: int = WORKERS,
+    workers: int | None = None,
     done: Callable[[Measurement], None] = lambda row: None,
     watch: Callable[[list[Cell]], None] | None = None,
     timed: bool = True,
 ) -> int:
     """Run what is missing (everything if fresh), store each row as it arrives; how many were run.
 
-    An interruption passes through, with the rows so far stored.
+    An interruption passes through, with the rows so far stored. Cells whose processes were killed from outside are not
+    stored; when all others are done, WorkersLost is raised, with one line about them.
     """
     if fresh:
         store.forget(cells)
-    waiting = missing(cells, store)
+    waiting = missing(cells, store, limit)
+    lost: list[Measurement] = []
     for row in run_cells(waiting, limit, workers, watch, timed):
-        store.put(row)
+        if row.outcome == Outcome.LOST:
+            lost.append(row)
+        else:
+            store.put(row)
         done(row)
+    if lost:
+        first = f"{lost[0].scene} in {lost[0].method} at {lost[0].step:.1e} s: {lost[0].sentence}"
+        raise WorkersLost(f"{len(lost)} of {len(waiting)} cells are lost, the others are stored; the first: {first}")
     return len(waiting)
 
 
@@ -47,8 +63,8 @@ def trajectory_of(cell: Cell) -> Trajectory:
 
 
 def trajectories(cells: Sequence[Cell]) -> Mapping[Cell, Trajectory]:
-    """The motions of cells, made in supervised processes; cells that fail are left out."""
-    return {cell: result for cell, result in supervise(trajectory_of, cells) if not isinstance(result, Loss)}
+    """The motions of cells, made in supervised processes; cells that fail are left out. Raises WorkersLost."""
+    return {cell: result for cell, result in _untimed(trajectory_of, cells) if not isinstance(result, Loss)}
 
 
 def support_of(cell: Cell) -> str:
@@ -63,7 +79,15 @@ def support_of(cell: Cell) -> str:
 
 
 def support(cells: Sequence[Cell]) -> Mapping[Cell, str]:
-    """Cell -> why it can't be built, in supervised processes; empty if it can."""
+    """Cell -> why it can't be built, in supervised processes; empty if it can. Raises WorkersLost."""
     return {
-        cell: result.sentence if isinstance(result, Loss) else result for cell, result in supervise(support_of, cells)
+        cell: result.sentence if isinstance(result, Loss) else result for cell, result in _untimed(support_of, cells)
     }
+
+
+def _untimed(function: Callable[[Cell], Any], cells: Sequence[Cell]) -> Iterator[tuple[Cell, Any]]:
+    """(cell, result or Loss) of work whose CPU time nobody looks at; a lost cell would be a silent gap in a page."""
+    for cell, result, _ in supervise(function, cells, TIME_LIMIT, worker_count(timed=False)):
+        if isinstance(result, Loss) and result.outcome == Outcome.LOST:
+            raise WorkersLost(f"{cell.label}: {result.sentence}")
+        yield cell, result

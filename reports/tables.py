@@ -220,7 +220,7 @@ def as_csv(rows: Iterable[Measurement], timings: bool, header: str = "") -> str:
     differs with the machine's rounding.
     """
     identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
-    rest = [f.name for f in fields(Measurement) if f.name not in (*identity, *TIMINGS, "key")]
+    rest = [f.name for f in fields(Measurement) if f.name not in (*identity, *TIMINGS, "key", "limit")]
     names = [*identity, *(TIMINGS if timings else rest)]
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in header.splitlines())

@@ -1,0 +1,223 @@
+"""Engines and functions that treat their own process badly: they try the supervisor, not the reports."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import re
+import signal
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from reference.trajectory import Trajectory
+from reports.worker import LARGEST
+from tests.toys import Toy
+
+
+class NeedsTwo(Exception):
+    """Can be raised and pickled, and not unpickled: its arguments are not those of its constructor."""
+
+    def __init__(self, first: int, second: int) -> None:
+        super().__init__(f"{first} and {second}")
+
+
+class HoldsALock(Exception):
+    def __init__(self) -> None:
+        super().__init__("it holds a lock")
+        self.lock = threading.Lock()
+
+
+class Unprintable(Exception):
+    def __str__(self) -> str:
+        raise RuntimeError("no words")
+
+
+class Unreadable:
+    """Can be pickled, and not unpickled."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return NeedsTwo, (1,)
+
+
+class Unsendable:
+    """Can't be pickled."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("it stays here")
+
+
+def native_spin() -> None:
+    """Busy in native code that holds the interpreter: no other thread of the process runs."""
+    re.match(r"(a|a)*$", "a" * 60 + "b")
+
+
+def native_sleep() -> None:
+    """Asleep in native code that holds the interpreter."""
+    ctypes.PyDLL(None).sleep(1000)
+
+
+@dataclass(frozen=True)
+class RoughToy(Toy):
+    """Does what its variant says while it steps; `folder` is where it leaves a mark, if it does."""
+
+    folder: str = ""
+
+    def spoil(self, exact: Trajectory, dt: float) -> Trajectory:
+        ACTIONS[self.variant](self)
+        return super().spoil(exact, dt)
+
+    def once(self) -> bool:
+        """Whether this is the first time."""
+        mark = Path(self.folder) / "mark"
+        first = not mark.exists()
+        mark.touch()
+        return first
+
+    def held(self, then: str) -> None:
+        """Hold a lock on a file as long as the process lives."""
+        import fcntl
+
+        file = os.open(Path(self.folder) / then, os.O_CREAT | os.O_WRONLY)
+        fcntl.flock(file, fcntl.LOCK_EX)
+        (Path(self.folder) / f"{then} is there").touch()
+        ACTIONS[then](self)
+
+
+def throw(error: BaseException) -> None:
+    raise error
+
+
+def send(number: int) -> None:
+    os.kill(os.getpid(), number)
+    time.sleep(5)
+
+
+def print_much(toy: RoughToy) -> None:
+    for _ in range(1000):
+        print("x" * 100)
+    os.write(2, b"y" * 100_000)
+
+
+def close_streams(toy: RoughToy) -> None:
+    sys.stdout.close()
+    sys.stderr.close()
+    for number in (1, 2):
+        with contextlib.suppress(OSError):  # closed with its stream
+            os.close(number)
+
+
+def leave_threads(toy: RoughToy) -> None:
+    for daemon in (False, True):
+        threading.Thread(target=time.sleep, args=(1000,), daemon=daemon).start()
+
+
+def install_handlers(toy: RoughToy) -> None:
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGALRM, signal.SIGPROF):
+        signal.signal(number, lambda *_: None)
+    signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
+
+
+# What each does; those that end well are asked for numbers afterwards.
+ACTIONS = {
+    "well": lambda toy: None,
+    "segfault": lambda toy: ctypes.string_at(0),
+    "abort": lambda toy: os.abort(),
+    "exit 255": lambda toy: os._exit(255),
+    "kill": lambda toy: send(signal.SIGKILL),
+    "terminate": lambda toy: send(signal.SIGTERM),
+    "segfault once": lambda toy: send(signal.SIGSEGV) if toy.once() else None,
+    "kill once": lambda toy: send(signal.SIGKILL) if toy.once() else None,
+    "sleep": lambda toy: time.sleep(1000),
+    "spin": lambda toy: [None for _ in iter(int, 1)],
+    "native spin": lambda toy: native_spin(),
+    "native sleep": lambda toy: native_sleep(),
+    "held sleep": lambda toy: toy.held("sleep"),
+    "held native spin": lambda toy: toy.held("native spin"),
+    "held native sleep": lambda toy: toy.held("native sleep"),
+    "short sleep": lambda toy: time.sleep(0.05),
+    "nap": lambda toy: time.sleep(1),
+    "needs two": lambda toy: throw(NeedsTwo(1, 2)),
+    "holds a lock": lambda toy: throw(HoldsALock()),
+    "unprintable": lambda toy: throw(Unprintable()),
+    "long words": lambda toy: throw(RuntimeError("x" * 10_000_000)),
+    "system exit": lambda toy: sys.exit(3),
+    "interrupt": lambda toy: throw(KeyboardInterrupt()),
+    "endless recursion": lambda toy: ACTIONS["endless recursion"](toy),
+    "prints": print_much,
+    "closes streams": close_streams,
+    "closes files": lambda toy: os.closerange(3, 1000),
+    "changes folder": lambda toy: os.chdir("/"),
+    "changes environment": lambda toy: os.environ.update(CROSSCHECK_TOY="was here"),
+    "leaves threads": leave_threads,
+    "installs handlers": install_handlers,
+    "blocks signals": lambda toy: signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals()),
+}
+
+
+DAMAGE: list[str] = []
+
+
+def act(name: str) -> object:
+    """One of the actions without an engine, or a result of another kind."""
+    match name:
+        case "process":
+            return os.getpid()
+        case "probe":
+            return probe()
+        case "damage":
+            time.sleep(0.3)
+            DAMAGE.append("something in native memory")
+            return None
+        case "crash where damaged":
+            return os.abort() if DAMAGE else "sound"
+        case "unreadable":
+            return Unreadable()
+        case "unsendable":
+            return Unsendable()
+        case "large":
+            return bytes(10**7)
+        case "huge":
+            return bytes(LARGEST)
+    return ACTIONS[name](RoughToy())
+
+
+def spoiled(name: str) -> list[str]:
+    """The process after one of the actions."""
+    ACTIONS[name](RoughToy())
+    return probe()
+
+
+def is_log(number: int) -> bool:
+    """Whether a file descriptor writes into a log in the working folder."""
+    try:
+        found = os.fstat(number)
+    except OSError:
+        return False
+    return any(os.path.samestat(log.stat(), found) for log in Path().glob("*.log"))
+
+
+def probe() -> list[str]:
+    """What is not as it should be in the process of a worker."""
+    wrong = []
+    if not Path.cwd().name.startswith("crosscheck-"):
+        wrong.append("folder")
+    if sys.stdout.closed or not all(map(is_log, (1, 2))):
+        wrong.append("streams")
+    if any(callable(handler) for handler in map(signal.getsignal, signal.valid_signals())):
+        wrong.append("handlers")
+    if signal.pthread_sigmask(signal.SIG_BLOCK, ()):
+        wrong.append("blocked signals")
+    if threading.active_count() != 2:  # this one, and that which looks after the parent
+        wrong.append("threads")
+    if "CROSSCHECK_TOY" in os.environ:
+        wrong.append("environment")
+    return wrong
+
+
+def dies(*_: object) -> None:
+    """Instead of a worker's work: killed before it says that it is ready."""
+    os.kill(os.getpid(), signal.SIGKILL)

@@ -1,0 +1,111 @@
+"""Windows and macOS, as far as they can be had here: what they lack is hidden, what they do otherwise is forced."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = [path for folder in ("reference", "engines", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
+
+# A script whose workers import it again before anything else, so that the same is hidden there.
+WITHOUT = """
+import multiprocessing
+import os
+import signal
+import sys
+from pathlib import Path
+
+# What Windows has of signals, see the documentation of the module; with SIGKILL multiprocessing ends processes here.
+KEPT = {"SIGKILL", "SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM", "SIG_DFL", "SIG_IGN"}
+for name in dir(signal):
+    if name.startswith(("SIG", "ITIMER")) and name not in KEPT:
+        delattr(signal, name)
+for name in ("setitimer", "getitimer", "alarm", "pthread_sigmask", "pthread_kill"):
+    delattr(signal, name)
+for name in ("fork", "forkpty", "sched_getaffinity", "getuid", "setsid"):
+    delattr(os, name)
+sys.modules["resource"] = sys.modules["fcntl"] = None
+multiprocessing.get_all_start_methods = lambda: ["spawn"]
+
+from reports.cells import Cell
+from reports.running import run_into
+from reports.store import Store
+from tests.rough_toys import RoughToy
+from tests.toys import Disc, FailingToy, Toy
+
+if __name__ == "__main__":
+    cells = [Cell(Disc(), engine, 1) for engine in (Toy(), FailingToy("exit"), RoughToy("spin"))]
+    with Store(Path(sys.argv[1]) / "cells.sqlite") as store:
+        print(run_into(store, cells, limit=2.0))
+        for row in store.get(cells).values():
+            print(f"{row.variant}: {row.outcome}, {row.sentence}")
+"""
+
+
+def test_without_fork_server_timers_and_most_signals_cells_end_in_the_same_outcomes(tmp_path):
+    folder = tmp_path / "Ergebnisse mit Größe"
+    folder.mkdir()
+    (folder / "script.py").write_text(WITHOUT, encoding="utf-8")
+    # Neither the folder of the logs nor the locale is what everybody has.
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(folder), "LC_ALL": "C", "PYTHONUTF8": "0"}
+    environment |= {"PYTHONCOERCECLOCALE": "0", "PYTHONWARNINGS": "error"}
+    command = [sys.executable, folder / "script.py", folder]
+    told = subprocess.run(command, env=environment, capture_output=True, timeout=300)
+    assert told.stderr == b""
+    assert told.stdout.decode().splitlines() == [
+        "3",
+        "default: finished, ",
+        "exit: aborted, the process ended by itself with exit status 3",
+        "spin: timed out, did not end within 2 s of CPU time",
+    ]
+    assert sorted(path.name for path in folder.iterdir()) == ["cells.sqlite", "script.py"]
+
+
+def test_text_files_are_opened_with_their_encoding():
+    found = {path: unnamed_encodings(path.read_text(encoding="utf-8")) for path in SOURCES}
+    assert {path: lines for path, lines in found.items() if lines} == {}
+    assert len(found) > 100
+
+
+def unnamed_encodings(source: str) -> list[int]:
+    """The lines that read or write a text in whatever encoding the machine has."""
+    lines = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            words = {word.arg for word in node.keywords}
+            modes = [arg.value for arg in (*node.args, *(word.value for word in node.keywords)) if is_mode(arg)]
+            binary = any("b" in mode for mode in modes)
+            of_system = isinstance(node.func, ast.Attribute) and getattr(node.func.value, "id", "") == "os"
+            if name in ("open", "fdopen", "read_text", "write_text") and not (
+                binary or of_system or "encoding" in words
+            ):
+                lines.append(node.lineno)
+    return lines
+
+
+def is_mode(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and set(node.value) <= set("rwxabt+")
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("path.read_text()", [1]),
+        ("path.write_text(text, newline='')", [1]),
+        ("open(path, 'w')", [1]),
+        ("path.open()", [1]),
+        ("path.read_text(encoding='utf-8')", []),
+        ("open(path, 'rb')", []),
+        ("path.open(mode='wb')", []),
+        ("os.open(path, os.O_RDONLY)", []),
+    ],
+)
+def test_a_text_file_of_the_machine_s_encoding_is_found(line, found):
+    assert unnamed_encodings(line) == found

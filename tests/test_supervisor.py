@@ -1,0 +1,397 @@
+"""Supervised workers: whatever a job does to its process, or somebody else does to it, is told as what it is."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from multiprocessing import forkserver, resource_tracker
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from reports import supervisor, worker_process
+from reports.cells import Cell
+from reports.outcomes import Loss, Outcome, describe_exit, from_outside
+from reports.pool import run_cells
+from reports.supervisor import WorkersLost, supervise
+from tests.rough_toys import ACTIONS, RoughToy, act, dies, spoiled
+from tests.toys import Disc, Toy
+
+fcntl = pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
+ROOT = Path(__file__).resolve().parent.parent
+
+# What becomes of each, and a part of its sentence.
+ENDS = {
+    "segfault": ("aborted", "aborted with signal 11 (SIGSEGV)"),
+    "abort": ("aborted", "aborted with signal 6 (SIGABRT)"),
+    "exit 255": ("aborted", "exit status 255"),
+    "closes files": ("aborted", "exit status 1"),
+    "kill": ("lost", "killed from outside with signal 9 (SIGKILL), perhaps for want of memory; before that: killed"),
+    "terminate": ("lost", "killed from outside with signal 15 (SIGTERM)"),
+    "spin": ("timed out", "did not end within 0.5 s of CPU time"),
+    "native spin": ("timed out", "did not end within 0.5 s of CPU time"),
+    "sleep": ("timed out", "did not end within 1 s, and used less than 60 s of CPU time"),
+    "native sleep": ("timed out", "did not end within 1 s, and used less than 60 s of CPU time"),
+    "needs two": ("failed", "NeedsTwo: 1 and 2"),
+    "holds a lock": ("failed", "HoldsALock: it holds a lock"),
+    "unprintable": ("failed", "Unprintable: (it can't be printed)"),
+    "system exit": ("failed", "SystemExit: 3"),
+    "interrupt": ("failed", "KeyboardInterrupt: "),
+    "long words": ("failed", "RuntimeError: xxx"),
+    "endless recursion": ("failed", "RecursionError: "),
+}
+SLEEPERS = ("sleep", "native sleep")  # apart: a busy machine needs more wall time for all others
+BUSY = [name for name in ENDS if name not in SLEEPERS]
+# What ends well and leaves its process changed.
+LEAVES = {
+    "prints",
+    "closes streams",
+    "changes folder",
+    "changes environment",
+    "leaves threads",
+    "installs handlers",
+    "blocks signals",
+}
+
+
+@pytest.fixture(scope="module")
+def ends():
+    """Each bad end, then a sound cell with a number of its own, two at a time."""
+    cells = []
+    for place, name in enumerate(BUSY, start=1):
+        cells += [Cell(Disc(), RoughToy(name), 1), Cell(Disc(), Toy(factor=float(place)), 1)]
+    asleep = [Cell(Disc(), RoughToy(name), 1) for name in SLEEPERS]
+    rows = [*run_cells(cells, limit=0.5, workers=2), *run_cells(asleep, wall=1.0, workers=2)]
+    assert len(rows) == len(cells) + len(asleep)
+    return {row.variant if row.variant in ENDS else row.settings: row for row in rows}
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_a_bad_end_is_told_as_what_it_is(ends, name):
+    outcome, sentence = ENDS[name]
+    assert ends[name].outcome == outcome
+    assert sentence in ends[name].sentence
+    assert len(ends[name].sentence) <= 500
+
+
+def test_sound_cells_among_bad_ends_keep_their_numbers(ends):
+    for place in range(1, len(BUSY) + 1):
+        row = ends[repr(Toy(factor=float(place)))]
+        assert row.outcome == Outcome.FINISHED
+        assert row.angle == pytest.approx(place * row.step**2, rel=1e-9)
+        assert row.sentence == ""
+
+
+def test_nothing_that_a_job_leaves_behind_meets_the_next_one(capfd):
+    items = ["probe"]
+    for name in sorted(LEAVES):
+        items += [name, "probe"]
+    answers = list(supervise(act, items, limit=60.0, workers=1))
+    assert [item for item, *_ in answers] == items
+    assert {(item, str(result)) for item, result, _ in answers if isinstance(result, Loss)} == set()
+    assert [result for item, result, _ in answers if item == "probe"] == [[]] * (1 + len(LEAVES))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_probe_sees_what_is_left_behind():
+    """Else the test above could not fail."""
+    told = {name: result for name, result, _ in supervise(spoiled, sorted(LEAVES - {"prints"}), limit=60.0, workers=2)}
+    assert told == {
+        "blocks signals": ["blocked signals"],
+        "changes environment": ["environment"],
+        "changes folder": ["folder", "streams"],
+        "closes streams": ["streams"],
+        "installs handlers": ["handlers"],
+        "leaves threads": ["threads"],
+    }
+
+
+def test_a_worker_goes_on_after_a_job_that_leaves_nothing():
+    processes = {result for _, result, _ in supervise(act, ["process"] * 5, limit=60.0, workers=1)}
+    assert len(processes) == 1
+
+
+def test_results_that_cannot_travel_are_failures_with_a_sentence():
+    told = {item: result for item, result, _ in supervise(act, ["unreadable", "unsendable", "huge", "large"], 60.0, 2)}
+    assert told["large"] == bytes(10**7)
+    assert all(told[name].outcome == Outcome.FAILED for name in ("unreadable", "unsendable", "huge"))
+    assert told["unreadable"].sentence.startswith("its result can't be read: TypeError")
+    assert told["unsendable"].sentence == "TypeError: it stays here"
+    assert told["huge"].sentence.startswith("OverflowError: a result of 2684")
+
+
+def test_an_item_that_cannot_be_sent_is_a_failure_and_no_other_one_suffers():
+    items = [threading.Lock(), "process"]
+    told = [result for _, result, _ in supervise(act, items, limit=60.0, workers=1)]
+    assert told[0].outcome == Outcome.FAILED
+    assert told[0].sentence.startswith("can't be sent to a worker: TypeError")
+    assert isinstance(told[1], int)
+
+
+@pytest.mark.parametrize("name", ["kill once", "segfault once"])
+def test_a_cell_whose_worker_was_killed_is_tried_once_more(tmp_path, name):
+    (row,) = run_cells([Cell(Disc(), RoughToy(name, folder=str(tmp_path)), 1)])
+    assert row.outcome == Outcome.FINISHED
+    assert row.angle == pytest.approx(row.step**2, rel=1e-9)
+    # A crash that does not come back is a finding about the engine; that somebody kills processes is none.
+    crash = "the first try aborted with signal 11 (SIGSEGV), the second went through"
+    assert row.sentence == (crash if name == "segfault once" else "")
+
+
+def test_waiting_for_a_busy_machine_is_no_time_of_the_cell():
+    (row,) = run_cells([Cell(Disc(), RoughToy("nap"), 1)], limit=0.5, wall=30.0, timed=False)
+    assert row.outcome == Outcome.FINISHED
+
+
+def test_time_in_which_the_parent_was_stopped_is_not_counted(monkeypatch):
+    real, looks = time.monotonic, iter(range(10**9))
+    monkeypatch.setattr(supervisor, "time", SimpleNamespace(monotonic=lambda: real() + 100.0 * next(looks)))
+    (row,) = run_cells([Cell(Disc(), RoughToy("nap"), 1)], limit=5.0, wall=60.0, timed=False)
+    assert row.outcome == Outcome.FINISHED
+
+
+def test_workers_that_end_while_they_start_are_replaced(monkeypatch):
+    real, starts = worker_process.work, iter(range(100))
+    start = supervisor.start_worker
+
+    def mostly_dies(*arguments):
+        monkeypatch.setattr(worker_process, "work", dies if next(starts) % 5 < 4 else real)
+        return start(*arguments)
+
+    monkeypatch.setattr(supervisor, "start_worker", mostly_dies)
+    # Each exception makes another worker necessary: twelve die, never five in a row.
+    told = [result.sentence for _, result, _ in supervise(act, ["needs two"] * 3, limit=60.0, workers=1)]
+    assert told == ["NeedsTwo: 1 and 2"] * 3
+    assert next(starts) == 15
+
+
+def test_without_fork_server_and_resource_tracker_others_are_started_and_nothing_is_printed(monkeypatch, capfd):
+    start, starts = supervisor.start_worker, iter(range(100))
+
+    def after_a_kill(*arguments):
+        if next(starts) < 2:
+            for number in (forkserver._forkserver._forkserver_pid, resource_tracker._resource_tracker._pid):
+                if number is not None:
+                    os.kill(number, signal.SIGKILL)
+        return start(*arguments)
+
+    list(supervise(act, ["process"], limit=60.0, workers=1))
+    monkeypatch.setattr(supervisor, "start_worker", after_a_kill)
+    told = [result for _, result, _ in supervise(act, ["process", "nap"], limit=60.0, workers=2)]
+    assert not any(isinstance(result, Loss) for result in told)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_second_try_is_in_a_worker_that_has_run_nothing_else():
+    """Else the damage that one item leaves in native memory would be told as the next one's crash."""
+    items = ["damage", "damage", "crash where damaged"]
+    told = {item: result for item, result, _ in supervise(act, items, limit=60.0, workers=2)}
+    assert told == {"damage": None, "crash where damaged": "sound"}
+
+
+def test_a_pool_whose_workers_never_start_is_told_in_one_line(monkeypatch):
+    monkeypatch.setattr(worker_process, "work", dies)
+    with pytest.raises(WorkersLost, match=r"^5 worker processes in a row ended while they started: .*SIGKILL.$"):
+        list(run_cells([Cell(Disc(), Toy(), 1)]))
+
+
+def test_a_system_without_room_for_processes_is_told_in_one_line(monkeypatch):
+    def full(*_: object) -> None:
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(supervisor, "start_worker", full)
+    with pytest.raises(WorkersLost, match="Resource temporarily unavailable"):
+        list(run_cells([Cell(Disc(), Toy(), 1)]))
+
+
+def test_a_system_that_has_room_again_a_moment_later_is_waited_for(monkeypatch):
+    start, again = supervisor.start_worker, time.monotonic() + 0.25
+
+    def full_at_first(*arguments):
+        if time.monotonic() < again:
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+        return start(*arguments)
+
+    monkeypatch.setattr(supervisor, "start_worker", full_at_first)
+    assert [type(result) for _, result, _ in supervise(act, ["process"], limit=60.0, workers=1)] == [int]
+
+
+@pytest.mark.parametrize(
+    ("code", "outside", "words"),
+    [
+        (-signal.SIGKILL, True, f"killed from outside with signal {signal.SIGKILL:d} (SIGKILL)"),
+        (-signal.SIGTERM, True, f"killed from outside with signal {signal.SIGTERM:d} (SIGTERM)"),
+        (-signal.SIGHUP, True, f"killed from outside with signal {signal.SIGHUP:d} (SIGHUP)"),
+        (-signal.SIGINT, True, f"killed from outside with signal {signal.SIGINT:d} (SIGINT)"),
+        (-signal.SIGSEGV, False, f"aborted with signal {signal.SIGSEGV:d} (SIGSEGV)"),
+        (-signal.SIGBUS, False, f"aborted with signal {signal.SIGBUS:d} (SIGBUS)"),
+        (-signal.SIGFPE, False, f"aborted with signal {signal.SIGFPE:d} (SIGFPE)"),
+        (-signal.SIGILL, False, f"aborted with signal {signal.SIGILL:d} (SIGILL)"),
+        (-200, False, "aborted with signal 200 (unknown)"),
+        (3, False, "the process ended by itself with exit status 3"),
+        (0xC0000005, False, "aborted with status 0xC0000005"),
+        (None, True, "the process ended, nobody knows how"),
+    ],
+)
+def test_exit_codes_are_told_from_each_other(code, outside, words):
+    assert from_outside(code) == outside
+    assert describe_exit(code) == words
+
+
+class Killer:
+    """Kills workers, the fork server and the resource tracker, at moments and with signals that follow from a seed."""
+
+    def __init__(self, seed: int, kills: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.kills = 0
+        self._random, self._wanted, self._timers = random.Random(seed), kills, []
+        self._crew: supervisor.Crew | None = None
+        made = supervisor.Crew
+
+        def remember(*arguments):
+            self._crew = made(*arguments)
+            return self._crew
+
+        monkeypatch.setattr(supervisor, "Crew", remember)
+
+    def arm(self) -> None:
+        """One kill, after a tenth of a second at most."""
+        if len(self._timers) < self._wanted:
+            target = self._random.choice(["worker"] * 8 + ["fork server", "resource tracker"])
+            how = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV])
+            timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (target, how, self._random.random()))
+            timer.start()
+            self._timers.append(timer)
+
+    def _kill(self, target: str, how: int, which: float) -> None:
+        # Any of them may have ended by now.
+        with contextlib.suppress(ProcessLookupError, ValueError, IndexError):
+            if target == "fork server":
+                number, how = forkserver._forkserver._forkserver_pid, signal.SIGKILL
+            elif target == "resource tracker":
+                number, how = resource_tracker._resource_tracker._pid, signal.SIGKILL
+            else:
+                workers = self._crew._workers if self._crew else []
+                number = workers[int(which * len(workers))].process.pid
+            if number is not None:
+                os.kill(number, how)
+                self.kills += 1
+
+    def wait(self) -> None:
+        for timer in self._timers:
+            timer.join()
+
+
+@pytest.mark.parametrize(("seed", "kills"), [(1, 20), pytest.param(2, 200, marks=pytest.mark.slow)])
+def test_among_kills_every_row_is_there_once_and_right(monkeypatch, seed, kills):
+    killer = Killer(seed, kills, monkeypatch)
+    cells = [Cell(Disc(), RoughToy("short sleep", factor=float(place)), 1) for place in range(2 * kills)]
+    rows = []
+    for row in run_cells(cells, workers=2, timed=False):
+        rows.append(row)
+        killer.arm()
+    killer.wait()
+    assert sorted(row.settings for row in rows) == sorted(repr(cell.engine) for cell in cells)
+    factors = {repr(cell.engine): cell.engine.factor for cell in cells}
+    done = [row for row in rows if row.outcome == Outcome.FINISHED]
+    for row in done:
+        assert row.angle == pytest.approx(factors[row.settings] * row.step**2, rel=1e-9)
+    # Without an answer is only what was hit twice, and it says so.
+    assert all(row.outcome in (Outcome.LOST, Outcome.ABORTED) for row in rows if row not in done)
+    assert len(rows) - len(done) <= killer.kills // 2
+    assert killer.kills > kills // 2
+
+
+SCRIPT = """
+import sys
+import threading
+from reports.cells import Cell
+from reports.pool import run_cells
+from tests.rough_toys import RoughToy
+from tests.toys import Disc
+
+def run(wall, kinds):
+    list(run_cells([Cell(Disc(), RoughToy(kind, folder=sys.argv[1]), 1) for kind in kinds], limit=2.0, wall=wall))
+
+if __name__ == "__main__":
+    threading.Thread(target=run, args=(4.0, ["held native sleep"])).start()
+    run(1000.0, ["held sleep", "held native spin"])
+"""
+
+
+def test_workers_end_when_their_parent_is_gone(tmp_path):
+    """What sleeps ends at once; native code that holds the interpreter by the timers of CPU time and of wall time."""
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen([sys.executable, tmp_path / "script.py", tmp_path], env=environment)
+    kinds = ("sleep", "native spin", "native sleep")
+    try:
+        wait_until(lambda: all((tmp_path / f"{kind} is there").exists() for kind in kinds))
+    finally:
+        process.kill()
+        process.wait()
+    for kind in kinds:
+        with (tmp_path / kind).open("w", encoding="utf-8") as file:
+            wait_until(lambda file=file: is_free(file))
+
+
+INTERRUPTED = """
+import sys
+import time
+from reports.pool import TIME_LIMIT
+from reports.supervisor import supervise
+
+if __name__ == "__main__":
+    try:
+        print("starting", flush=True)
+        list(supervise(time.sleep, [1000.0, 1000.0], TIME_LIMIT, 2))
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.5, 3.0])
+def test_ctrl_c_reaches_all_processes_of_a_terminal_and_the_parent_alone_tells_it(tmp_path, delay):
+    (tmp_path / "script.py").write_text(INTERRUPTED, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        [sys.executable, tmp_path / "script.py"],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"starting\n"
+    time.sleep(delay)  # workers are started, or imported, or at work: what comes out is the same
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.communicate(timeout=60) == (b"interrupted\n", b"")
+
+
+def is_free(file) -> bool:
+    """Whether no process holds a lock on a file: processes that have ended may still have their number."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def wait_until(true) -> None:
+    """Raises AssertionError when it takes far longer than any limit here."""
+    for _ in range(1200):
+        if true():
+            return
+        time.sleep(0.05)
+    raise AssertionError("it did not come true within a minute")
+
+
+def test_every_action_is_tried():
+    named = {"well", "short sleep", "nap", "kill once", "segfault once"}
+    assert set(ACTIONS) == set(ENDS) | LEAVES | named | {name for name in ACTIONS if name.startswith("held ")}
