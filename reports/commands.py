@@ -131,22 +131,21 @@ def show(
 ) -> None:
     """Print a scene's stored numbers."""
     from reference.scenes import SCENES
+
+    chosen = choose_scenes([scene], SCENES)
+    command = with_folder(f"crosscheck run {scene}", results)
+    nothing = BadInput(f"{results} holds nothing for {scene!r} and the present sources: {command}")
+    if not (results / STORE).exists():
+        raise nothing
     from reports.cells import FULL, sweep_cells
     from reports.pages import PAGES
     from reports.quantities import QUANTITIES
     from reports.sweep import judged, sweeps
     from reports.tables import ERROR_HEADER, error_rows, order_rows
 
-    chosen = choose_scenes([scene], SCENES)
-    engines = choose_engines(engine, variant, known_engines(PAGES))
-    nothing = BadInput(
-        f"{results} holds nothing for {scene!r} and the present sources: "
-        + with_folder(f"crosscheck run {scene}", results)
-    )
-    if not (results / STORE).exists():
-        raise nothing
-    cells = [c for one in chosen for c in sweep_cells((one,), grid_engines(one, engines, PAGES), FULL)]
     with Store.read(results / STORE) as store:
+        engines = choose_engines(engine, variant, known_engines(PAGES))
+        cells = [c for one in chosen for c in sweep_cells((one,), grid_engines(one, engines, PAGES), FULL)]
         rows = judged(store.get(cells).values())
     if not rows:
         raise nothing

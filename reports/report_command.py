@@ -38,17 +38,17 @@ def report(
     """Write pages, charts, errors.csv and timings.csv from what is stored."""
     if publish:
         refuse_outside_a_checkout()
+    nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
+    if not (results / STORE).exists():
+        raise nothing
     from reports.page import Material
     from reports.pages import PAGES
     from reports.rendering import render_all, render_readme
     from reports.running import missing, trajectories
 
-    wanted = {page: page_cells(page) for page in PAGES}
-    whole = tuple({cell: None for cells in wanted.values() for cell in cells})
-    nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
-    if not (results / STORE).exists():
-        raise nothing
     with Store.read(results / STORE) as store:
+        wanted = {page: page_cells(page) for page in PAGES}
+        whole = tuple({cell: None for cells in wanted.values() for cell in cells})
         material = {page: Material(store.get(cells), trajectories) for page, cells in wanted.items()}
         left = len(missing(whole, store))
     command = with_folder("crosscheck run --full", results)

@@ -243,6 +243,7 @@ def _readable_rows(aside: Path) -> list[tuple[str, str]]:
         _copy(aside, copy)
         with closing(sqlite3.connect(copy)) as connection:
             connection.text_factory = _decoded
+            connection.execute("pragma writable_schema=on")  # else a file that is too short is not read at all
             # From both ends, since reading stops where the damage is.
             for order in ("", " desc"):
                 with suppress(sqlite3.Error):
