@@ -4,9 +4,9 @@ BIN := .venv/bin
 
 .PHONY: report test check bench clean
 
-report: .venv/installed          ## run the grid, write reports/results
+report: .venv/installed          ## run the grid into crosscheck-results, publish it in reports/results and README.md
 	$(BIN)/crosscheck run --full
-	$(BIN)/crosscheck report
+	$(BIN)/crosscheck report --publish
 
 test: .venv/installed            ## every test, the crosscheck grid included
 	$(BIN)/python -m pytest

@@ -9,23 +9,21 @@ from collections.abc import Iterable, Sequence
 from engines import Engine
 from reference.scene import Scene
 from reports.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
+from reports.ending import BadInput
 from reports.page import Page
 
 # A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
 QUICK_CELL = 0.1
 
 
-class BadInput(ValueError):
-    """A sentence for one line on stderr: which value, why, and what would be valid."""
-
-
 def nearest(kind: str, word: str, known: Iterable[str]) -> BadInput:
-    """The refusal of an unknown word, with the nearest known one if any is near."""
-    names = list(dict.fromkeys(known))
-    near = difflib.get_close_matches(word, names, 1, 0.4)
+    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not."""
+    names = {name.lower(): name for name in known}
+    low = word.lower()
+    near = difflib.get_close_matches(low, names, 1, 0.4)
     if not near:
-        near = [name for name in names if word and (word in name or name in word)][:1]
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(names)}"
+        near = [name for name in names if low and (low in name or name in low)][:1]
+    hint = f"did you mean {names[near[0]]!r}?" if near else f"there are {', '.join(names.values())}"
     return BadInput(f"unknown {kind} {word!r}: {hint}")
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from reports.choice import BadInput
+from reports.ending import BadInput
 
 HEADER = ("no.", "where", "printed, and its value", "right, and its value", "derivative", "verdict")
 WIDTH = 150  # into a file or a pipe
@@ -19,13 +18,13 @@ def errata(
 ) -> None:
     """The chapter's printed slips: each formula's value as printed and as it must be, and what decides."""
     from reference.errata.catalogue import ERRATA, WORD_SLIPS
-    from reports.terminal import print_table
+    from reports.terminal import Terminal, print_table
 
     known = sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
     for one in number or ():
         if one not in known:
             raise BadInput(f"no slip has the number {one}; there are {', '.join(map(str, known))}")
-    wide = Console(width=None if Console().is_terminal else WIDTH)
+    wide = Terminal(WIDTH)
     rows = [row for row in rows_of_slips() if not number or int(row[0]) in number]
     print_table(wide, "Printed slips of the chapter", HEADER, rows, len(HEADER))
     wide.print(

@@ -15,6 +15,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from reports.requirements import with_required
+
 ROOT = Path(__file__).resolve().parent.parent
 OURS = ("reference", "engines", "reports")
 
@@ -91,9 +93,9 @@ def _digest(modules: frozenset[str]) -> str:
     digest = hashlib.sha256()
     for path in sorted(files):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    for package in sorted(packages):
-        for distribution in sorted(set(_distributions().get(package, ()))):
-            digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
+    distributions = {name for package in packages for name in _distributions().get(package, ())}
+    for distribution in sorted(with_required(distributions)):
+        digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
     return digest.hexdigest()
 
 

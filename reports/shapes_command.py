@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reference.validation import InvalidMechanism
-from reports.choice import BadInput
+from reports.ending import BadInput, FileTrouble
+from reports.files import write_whole
 
 if TYPE_CHECKING:
     from reference.centrodes import Centrodes
@@ -25,6 +26,7 @@ def shapes(
     folder: Annotated[Path, typer.Option(help="Where MOTION_shapes.csv, .svg and .dxf are written.")] = Path(),
     points: Annotated[int, typer.Option(help="Points of each shape.")] = 400,
     kind: Annotated[list[str] | None, typer.Option(help="Only this kind of file: csv, svg, dxf (repeatable).")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
     """Write the two shapes that generate a motion when the one rolls on the other.
 
@@ -36,6 +38,11 @@ def shapes(
             raise BadInput(f"--kind is {word!r}; there are {', '.join(KINDS)}")
     if not 2 <= points <= MOST_POINTS:
         raise BadInput(f"--points is {points}; give from 2 to {MOST_POINTS}")
+    targets = {name: folder / f"{motion.stem}_shapes.{name}" for name in kinds}
+    for path in () if force else targets.values():
+        # A link counts, even one that leads nowhere.
+        if path.is_symlink() or path.exists():
+            raise FileTrouble(f"{path} is there already: give another --folder, or --force to replace it")
     text = _text(motion)
     # Only this command needs them, and scipy takes longer to load than all else.
     from reference.centrodes import from_poses
@@ -45,10 +52,12 @@ def shapes(
     try:
         curves = from_poses(*poses_from_csv(text))
         found = shapes_of(curves, points)
-        files = {f"{motion.stem}_shapes.{name}": writers[name](found) for name in kinds}
+        files = {path: writers[name](found) for name, path in targets.items()}
     except InvalidMechanism as reason:
         raise BadInput(f"{motion}: {_one_line(reason)}") from None
-    for line in (*_told(curves, found), *(f"written: {_write(folder, *file)}" for file in files.items())):
+    told = _told(curves, found)
+    write_whole(files, "give another --folder")
+    for line in (*told, *(f"written: {path}" for path in files)):
         print(line)
 
 
@@ -80,20 +89,10 @@ def _one_line(reason: Exception) -> str:
 
 
 def _text(path: Path) -> str:
-    """A file's text. Raises BadInput, saying why it can't be read."""
+    """A file's text. Raises FileTrouble, saying why it can't be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
     except OSError as reason:
-        raise BadInput(f"{path} can't be read: {reason.strerror or reason}") from None
+        raise FileTrouble(f"{path} can't be read: {reason.strerror or reason}") from None
     except UnicodeDecodeError:
-        raise BadInput(f"{path} can't be read: it is no text; give CSV in UTF-8") from None
-
-
-def _write(folder: Path, name: str, text: str) -> Path:
-    """Raises BadInput, saying why it can't be written."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8", newline="\n")
-    except OSError as reason:
-        raise BadInput(f"{folder / name} can't be written: {reason.strerror or reason}") from None
-    return folder / name
+        raise FileTrouble(f"{path} can't be read: it is no text; give CSV in UTF-8") from None

@@ -29,6 +29,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
+from reports.ending import Broken
 from reports.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.worker import READY, SPENT, describe, timed_out
 from reports.worker_process import Job, Worker, interrupts_held, last_words, start_worker
@@ -43,7 +44,7 @@ Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
 
 
-class WorkersLost(RuntimeError):
+class WorkersLost(Broken):
     """Something outside kills the workers: work is left that can be done at another time."""
 
 

@@ -2,14 +2,50 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from reports.cells import Cell
+from reports.ending import FileTrouble
+
+
+class Terminal(Console):
+    """Standard output: as wide as the terminal; a table into a file or a pipe keeps its width, whatever the terminal's.
+
+    `print` raises BrokenPipeError where nobody reads it any more, and FileTrouble where it can't be written.
+    """
+
+    def __init__(self, width: int) -> None:
+        super().__init__(width=None if sys.stdout.isatty() else width)
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        with written():
+            super().print(*objects, **options)
+
+    def say(self, sentence: str) -> None:
+        """A sentence as it is: names of files may have brackets in them."""
+        self.print(sentence, markup=False, highlight=False, soft_wrap=True)
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
+@contextmanager
+def written() -> Iterator[None]:
+    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if nobody reads it."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as reason:
+        raise FileTrouble(f"the output can't be written: {reason.strerror or reason}") from None
 
 
 def print_table(console: Console, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
@@ -23,8 +59,10 @@ def print_table(console: Console, title: str, header: Sequence[str], rows: Seque
 
 
 @contextmanager
-def progress(console: Console, total: int) -> Iterator[tuple[Callable[[object], None], Callable[[list[Cell]], None]]]:
-    """(done, watch): call done with each row, and watch with the cells that are running."""
+def progress(
+    console: Console, total: int, check: Callable[[], None]
+) -> Iterator[tuple[Callable[[object], None], Callable[[list[Cell]], None]]]:
+    """(done, watch): call done with each row, and watch with the cells that are running; both `check` for Ctrl-C."""
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -39,8 +77,10 @@ def progress(console: Console, total: int) -> Iterator[tuple[Callable[[object], 
 
         def watch(cells: list[Cell]) -> None:
             bar.update(task, running=" | ".join(cell.label for cell in cells))
+            check()
 
         def done(row: object) -> None:
             bar.advance(task)
+            check()
 
         yield done, watch

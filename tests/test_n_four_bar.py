@@ -131,7 +131,7 @@ def test_bad_chains_are_refused() -> None:
 
 
 def test_cranks_that_start_upright_at_rest_stay_there_for_ever():
-    scene = NFourBar(speed=0.0)
+    scene = NFourBar(speed=0.0, duration=1000.0)
     assert scene.period == math.inf
     assert scene.singular_times(1e6).size == 0
     motion = scene.motion([0.0, 50.0, 1000.0])

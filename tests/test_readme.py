@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from reports.ending import STATUSES
 from reports.overview import BEGIN, END, with_overview
 
-README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
@@ -32,3 +38,61 @@ def test_the_overview_stands_between_its_marks_and_nothing_else_changes():
     assert filled.split(BEGIN)[0] == README.split(BEGIN)[0]
     with pytest.raises(ValueError, match="lacks the marks"):
         with_overview("nothing here", "| a table |")
+
+
+def git(folder, *words):
+    return subprocess.run(["git", "-C", folder, *words], check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture
+def clone(tmp_path):
+    """A fresh clone of the checkout, with what is changed in it and not committed yet."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no git checkout")
+    folder = tmp_path / "clone"
+    subprocess.run(["git", "clone", "--quiet", "--local", ROOT, folder], check=True)
+    for name in git(ROOT, "ls-files", "-z", "--modified", "--others", "--exclude-standard").split("\0"):
+        if name and (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes((ROOT / name).read_bytes())
+    git(folder, "add", "--all")
+    git(folder, "-c", "user.name=nobody", "-c", "user.email=nobody", "commit", "--quiet", "--allow-empty", "-m", "now")
+    return folder
+
+
+def commands():
+    """The commands of the readme, without those that take minutes: make and pytest."""
+    blocks = re.findall(r"```\n(.*?)```", README, re.DOTALL)
+    lines = [shlex.split(line, comments=True) for block in blocks for line in block.splitlines()]
+    return [words[1:] for words in lines if words and words[0] == "crosscheck"]
+
+
+@pytest.mark.slow
+def test_what_the_readme_says_runs_in_a_fresh_clone_and_changes_nothing_published(clone):
+    assert [words[0] for words in commands()] == ["list", "run", "show", "report"]
+    for words in commands():
+        ended = subprocess.run(
+            [sys.executable, "-m", "reports", *words],
+            cwd=clone,
+            env={**os.environ, "PYTHONPATH": str(clone), "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+        )
+        assert (ended.returncode, ended.stderr) == (0, ""), words
+    results = clone / "crosscheck-results"
+    assert "free_four_bar" in (results / "errors.csv").read_text()
+    assert git(clone, "status", "--porcelain") == ""
+    # What is written is ignored, not merely unchanged.
+    assert git(clone, "check-ignore", "crosscheck-results").strip() == "crosscheck-results"
+    missing = [
+        (page.name, link)
+        for page in results.glob("*.md")
+        for link in re.findall(r"\]\(([^)#]+)\)", page.read_text())
+        if not link.startswith("https://") and not (results / link).is_file()
+    ]
+    assert missing == []
+
+
+def test_it_has_the_exit_statuses_of_the_help():
+    told = STATUSES.partition(": ")[2]
+    assert told in " ".join(README.split())

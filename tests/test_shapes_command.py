@@ -59,6 +59,32 @@ def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, ca
     assert "gives the motion back" in capfd.readouterr().out
 
 
+def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_path, capfd):
+    motion, mine = tmp_path / "ladder.csv", tmp_path / "mine"
+    motion.write_text(as_text(ladder()))
+    mine.write_text("mine")
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "ladder_shapes.svg").write_text("old")
+    (tmp_path / "linked").mkdir()
+    (tmp_path / "linked" / "ladder_shapes.svg").symlink_to(mine)
+    (tmp_path / "dangling").mkdir()
+    (tmp_path / "dangling" / "ladder_shapes.dxf").symlink_to(tmp_path / "nowhere")
+    for name in ("there", "linked", "dangling"):
+        assert call("shapes", motion, "--folder", tmp_path / name) == 2
+        out, err = capfd.readouterr()
+        assert out == ""
+        assert "--force" in err
+        assert len(list((tmp_path / name).iterdir())) == 1
+    for name in ("there", "linked", "dangling"):
+        assert call("shapes", motion, "--folder", tmp_path / name, "--force") == 0
+        written = list((tmp_path / name).iterdir())
+        assert len(written) == 3
+        assert not any(path.is_symlink() for path in written)
+    assert "<path" in (tmp_path / "there" / "ladder_shapes.svg").read_text()
+    assert mine.read_text() == "mine"
+    assert not (tmp_path / "nowhere").exists()
+
+
 def test_only_the_kinds_asked_for_are_written(tmp_path, capfd):
     (tmp_path / "ladder.csv").write_text(as_text(ladder()))
     assert call("shapes", tmp_path / "ladder.csv", "--folder", tmp_path, "--kind", "svg") == 0
@@ -71,7 +97,7 @@ def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, cap
         # A wobble of 8 rad/s: two periods, which 17 poses can't show.
         table = np.column_stack([t, 0.3 * np.cos(8 * t), 0.1 * np.sin(8 * t), -3 * t])
         (tmp_path / "motion.csv").write_text(as_text(table))
-        assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path) == 0
+        assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path, "--force") == 0
         assert ("too far apart" in capfd.readouterr().out) is coarse
 
 
@@ -142,7 +168,7 @@ def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tm
         ([tmp_path / "nowhere.csv"], "can't be read"),
         ([tmp_path], "can't be read"),
         ([tmp_path / "picture.csv"], "no text"),
-        ([good, "--folder", good], "can't be written"),
+        ([good, "--folder", good], "can't be a folder"),
         ([good, "--points", "1"], "--points is 1"),
         ([good, "--points", "many"], "--points"),
         ([good, "--kind", "png"], "csv, svg, dxf"),

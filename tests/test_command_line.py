@@ -1,0 +1,376 @@
+"""The program's ends: each status, one line and no traceback, whatever becomes of its files, its pipes or Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from reports import __main__ as program
+from reports import commands, files, interruption, report_command
+from reports.ending import FINE, INTERRUPTED, REFUSED, UNREAD, Broken
+from reports.files import write_whole
+from reports.store import Store
+
+ROOT = Path(__file__).resolve().parent.parent
+ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
+
+
+def call(*words):
+    """The exit status of the command line, in this process."""
+    with pytest.raises(SystemExit) as ending:
+        program.main([str(word) for word in words])
+    return ending.value.code
+
+
+def environment():
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def one_line(err):
+    assert len(err.strip().splitlines()) == 1, err
+    assert err.startswith("crosscheck: ")
+    return err
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_results_go_below_the_current_folder_and_a_second_run_has_nothing_to_run(here, capfd):
+    assert call("run", *ONE_CELL) == FINE
+    assert "1 of 1 cells run" in capfd.readouterr().out
+    assert call("run", *ONE_CELL) == FINE
+    assert "0 of 1 cells run" in capfd.readouterr().out
+    assert call("show", ONE_CELL[0]) == FINE
+    assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
+
+
+@pytest.mark.parametrize("words", [("show", "driven_four_bar"), ("report",), ("report", "--publish")])
+def test_reading_commands_make_no_store(words, here, capfd):
+    assert call(*words) == REFUSED
+    assert "crosscheck run" in one_line(capfd.readouterr().err)
+    assert call(*words, "--results", "my results") == REFUSED
+    assert "--results 'my results'" in capfd.readouterr().err
+    assert list(here.iterdir()) == []
+
+
+def checkout(folder, monkeypatch):
+    """A folder that looks like a checkout, with its files' texts."""
+    texts = {"README.md": "a readme", "reports/results/index.md": "an index"}
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    monkeypatch.setattr(report_command, "CHECKOUT", folder)
+    return texts
+
+
+def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
+    texts = checkout(here / "checkout", monkeypatch)
+    assert call("run", *ONE_CELL) == FINE
+    capfd.readouterr()
+    assert call("report", "--publish") == REFUSED
+    said = one_line(capfd.readouterr().err)
+    left, total = (int(said.split()[place]) for place in (4, 6))
+    assert 0 < total - left <= 1
+    assert said.endswith("crosscheck run --full\n")
+    assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
+
+
+def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
+    monkeypatch.setattr(report_command, "CHECKOUT", here / "site-packages")
+    assert call("report", "--publish") == REFUSED
+    assert "checkout" in one_line(capfd.readouterr().err)
+    assert list(here.iterdir()) == []
+
+
+def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
+    """With a grid of one cell and one page of one line, since rendering is not the subject."""
+    from reports import pages, rendering
+    from reports.cells import Cell
+    from tests.test_reports import PAGE
+    from tests.toys import Disc, Toy
+
+    checkout(here / "checkout", monkeypatch)
+    cell = Cell(Disc(), Toy(), 1)
+    monkeypatch.setattr(pages, "PAGES", (PAGE,))
+    monkeypatch.setattr(report_command, "page_cells", lambda page: (cell,))
+    monkeypatch.setattr(rendering, "render_all", lambda material, command: {"index.md": f"made by {command}"})
+    monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
+    with Store(here / "crosscheck-results" / "cells.sqlite") as store:
+        from reports.measure import measure
+
+        store.put(measure(cell, repeat=False))
+    assert call("report") == FINE
+    assert (here / "checkout" / "README.md").read_text() == "a readme"
+    assert (here / "checkout/reports/results/index.md").read_text() == "an index"
+    assert (here / "crosscheck-results/index.md").read_text() == "made by crosscheck report"
+    (here / "crosscheck-results/index.md").unlink()
+    assert call("report", "--publish") == FINE
+    assert (here / "checkout" / "README.md").read_text() == "a readme, with a table"
+    assert (here / "checkout/reports/results/index.md").read_text() == "made by make report"
+    assert not (here / "crosscheck-results/index.md").exists()
+
+
+def test_a_damaged_store_is_told_and_the_run_goes_on(here, capfd):
+    assert call("run", *ONE_CELL) == FINE
+    (here / "crosscheck-results" / "cells.sqlite").write_text("no results\n" * 1000)
+    capfd.readouterr()
+    for words in (("report",), ("show", ONE_CELL[0])):
+        assert call(*words) == REFUSED
+        assert "is damaged" in one_line(capfd.readouterr().err)
+    assert call("run", *ONE_CELL) == FINE
+    out, err = capfd.readouterr()
+    assert "cells.sqlite.damaged-1" in one_line(err)
+    assert "1 of 1 cells run" in out
+
+
+@pytest.mark.parametrize("command", [("run", *ONE_CELL), ("show", "driven_four_bar"), ("report",)])
+def test_results_that_can_not_be_a_folder_are_one_line(command, here, capfd):
+    (here / "file").write_text("mine")
+    for results in ("file", "file/below", "x" * 300):
+        assert call(*command, "--results", results) == REFUSED
+        one_line(capfd.readouterr().err)
+    assert (here / "file").read_text() == "mine"
+
+
+def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
+    old, new = {}, {}
+    for name in ("a.md", "b.md", "c.md"):
+        (tmp_path / name).write_text("old")
+        old[tmp_path / name], new[tmp_path / name] = "old", "new\n"
+    synced = []
+
+    def fails_at_the_third(descriptor):
+        synced.append(descriptor)
+        if len(synced) == 3:
+            raise OSError(28, "No space left on device")
+
+    def texts():
+        return {path: path.read_text() for path in tmp_path.iterdir()}
+
+    with monkeypatch.context() as patched:
+        patched.setattr(files.os, "fsync", fails_at_the_third)
+        with pytest.raises(files.FileTrouble, match=r"c\.md can't be written \(No space left on device\): make room"):
+            write_whole(new, "make room")
+    assert texts() == old
+
+    def interrupted(descriptor):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(files.os, "fsync", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            write_whole(new, "make room")
+    assert texts() == old
+    (tmp_path / "d.md").mkdir()
+    with pytest.raises(files.FileTrouble, match=r"d\.md can't be written \(a folder has its name\)"):
+        write_whole({**new, tmp_path / "d.md": "new"}, "make room")
+    (tmp_path / "d.md").rmdir()
+    assert texts() == old
+    write_whole(new, "make room")
+    assert texts() == new
+
+
+def test_a_link_is_replaced_and_what_it_leads_to_is_not(tmp_path):
+    (tmp_path / "target").write_text("mine")
+    (tmp_path / "page.md").symlink_to(tmp_path / "target")
+    write_whole({tmp_path / "page.md": "new"}, "")
+    assert (tmp_path / "target").read_text() == "mine"
+    assert not (tmp_path / "page.md").is_symlink()
+
+
+def failing(error):
+    def command(arguments):
+        raise error
+
+    return command
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (Broken("3 cells are lost"), 1, "crosscheck: 3 cells are lost\n"),
+        (files.FileTrouble("two\nlines"), 2, "crosscheck: two lines\n"),
+        (commands.BadInput("bad"), 2, "crosscheck: bad\n"),
+        (OSError(24, "Too many open files"), 2, "crosscheck: Too many open files\n"),
+        (PermissionError(13, "Permission denied", "a.csv"), 2, "crosscheck: a.csv: Permission denied\n"),
+        (BrokenPipeError(), UNREAD, ""),
+        (KeyboardInterrupt(), INTERRUPTED, ""),
+    ],
+)
+def test_each_ending_has_its_status_and_its_line(error, status, line, monkeypatch, capfd):
+    monkeypatch.setattr(commands, "invoke", failing(error))
+    assert call("list") == status
+    assert capfd.readouterr() == ("", line)
+
+
+def test_a_mistake_of_the_program_itself_is_not_hidden(monkeypatch):
+    monkeypatch.setattr(commands, "invoke", failing(ZeroDivisionError()))
+    with pytest.raises(ZeroDivisionError):
+        program.main(["list"])
+
+
+def test_a_command_s_own_status_is_the_program_s(monkeypatch):
+    def command():
+        raise commands.typer.Exit(7)
+
+    application = commands.typer.Typer()
+    application.command("one")(command)
+    application.command("other")(lambda: None)
+    monkeypatch.setattr(commands, "app", application)
+    assert call("one") == 7
+    assert call("other") == FINE
+
+
+def test_ctrl_c_has_again_the_meaning_that_it_had(capfd):
+    before = signal.getsignal(signal.SIGINT)
+    assert call("--help") == FINE
+    assert call("nonsense") == REFUSED
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
+    assert call() == FINE
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert out.startswith("Usage: crosscheck")
+    assert "Exit status: 0 fine" in " ".join(out.split())
+
+
+def test_a_word_in_capitals_gets_a_suggestion(capfd):
+    assert call("run", "FREE_FOUR_BAR") == REFUSED
+    assert "did you mean 'free_four_bar'?" in one_line(capfd.readouterr().err)
+    assert call("run", "--engine", "PyMunk") == REFUSED
+    assert "did you mean 'pymunk'?" in one_line(capfd.readouterr().err)
+
+
+def ended(words, **streams):
+    return subprocess.run([sys.executable, "-m", "reports", *words], env=environment(), text=True, **streams)
+
+
+def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
+    if not Path("/dev/full").exists():
+        pytest.skip("/dev/full is there on Linux alone")
+    with open("/dev/full", "w") as full:
+        for words in (["errata", "1"], ["--help"]):
+            process = ended(words, stdout=full, stderr=subprocess.PIPE)
+            assert process.returncode == REFUSED
+            assert "No space left on device" in one_line(process.stderr)
+        process = ended(["nonsense"], stdout=subprocess.PIPE, stderr=full)
+        assert (process.returncode, process.stdout) == (REFUSED, "")
+
+
+def test_a_reader_that_goes_away_ends_the_program_without_a_word():
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        process = ended(["errata"], stdout=writing, stderr=subprocess.PIPE)
+    finally:
+        os.close(writing)
+    assert (process.returncode, process.stderr) == (UNREAD, "")
+
+
+def test_closed_streams_are_no_reason_to_fail(tmp_path):
+    """And no file takes the number of a closed stream, to be written into."""
+    words = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
+    process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *words], env=environment())
+    assert process.returncode == FINE
+    with closing(commands.Store(tmp_path / "cells.sqlite")._connection) as connection:
+        assert connection.execute("select count(*) from results").fetchone() == (1,)
+
+
+# Sends Ctrl-C to itself when the given number of modules has been asked for after the program's first line.
+INTERRUPTS_ITSELF = """
+import runpy, signal, sys
+
+asked, count = 0, int(sys.argv[1])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever the tests' own parent did with it
+
+def hook(event, arguments):
+    global asked
+    if event == "import" and not arguments[0].startswith("encodings") and "reports.interruption" in sys.modules:
+        asked += 1
+        if asked == count:
+            signal.raise_signal(signal.SIGINT)
+
+sys.addaudithook(hook)
+sys.argv = ["crosscheck", *sys.argv[2:]]
+runpy.run_module("reports", run_name="__main__", alter_sys=True)
+"""
+# Seeded. This command asks for more than 1400 modules: numpy, scipy, matplotlib and both engines are among them.
+MOMENTS = [1, 2, 5, *random.Random(16).sample(range(6, 1300), 5)]
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_ctrl_c_at_any_import_is_status_130_without_a_word(moment):
+    process = subprocess.run(
+        [sys.executable, "-c", INTERRUPTS_ITSELF, str(moment), "run", "no_scene"],
+        env=environment(),
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert (process.returncode, process.stdout, process.stderr) == (INTERRUPTED, "", "")
+
+
+def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
+    """To the whole group of processes, as a terminal does: workers must not complain either."""
+    words = ["run", "pendulum_100", "--engine", "lagrange", "--variant", "rk4 projection", "--results", str(tmp_path)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "1000"],
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    store = tmp_path / "cells.sqlite"
+    while process.poll() is None and count_of_rows(store) == 0:
+        time.sleep(0.1)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate()
+    assert process.returncode == INTERRUPTED
+    assert err == ""
+    stored = count_of_rows(store)
+    assert 1 <= stored <= 2
+    assert f"Stopped: {stored} of 3 cells are stored; the next run goes on from there." in out
+
+
+def count_of_rows(path):
+    if not path.exists():
+        return 0
+    with Store.read(path) as store:
+        return store._connection.execute("select count(*) from results").fetchone()[0]
+
+
+def test_a_ctrl_c_that_is_kept_raises_when_asked_and_the_second_at_once():
+    before = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with interruption.kept() as check:
+            check()
+            signal.raise_signal(signal.SIGINT)
+            with pytest.raises(KeyboardInterrupt):
+                check()
+            with pytest.raises(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        with interruption.kept() as check, interruption.ending_at_once():
+            signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
+            check()
+    finally:
+        signal.signal(signal.SIGINT, before)
