@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
@@ -45,8 +46,12 @@ def stability_map(
     """Step against a parameter, one panel a method, each cell coloured, hatched and lettered by its outcome.
 
     `rows` are (value of the parameter, measurement). A cell that finished shows the exponent of its angle error.
+    Raises ValueError where two rows would stand in one place: only one of them could be seen.
     """
     rows = list(rows)
+    for (method, value, step), count in Counter((row.method, value, row.step) for value, row in rows).items():
+        if count > 1:
+            raise ValueError(f"map: there are {count} rows of {method!r} at {value:g} and a step of {step:.3g} s")
     methods = list(dict.fromkeys(row.method for _, row in rows))
     values = sorted({value for value, _ in rows})
     steps = sorted({row.step for _, row in rows})
