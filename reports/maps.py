@@ -13,6 +13,7 @@ from matplotlib.patches import Rectangle
 
 from reports.measure import Measurement
 from reports.outcomes import Outcome
+from reports.tables import number
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 HATCHES = {
@@ -71,7 +72,7 @@ def stability_map(
             panel.set_xlim(0, len(values))
             panel.set_ylim(0, len(steps))
             panel.set_xticks(np.arange(len(values)) + 0.5, [f"{value:g}" for value in values])
-            panel.set_yticks(np.arange(len(steps)) + 0.5, [f"{step:.0e}".replace("e-0", "e-") for step in steps])
+            panel.set_yticks(np.arange(len(steps)) + 0.5, [number(step) for step in steps])
             panel.tick_params(length=0)
         for index, panel in enumerate(axes[: len(methods)]):
             lowest, leftmost = index + columns >= len(methods), index % columns == 0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import io
 import math
 from dataclasses import fields
 
@@ -154,7 +153,7 @@ def test_a_size_table_has_the_mechanism_first_and_each_model_once():
 
 
 def test_a_method_that_built_nothing_does_not_make_the_mechanism_empty():
-    nothing = {name: 0 for name in ("bodies", "own_bodies", "own_coordinates", "own_rows", "own_freedoms")}
+    nothing = dict.fromkeys(("bodies", "own_bodies", "own_coordinates", "own_rows", "own_freedoms"), 0)
     unsupported = row_of("a x", outcome=Outcome.UNSUPPORTED, **nothing)
     lost = row_of("b x", step=1.0, outcome=Outcome.TIMED_OUT, **nothing)
     _, *body = table(tables.size_table([unsupported, lost, row_of("b x")]))
@@ -182,7 +181,7 @@ def test_an_outcome_grid_has_every_step_and_each_cell_under_its_own():
 
 
 def test_two_rows_that_would_stand_in_one_place_are_refused():
-    with pytest.raises(ValueError, match="two rows of 'a x' at a step of 0.01 s"):
+    with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 0\.01 s"):
         tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
 
 
