@@ -20,7 +20,7 @@ from reports.cells import Cell
 from reports.fingerprint import fingerprint, modules_behind
 from reports.measure import blank
 from reports.store import Store
-from tests.toys import Disc, Toy
+from tests.toys import Disc, FailingToy, Toy
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -160,6 +160,18 @@ def test_bytes_count_and_not_names_alone_and_names_and_not_bytes_alone(theirs):
     assert len({before, renamed, one, fingerprint(engine)}) == 4
 
 
+def test_the_same_bytes_under_another_name_are_another_source(theirs):
+    folder, engine = theirs
+    text = "try:\n    import theirs.fast\nexcept ImportError:\n    import theirs.slow\n"
+    (folder / "theirs/furthest.py").write_text(text, encoding="utf-8")
+    (folder / "theirs/fast.py").write_text("VALUE = 1", encoding="utf-8")
+    forget()
+    before = fingerprint(engine)
+    (folder / "theirs/fast.py").rename(folder / "theirs/slow.py")
+    forget()
+    assert fingerprint(engine) != before
+
+
 def test_a_checkout_in_another_folder_has_the_same_fingerprint(theirs, tmp_path, monkeypatch):
     folder, engine = theirs
     before = fingerprint(engine)
@@ -195,6 +207,7 @@ def test_the_classes_that_an_engine_derives_from_count(theirs):
     )
     derived = type("Derived", (importlib.import_module("derived").derive(),), {"__module__": "derived"})()
     assert {"derived", "theirs.plugin"} <= modules_behind(derived)
+    assert {"derived", "theirs.plugin"} <= modules_behind((type(derived),))
 
 
 class Bytes:
@@ -265,17 +278,28 @@ def test_the_file_of_a_wrapped_engine_counts():
 
 
 @pytest.mark.parametrize(
-    "name", ["reports/measure.py", "reports/errors.py", "reports/pool.py", "reference/joints.py", "tests/toys.py"]
+    ("name", "scene", "engine"),
+    [
+        ("reports/measure.py", Disc(), Toy()),
+        ("reports/errors.py", Disc(), Toy()),
+        ("reports/pool.py", Disc(), Toy()),
+        ("reference/joints.py", Disc(), Toy()),
+        ("tests/toys.py", Disc(), Toy()),
+        ("engines/mujoco/model.py", Disc(), mujoco.TUNED),
+        ("engines/pymunk/model.py", Disc(), Extrapolated(pymunk.TUNED, "x", (1, 2), (2,))),
+        ("reference/four_bar/free_motion.py", FreeFourBar(), Toy()),
+    ],
 )
-def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name):
+def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name, scene, engine):
+    assert (ROOT / name).is_file()
     with Store(tmp_path / "cells.sqlite") as store:
-        cell = Cell(Disc(), Toy(), 1)
+        cell = Cell(scene, engine, 1)
         store.put(blank(cell))
-        assert list(store.get([Cell(Disc(), Toy(), 1)])) == [cell]
+        assert list(store.get([Cell(scene, engine, 1)])) == [cell]
         touch(ROOT / name)
-        assert not store.get([Cell(Disc(), Toy(), 1)])
+        assert not store.get([Cell(scene, engine, 1)])
         touch(None)
-        assert store.get([Cell(Disc(), Toy(), 1)])
+        assert store.get([Cell(scene, engine, 1)])
 
 
 @pytest.mark.parametrize("name", ["reports/tables.py", "reports/charts.py", "engines/mujoco/model.py", "tests/rows.py"])
@@ -343,6 +367,7 @@ def test_every_number_of_a_cell_is_in_its_key():
         replace(cell, engine=Toy(factor=2.0)),
         replace(cell, engine=Toy("tuned")),
         replace(cell, engine=Toy(name="other")),
+        replace(cell, engine=FailingToy()),  # its fields are the toy's
         replace(cell, every=2),
         replace(cell, samples=7),
         replace(cell, purpose="failure"),
