@@ -180,7 +180,7 @@ def test_a_sweep_judges_its_rows():
     assert judgements(1e-2, 1e-4, 1e-6, 1e-6) == ["finished"] * 4  # it may be a crossing of signs
     assert judgements(1e-6, 1e-5, 1e-4) == ["finished"] * 3
     assert judgements(1e-2, 1e-4, 1e-6, quantity="position") == ["converged"] * 3
-    assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 2
+    assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 3
 
 
 def test_only_what_finished_in_a_sweep_is_judged():
