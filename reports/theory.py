@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 
+from engines import Softness
 from reports.checks import Check
-from reports.judge import Prediction, Softness
+from reports.judge import Prediction
 from reports.measure import SATURATED, TORN, Measurement
 from reports.outcomes import Outcome
+from reports.promises import EXACT, Promise
 from reports.quantities import QUANTITIES
 
 # Check -> the quantities that it holds.
@@ -22,56 +24,66 @@ HELD: dict[str, tuple[str, ...]] = {
 ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
 
 
-@dataclass(frozen=True)
-class Promise:
-    """What an engine promises in a scene: the power of the step with which each error falls, and how soft its rows are.
+# Room above the judge's own error of the same order. Methods of one order differ in their constants; a spring of five
+# steps has the constant 5^2 / 2 at second order. The grid's right methods lie within a decade of the judge, most within
+# a third of one; this is that decade and a factor for chance.
+ROOM = 20.0
+# Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
+ROOM_SOFT = 2.0
+# Room above what a method's own coarser steps let expect of a finer one: their constant is known, and what is left is
+# the next power of the step, and that a largest error over samples is met at another one.
+ROOM_OWN = 3.0
 
-    `order` is that of poses; the others are as large unless they are given.
+
+def terms(
+    quantity: str, prediction: Prediction, promise: Promise, softness: Softness | None, step: float
+) -> tuple[float, float, float]:
+    """What step, softness and rounding cost in a quantity, before any room is given."""
+    rounding = ROUNDING["velocity" if quantity == "slip" else quantity]
+    if quantity == "reaction" and promise.differences:
+        rounding += ROUNDING["velocity"] * promise.differences / step / prediction.acceleration
+    if promise.of(quantity) == EXACT:
+        return 0.0, 0.0, rounding
+    cost = prediction.error(quantity, promise.step(quantity), step)
+    cost += prediction.closing(quantity, prediction.error("gap", promise.step("gap"), step), softness)
+    if quantity == "reaction" and promise.differences:
+        cost += prediction.differenced(promise.of(quantity), step)
+    return cost, prediction.give(quantity, softness), rounding
+
+
+def theory(
+    prediction: Prediction,
+    promise: Promise,
+    softness: Softness | None,
+    row: Measurement,
+    coarser: Sequence[Measurement] = (),
+) -> tuple[Check, ...]:
+    """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
+
+    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too.
     """
-
-    order: int
-    rate: int | None = None
-    gap: int | None = None
-    slip: int | None = None
-    energy: int | None = None
-    reaction: int | None = None
-    softness: Softness | None = None
-
-    def of(self, quantity: str) -> int:
-        """The order of a quantity of `reports.quantities`."""
-        name = {"angle": "order", "position": "order", "velocity": "rate"}.get(quantity, quantity)
-        own = getattr(self, name)
-        return self.order if own is None else own
-
-
-# Room above the judge's own error of the same order: methods of one order differ in their constants, of which the
-# judge's is one; see `Prediction`.
-ROOM = 3.0
-
-
-def theory(prediction: Prediction, promise: Promise, row: Measurement) -> tuple[Check, ...]:
-    """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone."""
     outcome = Outcome(row.outcome)
     if outcome is Outcome.UNSUPPORTED:
         return ()
     checks = [Check("outcome", "outcome", 0.0 if outcome.comparable else math.inf, 1.0, sentence=f", {row.outcome}")]
     if not outcome.comparable:
         return tuple(checks)
+    usable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
     for name, quantities in HELD.items():
         for quantity in quantities:
             measured = getattr(row, quantity)
-            if not math.isnan(measured):
-                checks.append(_held(name, quantity, measured, prediction, promise, row.step))
+            if math.isnan(measured):
+                continue
+            cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step)
+            cost, soft = ROOM * cost, ROOM_SOFT * soft
+            order = promise.of(quantity)
+            if usable and order < EXACT:
+                known = [getattr(other, quantity) * (row.step / other.step) ** order for other in usable]
+                cost = min(cost, ROOM_OWN * max(known))
+                # Where the judge's soft run lost the motion, the method's own steps are what is known.
+                soft = soft if math.isfinite(soft) else 0.0
+            bound = min(cost + soft + rounding, prediction.refused(quantity))
+            checks.append(
+                Check(name, quantity, measured, bound, (("step", cost), ("softness", soft), ("rounding", rounding)))
+            )
     return tuple(checks)
-
-
-def _held(
-    name: str, quantity: str, measured: float, prediction: Prediction, promise: Promise, step: float
-) -> Check:
-    terms = (
-        ("step", ROOM * prediction.error(quantity, promise.of(quantity), step)),
-        ("softness", ROOM * prediction.give(quantity, promise.softness)),
-        ("rounding", ROUNDING[quantity]),
-    )
-    bound = min(sum(value for _, value in terms), prediction.refused(quantity))
-    return Check(name, quantity, measured, bound, terms)
