@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from engines import Softness
 from reports.checks import Check
-from reports.judge import Prediction
-from reports.measure import SATURATED, TORN, Measurement
+from reports.measure import Measurement
 from reports.outcomes import Outcome
+from reports.prediction import Prediction
 from reports.promises import EXACT, Promise
 from reports.quantities import QUANTITIES
 

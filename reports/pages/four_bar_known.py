@@ -4,29 +4,48 @@ from __future__ import annotations
 
 from engines.lagrange import Lagrange
 from engines.registry import ENGINES
+from reports.pages.chain_orders import CLOSED, from_rest, prescribed
+from reports.promises import EXACT, Promise, Promises
 
 INTEGRATORS = {"euler": 1, "rk4": 4, "dop853": 8}
 
+
+def ideal(engine: Lagrange) -> Promise:
+    """The integrator's order; a projection leaves no gap, and Baumgarte's spring is tied to the step.
+
+    That turns a gap into an acceleration divided by the step squared, which may cost two orders.
+    """
+    order = INTEGRATORS[engine.integrator]
+    match engine.stabilisation:
+        case "projection":
+            return Promise(order, gap=EXACT, slip=EXACT)
+        case "baumgarte" if order == 1:
+            return Promise(1, gap=2)
+        case "baumgarte" if order == 4:
+            return Promise(2, rate=1, slip=1, energy=1, reaction=1)
+        case "baumgarte":
+            return Promise(order - 2)
+    return Promise(order)
+
+
+# The spring of a loop is tied to the step, and closes its gap at second order whatever integrates it.
+STIFF = Promise(1, gap=2)
+STIFF_METHODS = tuple(f"mujoco stiff {integrator}" for integrator in ("Euler", "implicitfast", "discrete"))
+
 # Orders of the integrators that stand behind the variants; extrapolation removes powers 2 to 5. The tuned MuJoCo ties
-# its stiffness to the step, so that the softness, not RK4, sets the order. Baumgarte's spring is tied to the step too:
-# it turns a gap into an acceleration divided by the step squared, which may cost two orders.
-ORDERS: dict[str, int] = {
-    "pymunk default": 1,
-    "pymunk tuned": 1,
-    "pymunk leapfrog": 2,
-    "pymunk extended": 6,
-    "mujoco default": 1,
-    "mujoco tuned": 2,
-    "mujoco extended": 4,
-    "mujoco stiff Euler": 1,
-    "mujoco stiff implicitfast": 1,
-    "mujoco stiff discrete": 1,
-    "mujoco RK4 alone": 4,
-    "mujoco extended, free coordinates": 4,
+# its stiffness to the step, so that the softness, not RK4, sets the order.
+ORDERS: Promises = {
+    **CLOSED,
+    "pymunk leapfrog": Promise(2, differences=1),
+    **dict.fromkeys(STIFF_METHODS, STIFF),
+    "mujoco RK4 alone": Promise(4),
+    "mujoco extended, free coordinates": Promise(4),
+    **{f"lagrange {engine.variant}": ideal(engine) for engine in ENGINES if isinstance(engine, Lagrange)},
+    **from_rest(["free_four_bar"]),
+    **prescribed("driven_four_bar"),
     **{
-        f"lagrange {engine.variant}": max(1, INTEGRATORS[engine.integrator] - 2 * (engine.stabilisation == "baumgarte"))
-        for engine in ENGINES
-        if isinstance(engine, Lagrange)
+        ("driven_four_bar", method): Promise(2, rate=1, slip=1, energy=1, reaction=1)
+        for method in (*STIFF_METHODS, "lagrange euler baumgarte")
     },
 }
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from reports.pages.chain_orders import CLOSING, OPEN, STEPPED
+from reports.promises import EXACT, Promise, Promises
+
 # As for one skate, see `skate_known`; with pins between them pymunk's best is a groove, extrapolated from order 1.
-ORDERS: dict[str, int] = {
-    "pymunk default": 1,
-    "pymunk tuned": 1,
-    "pymunk extended": 5,
-    "mujoco default": 1,
-    "mujoco tuned": 1,
-    "mujoco extended": 4,
-    "lagrange euler projection": 1,
-    "lagrange rk4 projection": 4,
+ORDERS: Promises = {
+    "pymunk default": STEPPED,
+    "pymunk tuned": CLOSING,
+    "pymunk extended": Promise(5, slip=4, reaction=2, differences=8),
+    "mujoco default": Promise(1, gap=EXACT),
+    "mujoco tuned": Promise(1, gap=EXACT, slip=2),
+    "mujoco extended": Promise(4, gap=EXACT),
+    "lagrange euler projection": OPEN["lagrange euler projection"],
+    "lagrange rk4 projection": OPEN["lagrange rk4 projection"],
 }
 
 ANOTHER_VEHICLE = "by design: the velocity across is set without the turning that a force at the wheel brings"
