@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
-from engines import Size, check_counts, check_step
+from engines import Size, Softness, check_counts, check_step
 from reference.mechanism import RANK_TOLERANCE, Mechanism
 from reference.trajectory import Trajectory
 
@@ -178,6 +178,13 @@ class Lagrange:
     @property
     def variant(self) -> str:
         return f"{self.integrator} {self.stabilisation}" + (" adaptive" if self.tolerance is not None else "")
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """Baumgarte's springs, which close what the integrator opens; nothing else gives way here."""
+        if self.stabilisation != "baumgarte":
+            return None
+        rate = 1 / (BAUMGARTE_STEPS * dt)
+        return Softness(rate**2, 2 * rate, 0.0, (True,) * mechanism.row_count)
 
     def build(self, mechanism: Mechanism, dt: float) -> _LagrangeRun:
         """A run with steps of dt [s]; raises ValueError for a step that is not a finite time above zero."""

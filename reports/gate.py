@@ -46,7 +46,9 @@ class Case:
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
     """The grid. Raises KeyError for a method without a promise."""
-    return tuple(_case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene))
+    return tuple(
+        _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
+    )
 
 
 def _case(page: Page, scene: Scene, engine: Engine) -> Case:

@@ -59,7 +59,9 @@ def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
     return np.maximum(out, REDUNDANT * np.diag(matrix))
 
 
-def multipliers(mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None) -> tuple[Array, Array]:
+def multipliers(
+    mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None
+) -> tuple[Array, Array]:
     """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones; drives are never soft."""
     if not mechanism.row_count:
         return mechanism.free_fall, np.zeros(0)

@@ -1,8 +1,8 @@
 """What order and softness cost in a scene: predicted by the judge, from the scene's mechanism and its truth alone.
 
 An error A (h / tau)^p has two unknowns, an amplitude A and a time scale tau. Ideal methods of order 2 and of order 4
-give both, and with them what any order costs at any step in this scene: the motion's own rates, however fast, and how it
-carries an early error on are in them. The same for joints that give way: their errors are proportional to how soft
+give both, and with them what any order costs at any step in this scene: the motion's own rates, however fast, and how
+it carries an early error on are in them. The same for joints that give way: their errors are proportional to how soft
 they are, so one softness tells of all.
 """
 
@@ -11,10 +11,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engines import Engine, Softness
 from reference.mechanism import Mechanism
@@ -44,8 +43,8 @@ DIFFERENCES = 1000
 class Prediction:
     """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
     the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
-    themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by kind of
-    softness, at STIFFNESS, DAMPING and COMPLIANCE.
+    themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
+    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE.
     """
 
     step: float
@@ -93,6 +92,8 @@ class Prediction:
         found = 0.0
         if softness.compliance > 0:
             found += self.soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
+            # However stiff the spring, this share of a force is not felt by what gives it.
+            found += softness.compliance if quantity == "reaction" else 0.0
         if not softness.complete:
             lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
             found += self.soft[softness.rows, False][quantity] * lag
@@ -102,9 +103,15 @@ class Prediction:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
-        speed = gap * softness.damping
-        scales = {"slip": 1.0, "velocity": 1.0, "rate": 1 / self.length, "energy": 2 / self.speed}
-        return scales.get(quantity, 0.0) * speed
+        speed, pull = gap * softness.damping, gap * softness.stiffness
+        costs = {
+            "slip": speed,
+            "velocity": speed,
+            "rate": speed / self.length,
+            "energy": 2 * speed / self.speed,
+            "reaction": pull / self.acceleration,
+        }
+        return costs.get(quantity, 0.0)
 
     def differenced(self, order: float, step: float) -> float:
         """The relative error of a reaction that is read as a change of velocity over a step: what it changes in it."""
@@ -142,7 +149,7 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[Kind]:
     return frozenset(found)
 
 
-@lru_cache(maxsize=None)
+@cache
 def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
     """The scene's prediction, worked out once a process: a second or two, more for a hundred bodies.
 

@@ -16,7 +16,8 @@ class Promise:
 
     `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
     costs, where a softness that is tied to the step sets the others. `differences`: reactions are a change of velocity
-    over the step divided by this number; 0 where they are read as forces.
+    over the step divided by this number; 0 where they are read as forces. `amplified`: how many times the usual
+    rounding of velocities a combination of runs carries.
     """
 
     order: float
@@ -27,6 +28,7 @@ class Promise:
     reaction: float | None = None
     integrator: float | None = None
     differences: int = 0
+    amplified: float = 1.0
 
     def of(self, quantity: str) -> float:
         """The order of a quantity of `reports.quantities`."""

@@ -24,15 +24,16 @@ HELD: dict[str, tuple[str, ...]] = {
 ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
 
 
-# Room above the judge's own error of the same order. Methods of one order differ in their constants; a spring of five
-# steps has the constant 5^2 / 2 at second order. The grid's right methods lie within a decade of the judge, most within
-# a third of one; this is that decade and a factor for chance.
-ROOM = 20.0
+# Room above the judge's own error of the same order. Methods of one order differ in their constants: a spring of five
+# steps has 5^2 / 2 at second order, and the grid's right methods lie within a decade of the judge, most within a third
+# of one. It is narrow enough only because a method's own coarser steps bound it too.
+ROOM = 40.0
 # Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
-ROOM_SOFT = 2.0
+ROOM_SOFT = 4.0
 # Room above what a method's own coarser steps let expect of a finer one: their constant is known, and what is left is
-# the next power of the step, and that a largest error over samples is met at another one.
-ROOM_OWN = 3.0
+# the next power of the step, and that a largest error over samples is met at another one. It is below the three of half
+# a decade, so that an error that stays is seen between the two finest steps even at first order.
+ROOM_OWN = 2.5
 
 
 def terms(
@@ -40,6 +41,8 @@ def terms(
 ) -> tuple[float, float, float]:
     """What step, softness and rounding cost in a quantity, before any room is given."""
     rounding = ROUNDING["velocity" if quantity == "slip" else quantity]
+    if quantity in ("rate", "velocity", "slip", "energy"):
+        rounding *= promise.amplified
     if quantity == "reaction" and promise.differences:
         rounding += ROUNDING["velocity"] * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
@@ -79,9 +82,9 @@ def theory(
             order = promise.of(quantity)
             if usable and order < EXACT:
                 known = [getattr(other, quantity) * (row.step / other.step) ** order for other in usable]
-                cost = min(cost, ROOM_OWN * max(known))
-                # Where the judge's soft run lost the motion, the method's own steps are what is known.
-                soft = soft if math.isfinite(soft) else 0.0
+                own = ROOM_OWN * max(known)
+                # Where the judge's soft run lost the motion, the method's own steps are all that is known.
+                cost, soft = (min(cost, own), soft) if math.isfinite(soft) else (own, 0.0)
             bound = min(cost + soft + rounding, prediction.refused(quantity))
             checks.append(
                 Check(name, quantity, measured, bound, (("step", cost), ("softness", soft), ("rounding", rounding)))

@@ -14,8 +14,10 @@ CLOSING = Promise(1, gap=2, differences=1)
 FROM_REST = Promise(1, rate=2, gap=2, slip=1, differences=1)
 # A prescribed motion has no kick to miss: what is left of a pose is its gap.
 PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
-# Extrapolation removes powers 2 to 5. A reaction is a change of velocity over the finest of its eight steps.
-EXTRAPOLATED = Promise(6, reaction=4, differences=8)
+# Extrapolation removes powers 2 to 5. A reaction is a change of velocity over the finest of its eight steps; and the
+# weights of the runs, whose sizes add up to AMPLIFIED, carry the rounding of each.
+AMPLIFIED = 17.0
+EXTRAPOLATED = Promise(6, reaction=4, differences=8, amplified=AMPLIFIED)
 # A loop closed by a spring of five steps: RK4's own error is small beside that of the spring.
 SPRUNG = Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=4)
 

@@ -16,7 +16,7 @@ from reports.pages.chain_orders import OPEN, from_rest
 from reports.pages.pendulum_failures import FAILURES, MAPS, SOLVED
 from reports.pages.pendulum_known import KNOWN
 from reports.pages.told import told
-from reports.promises import EXACT, Promise
+from reports.promises import Promise
 from reports.stroboscope import Strip, stroboscope
 from reports.theme import svg
 
@@ -61,8 +61,6 @@ PAGE = Page(
         "mujoco default, free coordinates": Promise(1),
         "mujoco extended, free, sparse Newton": Promise(4),
         **from_rest(scene.name for scene in SCENES_HERE),
-        # One link from rest: there the delay is all of the error.
-        ("pendulum_1", "mujoco default"): Promise(1, rate=2, gap=EXACT, slip=EXACT),
     },
     known=KNOWN,
 )
