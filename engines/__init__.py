@@ -10,6 +10,7 @@
    again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
 4. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
 5. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`); both go on.
+6. An engine whose joints give way may say how: `softness(mechanism, dt)` returns a Softness, or None where they don't.
 """
 
 from __future__ import annotations
@@ -34,6 +35,21 @@ class Size:
     coordinates: int  # position coordinates that the engine integrates
     rows: int  # scalar constraints that the engine holds by forces
     solver_rows: int  # rows in the engine's solver, empty ones included
+
+
+@dataclass(frozen=True)
+class Softness:
+    """How joints give way: J a = bias - damping slip - stiffness gap - compliance A reaction.
+
+    stiffness [1/s^2], damping [1/s]; compliance: a share of the row's own inverse inertia A. `rows`: which rows of the
+    mechanism (rows,) are so, the others hold exactly. `complete`: whether `bias`, the term of the velocities, is there.
+    """
+
+    stiffness: float
+    damping: float
+    compliance: float
+    rows: tuple[bool, ...]
+    complete: bool = True
 
 
 class Run(Protocol):

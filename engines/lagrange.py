@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
-from engines import Size
+from engines import Size, Softness
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
@@ -174,6 +174,13 @@ class Lagrange(Valid):
     @property
     def variant(self) -> str:
         return f"{self.integrator} {self.stabilisation}" + (" adaptive" if self.tolerance is not None else "")
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """Baumgarte's springs, which close what the integrator opens; nothing else gives way here."""
+        if self.stabilisation != "baumgarte":
+            return None
+        rate = 1 / (BAUMGARTE_STEPS * dt)
+        return Softness(rate**2, 2 * rate, 0.0, (True,) * mechanism.row_count)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> _LagrangeRun:

@@ -10,7 +10,9 @@ from engines import Engine
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.cells import Cell
+from reports.checks import Deviation
 from reports.measure import Measurement
+from reports.promises import Promises
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,8 @@ class Page:
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.quantities`.
-    orders: method ("pymunk tuned") -> the order that theory promises for an ideal constraint. known: (scene, method,
-    check) -> why that check of `tests/test_crosscheck.py` must fail; it begins "upstream:", "by design:" or "ours:".
+    orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
+    method, check) -> by how much that check (`reports.checks`) is missed, and why.
     """
 
     name: str
@@ -111,8 +113,8 @@ class Page:
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
-    orders: Mapping[str, int] = field(default_factory=dict, compare=False)
-    known: Mapping[tuple[str, str, str], str] = field(default_factory=dict, compare=False)
+    orders: Promises = field(default_factory=dict, compare=False)
+    known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""

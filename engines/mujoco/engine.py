@@ -11,17 +11,19 @@ from typing import Literal
 
 import mujoco
 
-from engines import Size, Unsupported
+from engines import Size, Softness, Unsupported
 from engines.mujoco.model import Coordinates, DriveBy, Model, RollBy, build_model
 from engines.mujoco.roll_contact import CompletedContact, RollContact
-from engines.mujoco.roll_rows import RollRows
+from engines.mujoco.roll_rows import RollEquality, RollRows
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.skating import STEPWISE, SkateBy
 from engines.mujoco.slots import SlotBy
 from engines.mujoco.solution import choose_solver
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
-from reference.joints import Skate
+from engines.mujoco.tree import spanning_tree
+from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
@@ -88,6 +90,25 @@ class MuJoCo(Valid):
     @property
     def name(self) -> str:
         return "mujoco"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
+        pins = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+        tree = spanning_tree(mechanism, pins if self.coordinates == "tree" else ())
+        soft = [joint in tree.loops or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
+        if not any(soft):
+            return None
+        stiffness, rolling = self.stiffness, any(isinstance(joint, Roll) for joint in mechanism.joints)
+        if rolling and isinstance(self.rolls, RollContact):
+            stiffness = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps)
+        lacking = rolling and isinstance(self.rolls, RollContact | RollEquality)
+        skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
+        lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
+        gain, damping = stiffness.gains(mechanism, dt)
+        # The impedance of a gap of a millimetre and more; at none it is at most twice as soft.
+        compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * stiffness.softening
+        rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
+        return Softness(gain, damping, compliance, rows, complete=not lacking)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> MuJoCoRun:

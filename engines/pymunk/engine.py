@@ -8,12 +8,14 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
+from engines import Softness
 from engines.pymunk import blades, rollers, slides
 from engines.pymunk.contraction import contraction, gain, sweeps
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.outlines import SHIPPED_CONTACT, Contact
 from engines.pymunk.recorder import PymunkRun
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.validation import Count, Fraction, Name, Positive, Valid, validated
 
 _space = pymunk.Space()
@@ -51,6 +53,18 @@ class Pymunk(Valid):
     @property
     def name(self) -> str:
         return "pymunk"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
+
+        One step stops a slip and closes a share of a gap; a row of the pose before the drift has no term of velocities.
+        """
+        rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
+        stale = (rolling and self.roll != "pivot") or self.skate == "stale groove"
+        closed = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
+        if not stale and (closed == 1 or not mechanism.holonomic.any()):
+            return None
+        return Softness(max(closed, 1e-9) / dt**2, 1 / dt, 0.0, (True,) * mechanism.row_count, complete=False)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:

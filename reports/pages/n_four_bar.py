@@ -9,7 +9,7 @@ from engines.registry import VARIANTS
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.scenes import SCENES
 from reports.page import Material, Page
-from reports.pages.chain_orders import CLOSED
+from reports.pages.chain_orders import CLOSED, from_rest
 from reports.pages.n_four_bar_failures import FAILURES, MAPS, SOFT
 from reports.pages.n_four_bar_known import KNOWN
 from reports.pages.told import told
@@ -51,6 +51,6 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders=CLOSED,
+    orders={**CLOSED, **from_rest(scene.name for scene in SCENES_HERE)},
     known=KNOWN,
 )

@@ -12,10 +12,11 @@ from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes import SCENES
 from reports.page import FEATURED, Material, Page
-from reports.pages.chain_orders import OPEN
+from reports.pages.chain_orders import OPEN, from_rest
 from reports.pages.pendulum_failures import FAILURES, MAPS, SOLVED
 from reports.pages.pendulum_known import KNOWN
 from reports.pages.told import told
+from reports.promises import Promise
 from reports.stroboscope import Strip, stroboscope
 from reports.theme import svg
 
@@ -55,6 +56,11 @@ PAGE = Page(
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
     words=words,
-    orders={**OPEN, "mujoco default, free coordinates": 1, "mujoco extended, free, sparse Newton": 4},
+    orders={
+        **OPEN,
+        "mujoco default, free coordinates": Promise(1),
+        "mujoco extended, free, sparse Newton": Promise(4),
+        **from_rest(scene.name for scene in SCENES_HERE),
+    },
     known=KNOWN,
 )

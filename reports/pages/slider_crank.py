@@ -10,7 +10,7 @@ from engines.registry import VARIANTS
 from reference.scenes import SCENES
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.page import Material, Page
-from reports.pages.chain_orders import CLOSED
+from reports.pages.chain_orders import CLOSED, prescribed
 from reports.pages.slider_crank_failures import FAILURES, GROOVES, MAPS
 from reports.pages.slider_crank_known import KNOWN
 from reports.pages.told import told
@@ -52,6 +52,6 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders=CLOSED,
+    orders={**CLOSED, **prescribed(DrivenSliderCrank.name)},
     known=KNOWN,
 )
