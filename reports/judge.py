@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from engines import Softness
-from reference.mechanism import RANK_TOLERANCE, Mechanism
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.errors import constraint_errors, motion_errors
