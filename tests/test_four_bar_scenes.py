@@ -96,6 +96,15 @@ def test_the_nine_configurations_of_the_figure_end_where_they_begin():
     assert np.max(np.abs(angle[8, 1:] - angle[0, 1:])) < 1e-14
 
 
+def test_a_scene_is_sampled_every_hundredth_of_a_second():
+    assert FreeFourBar(duration=1.0).samples == 100
+    assert FreeFourBar(duration=1.0).spacing == 0.01
+    # A duration that is no multiple: the samples stand as near to that as their number allows.
+    assert DrivenFourBar().samples == round(0.2 * math.pi / 0.01)
+    assert DrivenFourBar().spacing == pytest.approx(0.2 * math.pi / 63, rel=1e-15)
+    assert FreeFourBar(duration=1e-3).samples == 1
+
+
 @pytest.mark.parametrize("each", FREE)
 def test_free_motion_keeps_its_energy_and_its_own_error_is_rounding(each):
     mechanism, times = each.mechanism(), sampled(each)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.joints import Drive, Pin
+from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy, joint_gap, slip
 from tests.mechanisms import bar, four_bar, pendulum
@@ -99,6 +101,25 @@ def test_scales_come_from_the_description():
     assert four_bar().length_scale == pytest.approx(0.8 * np.sqrt(2))
     assert four_bar(10.0, drive=10.0).time_scale == pytest.approx(0.1)
     assert Mechanism((Body("still", 1, 1, (0, 0, 0)),), ()).time_scale == 1.0
+
+
+def test_a_body_that_only_slides_sets_the_time_scale_by_its_length():
+    # 3 and 4 m/s along a blade whose point is 2 m ahead: the length is 2 m, the speed 5 m/s.
+    body = Body("sled", 1, 1, (0, 0, math.atan2(4, 3)), (3, 4, 0))
+    sliding = Mechanism((body,), (Skate("blade", None, "sled", (2.0, 0.0)),))
+    assert sliding.length_scale == 2
+    assert sliding.time_scale == pytest.approx(2 / 5)
+
+
+@pytest.mark.parametrize(("miss", "taken"), [(1e-11, True), (1e-8, False), (1e-6, False)])
+def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
+    sound = pendulum(angle=-np.pi / 2, rate=1.0)
+    (body,) = sound.bodies
+    apart = replace(body, pose=(body.pose[0] + miss, *body.pose[1:]))
+    sliding = replace(body, twist=(body.twist[0] + miss, *body.twist[1:]))
+    for wrong in (apart, sliding):
+        with nullcontext() if taken else pytest.raises(InvalidMechanism, match="'A x' is"):
+            replace(sound, bodies=(wrong,))
 
 
 @pytest.mark.parametrize(
