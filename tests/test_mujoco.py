@@ -152,6 +152,43 @@ def test_free_coordinates_give_the_same_motion_with_every_pin_a_constraint() -> 
     assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 9, 8, 12)
 
 
+def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_first() -> None:
+    mechanism = FREE.mechanism()
+    turned = tuple(
+        replace(pin, first=pin.second, second=None, first_point=pin.second_point, second_point=pin.first_point)
+        if isinstance(pin, Pin) and pin.first is None
+        else pin
+        for pin in mechanism.joints
+    )
+    engine = replace(EXTENDED, coordinates="free")
+    motions = [engine.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
+    # The rows are the negative ones, and the anchor is rounded in another frame.
+    assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
+    grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
+    signs = np.where(grounded, -1.0, 1.0)
+    assert np.abs(motions[0].reaction - signs * motions[1].reaction).max() < 1e-6
+
+
+def test_the_solvers_tolerance_is_measured_by_what_is_not_driven() -> None:
+    compiled = EXTENDED.model(DRIVEN.mechanism(), 1e-3).compiled
+    inertias = sorted(compiled.dof_M0)
+    assert inertias[-1] > 1e10  # the driven crank's armature
+    assert compiled.stat.meaninertia == pytest.approx(np.mean(inertias[:-1]), rel=1e-12)
+
+
+def test_who_listened_to_mujocos_warnings_before_a_run_does_so_afterwards() -> None:
+    def own(message: str) -> None:
+        """Hears nothing."""
+
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(own)
+    try:
+        DEFAULT.build(pendulum(), 1e-3)(2, 1)
+        assert mujoco.get_mju_user_warning() is own
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
 def test_a_tree_closes_only_the_loops() -> None:
     size = EXTENDED.build(FREE.mechanism(), 1e-3).size
     assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 3, 2, 3)
