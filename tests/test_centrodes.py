@@ -211,6 +211,7 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     )
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.read(io.StringIO(as_dxf(shapes)))
+    assert document.units == 6  # metres, in the format's own list
     lines = {line.dxf.layer: np.array([point[:2] for point in line.get_points()]) for line in document.modelspace()}
     np.testing.assert_allclose(lines["SPACE"], shapes.space, atol=1e-12)
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)

@@ -95,6 +95,8 @@ def test_energy_gap_and_slip_need_no_reference():
     np.testing.assert_allclose(energy(mechanism, start), [2 / 3], rtol=1e-15)
     assert np.max(np.abs(joint_gap(mechanism, start))) == 0
     assert np.max(np.abs(slip(mechanism, start))) < 1e-15
+    lifted = replace(start, pose=start.pose + np.array([5.0, 2.0, 1.0]))
+    np.testing.assert_allclose(energy(mechanism, lifted), [2 / 3 + 9.81 * 2], rtol=1e-15)
 
 
 def test_scales_come_from_the_description():

@@ -371,6 +371,18 @@ def test_bad_stiffness_is_refused(make: Any) -> None:
         make()
 
 
+@pytest.mark.parametrize("stiffness", [Shipped(), TiedToStep(), TiedToStep(1.0), Hardened()])
+def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
+    mechanism, dt = four_bar(crank_rate=10.0), 1e-3
+    spring, damper = stiffness.gains(mechanism, dt)
+    assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
+    first, second = stiffness.reference(mechanism, dt)
+    if first < 0:  # the direct form tells both; the other a time constant, at least two steps, and a damping ratio
+        assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
+    else:
+        assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
+
+
 def test_the_shipped_stiffness_is_mujocos_own() -> None:
     equality = mujoco.MjSpec().add_equality()
     assert tuple(equality.solref) == Shipped().reference(FREE.mechanism(), 1e-3)

@@ -173,6 +173,14 @@ def test_a_blade_as_shipped_creeps_whatever_the_step() -> None:
     assert fine > 0.8 * coarse
 
 
+def test_a_thin_wheel_begins_rolling_at_the_blades_own_speed() -> None:
+    mechanism = SLEIGH.mechanism()
+    model = NAMED["thin wheel"].model(mechanism, 1e-3)
+    wheel = model.compiled.joint("wheel skate").dofadr[0]
+    # A tenth of the sleigh's length as radius, and the skate's speed of 1 m/s along its heading.
+    assert model.start().qvel[wheel] == pytest.approx(SLEIGH.speed / (0.1 * mechanism.length_scale), rel=1e-12)
+
+
 def test_without_hardening_written_rows_keep_the_compliance_as_their_floor() -> None:
     soft = NAMED["rows, shipped compliance"]
     assert position_error(soft, SLEIGH, 1e-3) > 0.8 * position_error(soft, SLEIGH, 2e-3) > 1e-6
