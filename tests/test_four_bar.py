@@ -323,6 +323,14 @@ def test_transmission_angle_is_that_of_the_triangle_and_its_extremes_are_reached
         assert np.allclose(linkage.transmission_angle(theta, -1), angle, atol=1e-6)
 
 
+def test_a_coupler_point_across_lies_to_the_left_of_the_coupler():
+    # At the start B = (0, 0.4) and C = (0.4, 0.8): along B -> C is up to the right, and left of that up to the left.
+    diagonal = math.sqrt(0.5)
+    np.testing.assert_allclose(
+        CHAPTER.coupler_point(math.pi / 2, 0.3, 0.1), [0.2 * diagonal, 0.4 + 0.4 * diagonal], atol=1e-15
+    )
+
+
 def test_coupler_point_velocity_and_acceleration_are_its_derivatives():
     start, rate, bend, step = 0.7, -2.0, 3.0, 1e-3
     times = step * np.arange(-4, 5)

@@ -16,7 +16,15 @@ from reference.trajectory import energy, joint_gap, slip
 # No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
 TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
 TURNED = FreeFourBar(
-    crank=0.5, coupler=0.9, rocker=0.8, ground=(-0.6, 0.7), assembly=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0
+    crank=0.5,
+    coupler=0.9,
+    rocker=0.8,
+    ground=(-0.6, 0.7),
+    assembly=-1,
+    rate=-4.0,
+    density=(1.0, 3.0, 0.5),
+    start=1.0,
+    gravity=(3.0, -8.0),
 )
 FREE = (FreeFourBar(), SpinningFourBar(), TRIPLE_ROCKER, TURNED)
 DRIVEN = (
