@@ -114,6 +114,13 @@ def test_a_body_without_joints_falls_freely():
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, 2.0 - 9.81 / 2, 3.0], atol=1e-14)
 
 
+def test_eulers_method_drifts_with_the_velocity_after_its_kick():
+    mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
+    run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
+    # Ten kicks of g dt, each felt by the drift of its own step: g dt^2 (1 + 2 + ... + 10), not (0 + 1 + ... + 9).
+    np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
+
+
 def test_every_integrator_comes_with_every_stabilisation():
     assert len({method.variant for method in METHODS}) == 9
 

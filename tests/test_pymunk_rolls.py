@@ -181,17 +181,18 @@ def test_a_hole_has_no_shape_and_is_refused_in_a_sentence():
 
 
 def test_shapes_of_different_contacts_do_not_see_each_other():
-    """Two discs on one line, overlapping each other: each rolls as if alone."""
-    disc = Rolling.at_angle(Circle(0.4), Line(), 0.0, 0.0)
-    x, y, _ = (float(value) for value in disc.pose(0.0))
-    bodies = tuple(
-        Body(name, 1.0, 0.08, (x, y, 0.0), (-0.4 * rate, 0.0, rate)) for name, rate in (("a", 1.0), ("b", 2.0))
-    )
-    joints = tuple(Roll(f"{body.name} rolls", None, body.name, disc) for body in bodies)
-    mechanism = Mechanism(bodies, joints, (0.0, -9.81))
+    """Two discs on one line, the second reaching half into the first: each rolls as if alone."""
+    bodies, joints = [], []
+    for name, rate, place in (("a", 1.0, 0.0), ("b", 2.0, 0.4)):
+        disc = Rolling.at_angle(Circle(0.4), Line(through=(place, 0.0)), 0.0, 0.0)
+        x, y, _ = (float(value) for value in disc.pose(0.0))
+        bodies.append(Body(name, 1.0, 0.08, (x, y, 0.0), (-0.4 * rate, 0.0, rate)))
+        joints.append(Roll(f"{name} rolls", None, name, disc))
+    mechanism = Mechanism(tuple(bodies), tuple(joints), (0.0, -9.81))
     for engine in METHODS:
         trajectory = engine.build(mechanism, 1e-3)(10, 10)
         assert largest(trajectory.twist[:, :, 2] - [1.0, 2.0]) < 1e-2
+        assert largest(trajectory.twist[:, :, 0] + [0.4, 0.8]) < 1e-2
 
 
 def rolling_side_by_side(count: int) -> Mechanism:
