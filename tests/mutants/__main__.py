@@ -1,7 +1,7 @@
 """Make every mistake of the lists, several at a time, and tell which got through.
 
 The status is 0 if every mistake was caught by a test named beside it, or survived with a reason, and no more than a
-twentieth did; 1 if not; 2 if the tests fail already without any mistake.
+twentieth did; 1 if not; 2 if the tests fail already without any mistake; 130 after an interruption.
 """
 
 from __future__ import annotations
@@ -122,4 +122,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)
