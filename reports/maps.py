@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.patches import Rectangle
 
 from reports.measure import Measurement
 from reports.outcomes import Outcome
+from reports.tables import number
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 HATCHES = {
@@ -45,8 +47,12 @@ def stability_map(
     """Step against a parameter, one panel a method, each cell coloured, hatched and lettered by its outcome.
 
     `rows` are (value of the parameter, measurement). A cell that finished shows the exponent of its angle error.
+    Raises ValueError where two rows would stand in one place: only one of them could be seen.
     """
     rows = list(rows)
+    for (method, value, step), count in Counter((row.method, value, row.step) for value, row in rows).items():
+        if count > 1:
+            raise ValueError(f"map: there are {count} rows of {method!r} at {value:g} and a step of {step:.3g} s")
     methods = list(dict.fromkeys(row.method for _, row in rows))
     values = sorted({value for value, _ in rows})
     steps = sorted({row.step for _, row in rows})
@@ -66,7 +72,7 @@ def stability_map(
             panel.set_xlim(0, len(values))
             panel.set_ylim(0, len(steps))
             panel.set_xticks(np.arange(len(values)) + 0.5, [f"{value:g}" for value in values])
-            panel.set_yticks(np.arange(len(steps)) + 0.5, [f"{step:.0e}".replace("e-0", "e-") for step in steps])
+            panel.set_yticks(np.arange(len(steps)) + 0.5, [number(step) for step in steps])
             panel.tick_params(length=0)
         for index, panel in enumerate(axes[: len(methods)]):
             lowest, leftmost = index + columns >= len(methods), index % columns == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from reports.measure import Measurement
+from reports.outcomes import Outcome
 from reports.page import Page
 from reports.sweep import Verdict, best_of, by_method, sweeps
 from reports.tables import markdown, milliseconds, number
@@ -25,19 +26,33 @@ def overview(entries: Iterable[tuple[Page, Sequence[Measurement]]], folder: str 
 
 
 def _cell(rows: Sequence[Measurement], quantity: str, engine: str, variant: str) -> str:
-    """'1.7e-12 rad, 11 ms, order 6', '9e-3 rad, 2 ms, stays', or the outcome where no step gave an answer."""
+    """'1.7e-12 rad, 11 ms, order 6', '9e-3 rad, 2 ms, stays', or the outcome where no step gave an answer.
+
+    The last words say what a smaller step brings: an order only where the error falls to the finest step.
+    """
     members = [row for row in rows if (row.engine, row.variant) == (engine, variant)]
     best = best_of(members, engine, variant, quantity)
     if best is None:
         return ", ".join(dict.fromkeys(row.outcome for row in members)) or "-"
     sweep = by_method(sweeps(members), quantity)[members[0].scene, engine, variant]
+    finest = min(members, key=lambda row: row.step)
     match sweep.verdict:
+        case _ if not Outcome(finest.outcome).comparable:
+            end = f", then **{finest.outcome}**"
         case Verdict.PLATEAU:
             end = ", **stays**"
         case Verdict.ROUNDING:
             end = ", to rounding"
+        case Verdict.FALLS if sweep.points >= 2:
+            end = f", order {sweep.order:.1f}"
+        case Verdict.LEVELS:
+            end = ", **levels off**"
+        case Verdict.GROWS:
+            end = ", **grows**"
+        case Verdict.ERRATIC:
+            end = ", **erratic**"
         case _:
-            end = f", order {sweep.order:.1f}" if sweep.points >= 2 else ""
+            end = ""
     return f"{number(getattr(best, quantity))} {sweep.quantity.unit}, {milliseconds(best.cpu)} ms{end}"
 
 

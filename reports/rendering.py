@@ -69,7 +69,8 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
 
     Raises jinja2.UndefinedError when the template names what the page does not give.
     """
-    rows = judged(material.sweep(page.scenes))
+    rows = judged(material.sweep(page.scenes), page.quantity)
+    met = {row.outcome for row in (*rows, *material.of(page.extra_cells()))}
     files: dict[str, str] = {}
     pictures: dict[str, str] = {}
 
@@ -99,7 +100,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
             pictures=pictures,
             failures=[_told_failure(failure, material) for failure in page.failures],
             maps=[told for told in told_maps if told],
-            outcomes=[outcome for outcome in Outcome if outcome in {row.outcome for row in material.rows.values()}],
+            outcomes=[outcome for outcome in Outcome if outcome in met],
             foot=foot(command),
             **page.words(material),
         )
@@ -174,7 +175,7 @@ def render_index(pages: Iterable[tuple[Page, Material]], command: str) -> str:
         .get_template("index.md")
         .render(
             pages=[page for page, _ in pages],
-            overview=overview((page, judged(material.sweep(page.scenes))) for page, material in pages),
+            overview=overview((page, judged(material.sweep(page.scenes), page.quantity)) for page, material in pages),
             outcomes=list(Outcome),
             foot=foot(command),
         )
@@ -183,7 +184,7 @@ def render_index(pages: Iterable[tuple[Page, Material]], command: str) -> str:
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
     """The readme with the line of each page's first scene in it; raises ValueError where its marks are missing."""
-    firsts = [(page, judged(material.sweep(page.scenes[:1]))) for page, material in pages.items()]
+    firsts = [(page, judged(material.sweep(page.scenes[:1]), page.quantity)) for page, material in pages.items()]
     return with_overview(text, overview(firsts, "reports/results/"))
 
 

@@ -14,6 +14,7 @@ from reference.curves.round import Line
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingScene
 from reports.measure import Measurement
+from reports.outcomes import Outcome
 from reports.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 COEFFICIENTS = (0.2, 0.5, 1.0)
@@ -119,11 +120,14 @@ def draw_plateaus(
 
 
 def _by_step(panel: Axes, rows: Sequence[tuple[float, Measurement]], theme: Theme) -> None:
-    """One line a step, the value across; a failed run has no point."""
+    """One line a step, the value across; a failed run has no point. Raises ValueError for more steps than looks."""
     looks = (("o", theme.pymunk, "-"), ("s", theme.mujoco, "--"), ("^", theme.lagrange, ":"))
     steps = sorted({row.step for _, row in rows}, reverse=True)
+    if len(steps) > len(looks):
+        raise ValueError(f"plateaus: there are {len(steps)} steps, and {len(looks)} looks to tell them apart")
     for step, (marker, colour, line) in zip(steps, looks, strict=False):
-        points = sorted((value, row.angle) for value, row in rows if row.step == step and math.isfinite(row.angle))
+        usable = [(value, row) for value, row in rows if row.step == step and Outcome(row.outcome).comparable]
+        points = sorted((value, row.angle) for value, row in usable if math.isfinite(row.angle))
         if points:
             panel.plot(*zip(*points, strict=True), marker=marker, color=colour, linestyle=line, markersize=5.5,
                        label=f"step {step:.0e} s".replace("e-0", "e-"))  # fmt: skip

@@ -102,7 +102,7 @@ def sweep_words(sweep: Sweep) -> str:
 
 
 def reaction_table(rows: Iterable[Measurement]) -> str:
-    """How exact each method's reactions are at its finest finished step, and of how many rows it tells them."""
+    """How exact each method's reactions are at the step where they are best, and of how many rows it tells them."""
     body = []
     for members in groups(rows).values():
         usable = [row for row in members if Outcome(row.outcome).comparable]
@@ -120,13 +120,14 @@ def size_table(rows: Iterable[Measurement]) -> str:
     own: list[str] = []
     sizes: dict[tuple[int, ...], dict[str, list[str]]] = {}
     for members in groups(rows).values():
-        row = members[0]
+        row = next((row for row in members if row.bodies), None)
+        if row is None:  # refused, or lost before it was built: it knows neither its own size nor the mechanism's
+            continue
         if not own:
             freedoms = f"*the mechanism itself, {row.own_freedoms} freedom{'' if row.own_freedoms == 1 else 's'}*"
             own = [*map(str, (row.own_bodies, row.own_coordinates, row.own_rows)), NOTHING, freedoms]
-        if row.bodies:
-            size = (row.bodies, row.coordinates, row.rows, row.solver_rows)
-            sizes.setdefault(size, {}).setdefault(row.engine, []).append(row.variant)
+        size = (row.bodies, row.coordinates, row.rows, row.solver_rows)
+        sizes.setdefault(size, {}).setdefault(row.engine, []).append(row.variant)
     body = [
         [*map(str, size), "; ".join(f"{engine} ({', '.join(variants)})" for engine, variants in by_engine.items())]
         for size, by_engine in sizes.items()
@@ -135,12 +136,18 @@ def size_table(rows: Iterable[Measurement]) -> str:
 
 
 def outcome_grid(rows: Iterable[Measurement]) -> str:
-    """An experiment at a glance: a line a method, a column a step, the outcome and one number in each."""
+    """An experiment at a glance: a line a method, a column a step, the outcome and one number in each.
+
+    Raises ValueError where two rows would stand in one place: only one of them could be seen.
+    """
     rows = list(rows)
     steps = sorted({row.step for row in rows}, reverse=True)
     by_method_and_step: dict[str, dict[float, str]] = {}
     for row in rows:
-        by_method_and_step.setdefault(row.method, {})[row.step] = _outcome_in_brief(row)
+        line = by_method_and_step.setdefault(row.method, {})
+        if row.step in line:
+            raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {number(row.step)} s")
+        line[row.step] = _outcome_in_brief(row)
     body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
     return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1)
 

@@ -8,17 +8,21 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from reports.cells import Cell
 
 
 def print_table(console: Console, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
-    """A table whose first `left` columns are words, the others numbers."""
-    table = Table(title=title, title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
+    """A table whose first `left` columns are words, the others numbers.
+
+    All of it is plain text: a unit in brackets, as in "step [s]", is no markup.
+    """
+    table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
     for index, name in enumerate(header):
-        table.add_column(name, justify="left" if index < left else "right", overflow="fold")
+        table.add_column(Text(name), justify="left" if index < left else "right", overflow="fold")
     for row in rows:
-        table.add_row(*(cell.replace("[", "\\[") for cell in row))
+        table.add_row(*map(Text, row))
     console.print(table)
 
 

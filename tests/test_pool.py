@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from reports.cells import Cell
-from reports.fingerprint import _imports, fingerprint
 from reports.measure import measure
 from reports.outcomes import Outcome, describe_exit
 from reports.pool import run_cells
@@ -70,26 +69,6 @@ def test_stored_cells_are_not_run_again_unless_asked(tmp_path):
         assert run_into(store, cells, fresh=True) == 2
         rows = store.get(cells)
     assert [rows[cell].every for cell in cells] == [1, 2]
-
-
-def test_a_changed_setting_or_number_makes_another_cell():
-    cell = Cell(Disc(), Toy(), 1)
-    others = [
-        replace(cell, scene=Disc(rate=3.0)),
-        replace(cell, engine=Toy(factor=2.0)),
-        replace(cell, engine=FailingToy()),
-        replace(cell, every=2),
-        replace(cell, samples=7),
-        replace(cell, purpose="failure"),
-    ]
-    keys = {cell.key, *(other.key for other in others)}
-    assert len(keys) == 1 + len(others)
-    assert Cell(Disc(), Toy(), 1).key == cell.key
-
-
-def test_a_fingerprint_covers_what_a_module_imports():
-    assert "reference.scene" in _imports(ROOT / "tests" / "toys.py")
-    assert fingerprint(Toy()) != fingerprint(Cell(Disc(), Toy(), 1).step)
 
 
 @pytest.mark.parametrize(("field", "value"), [("every", 0), ("every", 1.5), ("samples", -1)])

@@ -14,11 +14,11 @@ import pytest
 from jinja2 import UndefinedError
 
 from reports import __main__ as command_line
-from reports import charts, drawings, tables
+from reports import charts
 from reports.cells import QUICK, Cell, sweep_cells
 from reports.choice import BadInput, choose_cells, choose_engines, choose_scenes, nearest, steps_per_sample
 from reports.measure import TIMINGS, measure
-from reports.outcomes import LETTERS, MEANINGS, Outcome
+from reports.outcomes import Outcome
 from reports.page import Failure, Material, Observation, Page, StabilityMap
 from reports.rendering import environment, render_all
 from reports.sweep import judged
@@ -150,57 +150,15 @@ def test_ink_can_be_read_on_every_paper_it_stands_on(theme):
         assert contrast(mark, theme.paper) >= 3
 
 
-def test_the_front_holds_what_nothing_beats():
-    points = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 5e-3), (4.0, 1e-3), (5.0, 1e-9)]
-    assert charts.pareto(points) == [(1.0, 1e-2), (2.0, 1e-3), (5.0, 1e-9)]
-
-
-def test_methods_of_one_engine_differ_without_colours():
-    variants = ["default", "tuned", "extended", "fourth", "fifth"]
-    looks = [charts.look("pymunk", variant, variants, LIGHT) for variant in variants]
-    assert len({(str(look["linestyle"]), look["fillstyle"], look["markerfacecolor"]) for look in looks}) == 5
-    assert len(set(charts.MARKERS.values())) == len(charts.MARKERS)
-
-
 def test_a_chart_without_any_row_is_not_an_error_and_failed_rows_are_not_drawn(material):
     failed = [row for row in material.rows.values() if not Outcome(row.outcome).comparable]
     assert svg(charts.error_against_step(failed), "nothing")
     assert svg(charts.work_precision([], theme=LIGHT), "nothing")
 
 
-def test_every_outcome_has_a_meaning_and_a_letter():
-    assert set(MEANINGS) == set(LETTERS) == set(Outcome)
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (1.234e-7, "1.2e-7"),
-        (0.25, "0.25"),
-        (123.4, "123"),
-        (math.nan, "-"),
-        (math.inf, "∞"),
-        (2e4, "2.0e4"),
-    ],
-)
-def test_numbers_are_printed_with_two_digits(value, text):
-    assert tables.number(value) == text
-
-
 def test_a_template_that_names_what_is_not_given_fails():
     with pytest.raises(UndefinedError):
         environment().from_string("{{ nothing }}").render()
-
-
-def test_drawn_points_are_the_joints_in_the_world():
-    mechanism = Disc().mechanism()
-    pose = np.array([[1.0, 2.0, 0.3]])
-    assert drawings.body_points(mechanism, pose)["disc"] == pytest.approx(np.array([[1.0, 2.0]]))
-    assert drawings.ground_points(mechanism) == pytest.approx(np.zeros((1, 2)))
-    assert drawings.visibly_off(mechanism, pose, pose + 0.1, 1.0)
-    assert not drawings.visibly_off(mechanism, pose, pose + 1e-4, 1.0)
-    assert not drawings.visibly_off(mechanism, pose, pose * np.nan, 1.0)
 
 
 def test_judging_upgrades_sweeps_and_leaves_failures_alone(material):

@@ -16,13 +16,13 @@ from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cells import estimated_cost
 from reports.choice import QUICK_CELL, choose_cells
-from reports.growth import Point, Series, exponent, series_of
+from reports.growth import series_of
 from reports.measure import measure
 from reports.page import Material
-from reports.pages.scaling import CELLS, COSTLY, PAGE, SMALL, STEP, crossing
+from reports.pages.scaling import CELLS, COSTLY, PAGE, SMALL, STEP
 from reports.reference_method import BandedChain
 from reports.rendering import render_page
-from reports.scaling_chart import _spread, scaling_chart
+from reports.scaling_chart import scaling_chart
 
 TINY = tuple(cell for cell in CELLS if cell.scene.links <= 3)
 
@@ -68,30 +68,6 @@ def test_the_reference_refuses_what_is_no_chain_of_uniform_bars():
     ):
         with pytest.raises(Unsupported, match=why):
             BandedChain().build(mechanism, STEP)
-
-
-def test_a_power_law_is_found_at_the_large_end_only():
-    sizes = [1, 10, 100, 200, 400]
-    assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
-    assert exponent(sizes, [math.nan, 7, math.nan, 14, 0])[1:] == (10, 200)
-    assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
-
-
-def test_a_crossing_is_where_the_first_becomes_the_dearer():
-    def line(*costs):
-        return Series(
-            "e", "v", tuple(Point(n, c, math.nan, "finished") for n, c in zip((1, 10, 100), costs, strict=True))
-        )
-
-    assert crossing(line(1, 2, 9), line(3, 3, 3)) == (10, 100)
-    assert crossing(line(1, 1, 1), line(3, 3, 3)) is None
-    assert crossing(None, line(1, 1, 1)) is None
-
-
-def test_labels_that_would_overlap_are_moved_apart_about_their_middle():
-    assert _spread([0.0, 0.0, 5.0], 1.0) == pytest.approx([-0.5, 0.5, 5.0])
-    found = _spread([0.0, 0.9, 1.0, 1.1, 4.0], 1.0)
-    assert min(np.diff(found)) >= 1.0 - 1e-12
 
 
 def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alone():

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from reports.cells import FULL, Cell
-from reports.errors import largest, root_mean_square
 from reports.measure import measure
 from reports.outcomes import Outcome
-from reports.sweep import Verdict, fit, judged, sweeps
+from reports.quantities import QUANTITIES
+from reports.sweep import Verdict, best_of, by_method, fit, groups, judged, sweeps
+from tests.rows import falling, row, row_of
 from tests.toys import Disc, FailingToy, Toy
 
 STEPS = np.array([1e-2 / every for every in FULL])
@@ -102,7 +103,96 @@ def test_failed_cells_are_left_out_of_a_fit():
     assert all(sweep.verdict is Verdict.TOO_FEW for sweep in sweeps(rows))
 
 
-def test_errors_over_nothing_known_are_unknown_and_infinite_ones_are_not_hidden():
-    assert math.isnan(largest(np.array([np.nan])))
-    assert math.isnan(root_mean_square(np.array([])))
-    assert largest(np.array([1.0, -np.inf, np.nan])) == np.inf
+def test_an_error_that_meets_rounding_by_accident_and_grows_a_thousandfold_has_not_reached_it():
+    grown = [1e-3, 1e-13, 1e-9, 1.01e-9]  # a change of sign, then more than a hundred times rounding
+    assert fit(STEPS[:4], grown, ROUNDING)[0] is not Verdict.ROUNDING
+    kept = [1e-3, 1e-13, 1e-10, 0.99e-9]
+    assert fit(STEPS[:4], kept, ROUNDING)[0] is Verdict.ROUNDING
+
+
+def test_verdicts_by_hand():
+    steps = [1e-1, 1e-2, 1e-3, 1e-4]
+    verdict, order, points, spread, plateau = fit(steps, [1e-2, 1e-4, 1e-6, 1e-8], ROUNDING)
+    assert (verdict, order, points) == (Verdict.FALLS, pytest.approx(2.0), 4)
+    assert spread < 1e-9
+    assert math.isnan(plateau)
+    assert fit(steps, [1e-2, 2e-5, 2e-5, 2e-5], ROUNDING)[0] is Verdict.PLATEAU
+    assert fit(steps, [1e-2, 2e-5, 2e-5, 2e-5], ROUNDING)[4] == pytest.approx(2e-5)
+    assert fit(steps, [1e-2, 1e-4, 1e-6, 1e-6], ROUNDING)[0] is Verdict.LEVELS
+    assert fit(steps, [1e-6, 1e-5, 1e-4, 1e-3], ROUNDING)[0] is Verdict.GROWS
+    assert fit(steps, [1e-2, 1e-4, 1e-6, 1e-3], ROUNDING)[0] is Verdict.ERRATIC
+    # Slopes 1 and 2: the least squares between them, and how far each is from it.
+    _, order, points, spread, _ = fit(steps[:3], [1e-2, 1e-3, 1e-5], 0.0)
+    assert (order, points, spread) == (pytest.approx(1.5), 3, pytest.approx(0.5))
+
+
+def test_steps_may_come_in_any_order_and_unknown_errors_are_left_out():
+    steps, errors = [1e-3, 1e-1, 1e-2, 1e-4], [1e-6, 1e-2, 1e-4, math.inf]
+    assert fit(steps, errors, ROUNDING)[:3] == (Verdict.FALLS, pytest.approx(2.0), 3)
+
+
+def test_a_sweep_is_of_one_method_in_one_scene_with_each_quantity_its_own():
+    rows = []
+    for scene, method, shift in (("one", "a x", 0), ("two", "a x", 1), ("one", "b x", 2)):
+        for step in (1e-3, 1e-1, 1e-2):
+            errors = {q.name: 1e-2 * step ** (1 + shift) * (i + 2) for i, q in enumerate(QUANTITIES)}
+            rows.append(row_of(method, scene=scene, step=step, **errors))
+    rows.append(row_of("a x", scene="one", step=1e-4, angle=1e-30, outcome=Outcome.SATURATED))
+    rows.append(row_of("a x", scene="one", step=1e-5, angle=1e-30, purpose="failure"))
+    found = sweeps(rows)
+    assert len(found) == 3 * len(QUANTITIES)
+    for i, q in enumerate(QUANTITIES):
+        own = by_method(found, q.name)
+        for shift, key in enumerate((("one", "a", "x"), ("two", "a", "x"), ("one", "b", "x"))):
+            sweep = own[key]
+            assert (sweep.scene, sweep.engine, sweep.variant, sweep.quantity) == (*key, q)
+            assert sweep.method == " ".join(key[1:])
+            assert (sweep.best, sweep.best_step) == (pytest.approx(1e-2 * 1e-3 ** (1 + shift) * (i + 2)), 1e-3)
+    assert by_method(found, "angle")["one", "a", "x"].order == pytest.approx(1.0)
+    assert by_method(found, "angle")["two", "a", "x"].order == pytest.approx(2.0)
+
+
+def test_groups_go_from_coarse_to_fine_and_leave_out_what_is_no_sweep():
+    rows = [row_of("a x", step=1e-3), row_of("b x"), row_of("a x", step=1e-1), row_of("a x", purpose="map")]
+    assert {key: [r.step for r in members] for key, members in groups(rows).items()} == {
+        ("disc", "a", "x"): [1e-1, 1e-3],
+        ("disc", "b", "x"): [row().step],
+    }
+
+
+def judgements(*errors: float, quantity: str = "angle") -> list[str]:
+    return [r.outcome for r in judged(falling("a x", errors, quantity), quantity)]
+
+
+def test_a_sweep_judges_its_rows():
+    assert judgements(1e-2, 1e-4, 1e-6) == ["converged"] * 3
+    assert judgements(1e-2, 1e-4) == ["finished"] * 2  # nothing to check a slope by
+    assert judgements(1e-2, 1e-12) == ["converged"] * 2
+    # Only those near the plateau are on it.
+    assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5) == ["finished", "finished", "plateau", "plateau", "plateau"]
+    assert judgements(1e-2, 1e-4, 1e-6, 1e-6) == ["finished"] * 4  # it may be a crossing of signs
+    assert judgements(1e-6, 1e-5, 1e-4) == ["finished"] * 3
+    assert judgements(1e-2, 1e-4, 1e-6, quantity="position") == ["converged"] * 3
+
+
+def test_only_what_finished_in_a_sweep_is_judged():
+    rows = falling("a x", (1e-2, 1e-4, 1e-6))
+    torn, other = row_of("a x", step=1e-5, outcome=Outcome.TORN), row_of("a x", step=1e-6, purpose="failure")
+    assert [r.outcome for r in judged([*rows, torn, other])] == ["converged"] * 3 + ["torn", "finished"]
+    assert [r.angle for r in judged(rows)] == [r.angle for r in rows]
+
+
+def test_the_best_row_has_the_least_error_of_those_that_can_be_compared():
+    rows = [
+        row_of("a x", angle=1e-3, position=1e-9, step=1e-1),
+        row_of("a x", angle=1e-5, position=1e-2, step=1e-2),
+        row_of("a x", angle=1e-4, position=1e-5, step=1e-3),
+        row_of("a x", angle=1e-9, step=1e-4, outcome=Outcome.RESET),
+        row_of("a x", angle=math.nan, step=1e-5),
+        row_of("a y", angle=1e-12),
+        row_of("b x", angle=1e-12),
+    ]
+    assert best_of(rows, "a", "x").step == 1e-2
+    assert best_of(rows, "a", "x", "position").step == 1e-1
+    assert best_of(rows, "c", "x") is None
+    assert best_of(rows[3:5], "a", "x") is None

@@ -1,0 +1,377 @@
+"""Stale results: a byte or a version that a row depends on makes it run again, and nothing else does."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import platform
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from engines import lagrange, mujoco, pymunk
+from engines.extrapolated import Extrapolated
+from reference.four_bar.scenes import FreeFourBar
+from reports import fingerprint as fingerprint_module
+from reports.cells import Cell
+from reports.fingerprint import fingerprint, modules_behind
+from reports.measure import blank
+from reports.store import Store
+from tests.toys import Disc, FailingToy, Toy
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+# Looking through all that is installed takes half a second, and is the same in every test.
+DISTRIBUTIONS = importlib.metadata.packages_distributions()
+
+
+def forget() -> None:
+    """Files and versions are read once a process; here they change. What a text says of imports does not."""
+    for name, member in vars(fingerprint_module).items():
+        if hasattr(member, "cache_clear") and name != "_named_in":
+            member.cache_clear()
+
+
+@pytest.fixture(autouse=True)
+def _fresh(monkeypatch):
+    monkeypatch.setattr(importlib.metadata, "packages_distributions", lambda: DISTRIBUTIONS)
+    forget()
+    yield
+    forget()
+
+
+# A package of somebody else: an engine in it, what it imports in every way there is, and what it does not import.
+FILES = {
+    "theirs/__init__.py": "",
+    "theirs/plugin.py": """
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+
+from . import near
+from .deep.inner import VALUE
+import theirs.plain as other
+
+LATE = import_module(".late", __package__)
+LATER = __import__("theirs.later")
+TABLE = Path(__file__).with_name("table.csv")
+GRID = Path(__file__).parent / "data" / "grid.bin"
+
+@dataclass(frozen=True)
+class Base:
+    variant: str = "default"
+    name: str = "theirs"
+
+@dataclass(frozen=True)
+class Plugin(Base):
+    settings: dict = field(default_factory=dict, hash=False)
+
+def helper():
+    from theirs import nested
+""",
+    "theirs/near.py": "from theirs import further",
+    "theirs/further.py": "from .deep import inner",
+    "theirs/deep/__init__.py": "START = 1",
+    "theirs/deep/inner.py": "VALUE = 1",
+    "theirs/plain.py": "import theirs.furthest",
+    "theirs/furthest.py": "",
+    "theirs/late.py": "",
+    "theirs/later.py": "",
+    "theirs/nested.py": "",
+    "theirs/table.csv": "1,2",
+    "theirs/data/grid.bin": "1",
+    "theirs/unrelated.py": "from theirs import plugin",
+    "theirs/notes.txt": "a file that no module names",
+    "theirs/data/other.bin": "1",
+    "theirs_too.py": "import theirs",
+    # An engine that holds others, in every way that a field can; it imports none of them.
+    "around.py": """
+from dataclasses import dataclass
+from typing import Any
+
+@dataclass(frozen=True)
+class Around:
+    held: Any
+    variant: str = "around"
+    name: str = "around"
+""",
+}
+UNRELATED = ("theirs/unrelated.py", "theirs/notes.txt", "theirs/data/other.bin", "theirs_too.py", "around.py")
+
+
+@pytest.fixture
+def theirs(tmp_path, monkeypatch):
+    """Their package written down and on the path; gives (folder, an engine of theirs)."""
+    for name, text in FILES.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    known = set(sys.modules)
+    yield tmp_path, importlib.import_module("theirs.plugin").Plugin()
+    for name in set(sys.modules) - known:
+        del sys.modules[name]
+
+
+def changed(path: Path, *values: Any) -> bool:
+    """Whether one byte more in a file changes the fingerprint of these values."""
+    before = fingerprint(*values)
+    text = path.read_bytes()
+    path.write_bytes(text + b"\n")
+    forget()
+    after = fingerprint(*values)
+    path.write_bytes(text)
+    forget()
+    assert fingerprint(*values) == before  # it is the bytes, not when they were written
+    return before != after
+
+
+@pytest.mark.parametrize("name", [name for name in FILES if name not in UNRELATED])
+def test_a_byte_changed_in_a_file_that_an_engine_needs_makes_its_rows_stale(theirs, name):
+    folder, engine = theirs
+    assert changed(folder / name, engine)
+
+
+@pytest.mark.parametrize("name", UNRELATED)
+def test_a_byte_changed_in_a_file_that_no_module_of_it_names_does_not(theirs, name):
+    folder, engine = theirs
+    assert not changed(folder / name, engine)
+
+
+def test_bytes_count_and_not_names_alone_and_names_and_not_bytes_alone(theirs):
+    folder, engine = theirs
+    before = fingerprint(engine)
+    (folder / "theirs/furthest.py").rename(folder / "theirs/renamed.py")
+    (folder / "theirs/plain.py").write_text("import theirs.renamed", encoding="utf-8")
+    forget()
+    renamed = fingerprint(engine)
+    assert renamed != before
+    # The same two texts, exchanged between two files.
+    (folder / "theirs/late.py").write_text("A = 1", encoding="utf-8")
+    forget()
+    one = fingerprint(engine)
+    (folder / "theirs/late.py").write_text("", encoding="utf-8")
+    (folder / "theirs/later.py").write_text("A = 1", encoding="utf-8")
+    forget()
+    assert len({before, renamed, one, fingerprint(engine)}) == 4
+
+
+def test_the_same_bytes_under_another_name_are_another_source(theirs):
+    folder, engine = theirs
+    text = "try:\n    import theirs.fast\nexcept ImportError:\n    import theirs.slow\n"
+    (folder / "theirs/furthest.py").write_text(text, encoding="utf-8")
+    (folder / "theirs/fast.py").write_text("VALUE = 1", encoding="utf-8")
+    forget()
+    before = fingerprint(engine)
+    (folder / "theirs/fast.py").rename(folder / "theirs/slow.py")
+    forget()
+    assert fingerprint(engine) != before
+
+
+def test_a_checkout_in_another_folder_has_the_same_fingerprint(theirs, tmp_path, monkeypatch):
+    folder, engine = theirs
+    before = fingerprint(engine)
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    (folder / "theirs").rename(other / "theirs")
+    for name, module in sys.modules.items():
+        if name.split(".")[0] == "theirs" and module.__file__:
+            monkeypatch.setattr(module, "__file__", module.__file__.replace(str(folder), str(other)))
+    monkeypatch.syspath_prepend(other)
+    forget()
+    assert fingerprint(engine) == before
+
+
+def test_what_an_engine_holds_counts_wherever_it_holds_it(theirs):
+    folder, inner = theirs
+    path = folder / "theirs/furthest.py"
+    Around = importlib.import_module("around").Around
+    kind = type(inner)
+    for held in (inner, (1, [inner]), {"inner": inner}, {kind: 1}, frozenset({inner}), kind, Around(inner)):
+        assert changed(path, Around(held)), held
+    module = sys.modules["theirs.plugin"]
+    assert changed(path, Around(module.helper))
+    assert changed(path, replace(inner, settings={"base": Toy(), "other": inner}))
+    assert not changed(path, Around("theirs"))
+    assert changed(path, Extrapolated(inner, "extended", (1, 2), (2,)))
+
+
+def test_the_classes_that_an_engine_derives_from_count(theirs):
+    folder, _ = theirs
+    (folder / "derived.py").write_text(
+        "from dataclasses import dataclass\nimport theirs.plugin as p\n\n\ndef derive():\n    return p.Plugin", "utf-8"
+    )
+    derived = type("Derived", (importlib.import_module("derived").derive(),), {"__module__": "derived"})()
+    assert {"derived", "theirs.plugin"} <= modules_behind(derived)
+    assert {"derived", "theirs.plugin"} <= modules_behind((type(derived),))
+
+
+class Bytes:
+    """`Path.read_bytes` as if one of our own files had a byte more."""
+
+    def __init__(self, monkeypatch):
+        self.path: Path | None = None
+        self.read = Path.read_bytes
+        monkeypatch.setattr(Path, "read_bytes", lambda path: self.read(path) + (b"\n" if path == self.path else b""))
+
+    def touching(self, path: Path | None) -> None:
+        self.path = path
+        forget()
+
+
+@pytest.fixture
+def touch(monkeypatch):
+    return Bytes(monkeypatch).touching
+
+
+def needed(*values: Any) -> set[str]:
+    """The files of ours, without their ending, that the digest of these values reads."""
+    read = []
+    with pytest.MonkeyPatch.context() as patch:
+        original = Path.read_bytes
+        patch.setattr(Path, "read_bytes", lambda path: read.append(path) or original(path))
+        forget()
+        fingerprint(*values)
+    return {path.relative_to(ROOT).with_suffix("").as_posix() for path in read if path.is_relative_to(ROOT)}
+
+
+@pytest.mark.parametrize(
+    ("engine", "own", "others"),
+    [
+        # Its package makes the extended variant by extrapolation, so that file is run with it.
+        (pymunk.TUNED, "engines/pymunk", ("engines/mujoco", "engines/lagrange")),
+        (mujoco.TUNED, "engines/mujoco", ("engines/pymunk", "engines/lagrange", "engines/extrapolated")),
+        (lagrange.Lagrange("rk4", "projection"), "engines/lagrange", ("engines/pymunk", "engines/mujoco")),
+        (Extrapolated(pymunk.TUNED, "x", (1, 2), (2,)), "engines/pymunk", ("engines/mujoco", "engines/lagrange")),
+    ],
+    ids=("pymunk", "mujoco", "lagrange", "extrapolated pymunk"),
+)
+def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothing_else(engine, own, others):
+    files = needed(FreeFourBar(), engine)
+    assert any(name.startswith(own) for name in files)
+    assert {
+        "reference/four_bar/scenes",
+        "reference/four_bar/linkage",
+        "reference/mechanism",
+        "engines/__init__",
+    } <= files
+    assert not [name for name in files if name.startswith(others)]
+    assert not [
+        name for name in files if name.startswith(("reference/pendulum", "reference/skate", "reference/wheels"))
+    ]
+    # What only prints or draws can't change a row.
+    assert {name for name in files if name.startswith("reports/")} == {
+        f"reports/{name}"
+        for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool", "timing")
+    }
+
+
+def test_the_file_of_a_wrapped_engine_counts():
+    inner = mujoco.TUNED
+    around = needed(Disc(), Extrapolated(inner, "x", (1, 2), (2,)))
+    assert needed(Disc(), inner) < around
+    assert around - needed(Disc(), inner) == {"engines/extrapolated"}
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "engine"),
+    [
+        ("reports/measure.py", Disc(), Toy()),
+        ("reports/errors.py", Disc(), Toy()),
+        ("reports/pool.py", Disc(), Toy()),
+        ("reference/joints.py", Disc(), Toy()),
+        ("tests/toys.py", Disc(), Toy()),
+        ("engines/mujoco/model.py", Disc(), mujoco.TUNED),
+        ("engines/pymunk/model.py", Disc(), Extrapolated(pymunk.TUNED, "x", (1, 2), (2,))),
+        ("reference/four_bar/free_motion.py", FreeFourBar(), Toy()),
+    ],
+)
+def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name, scene, engine):
+    assert (ROOT / name).is_file()
+    with Store(tmp_path / "cells.sqlite") as store:
+        cell = Cell(scene, engine, 1)
+        store.put(blank(cell))
+        assert list(store.get([Cell(scene, engine, 1)])) == [cell]
+        touch(ROOT / name)
+        assert not store.get([Cell(scene, engine, 1)])
+        touch(None)
+        assert store.get([Cell(scene, engine, 1)])
+
+
+@pytest.mark.parametrize("name", ["reports/tables.py", "reports/charts.py", "engines/mujoco/model.py", "tests/rows.py"])
+def test_a_change_elsewhere_leaves_a_stored_cell_alone(tmp_path, touch, name):
+    assert (ROOT / name).is_file()
+    with Store(tmp_path / "cells.sqlite") as store:
+        store.put(blank(Cell(Disc(), Toy(), 1)))
+        touch(ROOT / name)
+        assert store.get([Cell(Disc(), Toy(), 1)])
+
+
+@pytest.mark.parametrize(
+    ("engine", "distribution", "counts"),
+    [
+        (pymunk.TUNED, "pymunk", True),
+        (pymunk.TUNED, "mujoco-core", False),
+        (mujoco.TUNED, "mujoco-core", True),
+        (mujoco.TUNED, "pymunk", False),
+        (Extrapolated(pymunk.TUNED, "x", (1, 2), (2,)), "pymunk", True),
+        (Toy(), "numpy", True),
+        (Toy(), "matplotlib", False),
+    ],
+)
+def test_a_packages_version_counts_for_the_rows_that_use_it(monkeypatch, engine, distribution, counts):
+    before = fingerprint(Disc(), engine)
+    original = importlib.metadata.version
+    monkeypatch.setattr(importlib.metadata, "version", lambda name: "0.0.1" if name == distribution else original(name))
+    forget()
+    assert (fingerprint(Disc(), engine) != before) == counts
+
+
+def test_pythons_own_version_counts(monkeypatch):
+    before = fingerprint(Toy())
+    monkeypatch.setattr(platform, "python_version", lambda: "3.99.0")
+    forget()
+    assert fingerprint(Toy()) != before
+
+
+def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, monkeypatch):
+    folder = tmp_path / "site-packages"
+    folder.mkdir()
+    (folder / "installed_engine.py").write_text(
+        "from dataclasses import dataclass\n\n\n@dataclass(frozen=True)\nclass Plugin:\n    name: str = 'x'", "utf-8"
+    )
+    monkeypatch.syspath_prepend(folder)
+    module = importlib.import_module("installed_engine")
+    monkeypatch.setitem(sys.modules, "installed_engine", module)
+    monkeypatch.setattr(
+        importlib.metadata, "packages_distributions", lambda: {"installed_engine": ["Installed-Engine"]}
+    )
+    version = {"Installed-Engine": "1.0"}
+    monkeypatch.setattr(importlib.metadata, "version", lambda name: version.get(name, "1"))
+    forget()
+    assert not changed(folder / "installed_engine.py", module.Plugin())
+    before = fingerprint(module.Plugin())
+    version["Installed-Engine"] = "1.1"
+    forget()
+    assert fingerprint(module.Plugin()) != before
+
+
+def test_every_number_of_a_cell_is_in_its_key():
+    cell = Cell(Disc(), Toy(), 1)
+    others = [
+        replace(cell, scene=Disc(rate=3.0)),
+        replace(cell, engine=Toy(factor=2.0)),
+        replace(cell, engine=Toy("tuned")),
+        replace(cell, engine=Toy(name="other")),
+        replace(cell, engine=FailingToy()),  # its fields are the toy's
+        replace(cell, every=2),
+        replace(cell, samples=7),
+        replace(cell, purpose="failure"),
+        replace(cell, purpose="map"),
+    ]
+    assert len({cell.key, *(other.key for other in others)}) == 1 + len(others)
+    assert Cell(Disc(), Toy(), 1).key == cell.key == Cell(Disc(), Toy(), 1, samples=Disc().samples).key

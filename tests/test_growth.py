@@ -1,0 +1,266 @@
+"""Small numbers with a name: growth laws, times, round trips, steps and costs of cells, by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from reference.centrodes import Centrodes
+from reports import timing
+from reports.cells import COST_LIMIT, FULL, QUICK, SWEEP_COST, Cell, estimated_cost, step_cost, sweep_cells
+from reports.choice import BadInput, steps_per_sample
+from reports.growth import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
+from reports.outcomes import Outcome
+from reports.pages.scaling import cost_table, crossing
+from reports.pages.skate import constructions, nearest_step
+from reports.quantities import quantity
+from reports.round_trip import returned
+from reports.timing import repeated_stepping
+from tests.rows import falling, row_of, table
+from tests.toys import Disc, Toy
+
+
+def test_a_power_law_is_found_at_the_large_end_only():
+    sizes = [1, 10, 100, 200, 400]
+    assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
+    assert exponent(sizes, [n**2 if n < 100 else 1e2 * n for n in sizes]) == (pytest.approx(1.0), 100, 400)
+    assert LAST == 3
+    assert exponent(sizes, [math.nan, 7, math.nan, 14, 0])[1:] == (10, 200)
+    assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
+
+
+SERIES = Series("pymunk", "tuned", tuple(Point(n, 1e-6 * n**2, 1e-3 * n, "finished") for n in (1, 10, 100)))
+
+
+def test_costs_and_errors_have_their_own_exponents():
+    assert cost_exponent(SERIES) == (pytest.approx(2.0), 1, 100)
+    assert error_exponent(SERIES) == (pytest.approx(1.0), 1, 100)
+    assert SERIES.method == "pymunk tuned"
+    assert SERIES.at(10) == SERIES.points[1]
+    assert SERIES.at(7) is None
+
+
+@dataclass(frozen=True)
+class Chain(Disc):
+    """A toy with a number of links."""
+
+    links: int = 1
+
+
+def test_a_point_of_a_series_is_its_own_cell():
+    def cell(links, duration=0.2, every=1, variant="tuned"):
+        return Cell(Chain(links=links, duration=duration), Toy(variant), every, "growth", 10)
+
+    rows = {
+        cell(100): row_of("toy tuned", cpu=7e-3, angle=1.3e-3),
+        cell(10): row_of("toy tuned", cpu=3e-3, angle=1.1e-3),
+        cell(1000, 0.01): row_of("toy tuned", cpu=5e-3, angle=1.7e-3),
+        cell(2000, 0.01, 2): row_of("toy tuned", cpu=11e-3, angle=9.0, outcome=Outcome.SATURATED),
+        cell(50): row_of("toy tuned", cpu=13e-3, angle=9.0, outcome=Outcome.TORN),
+        cell(10, variant="other"): row_of("toy other", cpu=17e-3, angle=1.9e-3),
+    }
+    tuned, other = series_of(rows, 0.2)
+    assert (tuned.method, other.method) == ("toy tuned", "toy other")
+    assert [p.size for p in tuned.points] == [10, 50, 100, 1000, 2000]
+    # A step is 0.02 s, or 1e-3 s, or half of that: CPU seconds of a simulated second times the step.
+    assert [p.step for p in tuned.points] == pytest.approx([6e-5, math.nan, 1.4e-4, 5e-6, 5.5e-6], nan_ok=True)
+    # What only ran for its cost has no error, and what failed has none either.
+    assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
+    assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
+    assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
+
+
+def test_a_cost_table_is_in_microseconds_with_the_law_at_its_end():
+    torn = replace(
+        SERIES, variant="torn", points=(Point(1, math.nan, math.nan, "torn"), Point(10, 3e-6, 0.1, "finished"))
+    )
+    assert table(cost_table((SERIES, torn))) == [
+        ["method", "1", "10", "100", "exponent (links)"],
+        ["pymunk tuned", "1", "100", "1.0e4", "2.0 (1 to 100)"],
+        ["pymunk torn", "**torn**", "3", "", "-"],
+    ]
+
+
+def test_a_crossing_is_where_the_first_becomes_the_dearer():
+    def line(*costs):
+        return Series(
+            "e", "v", tuple(Point(n, c, math.nan, "finished") for n, c in zip((1, 10, 100), costs, strict=True))
+        )
+
+    assert crossing(line(1, 2, 9), line(3, 3, 3)) == (10, 100)
+    assert crossing(line(1, 4, 9), line(3, 3, 3)) == (1, 10)
+    assert crossing(line(9, 2, 1), line(3, 3, 3)) is None
+    assert crossing(line(1, 1, 1), line(3, 3, 3)) is None
+    assert crossing(None, line(1, 1, 1)) is None
+
+
+class Clock:
+    """A process time that goes on by what it is told."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(timing.time, "process_time", lambda: self.now)
+
+
+@dataclass(frozen=True)
+class Slow:
+    """Builds and steps in the times of two lists."""
+
+    clock: Clock
+    builds: list
+    steps: list
+    variant: str = "slow"
+    name: str = "toy"
+
+    def build(self, mechanism, dt):
+        self.clock.now += self.builds.pop(0)
+        return lambda samples, every: SimpleNamespace(stepping=self.steps.pop(0))
+
+
+def test_a_cost_is_the_least_of_several_runs_the_first_left_out(monkeypatch):
+    clock = Clock(monkeypatch)
+    engine = Slow(clock, [5e-3, 2e-3, 3e-3, 9e-3, 9e-3], [4e-3, 2e-3, 3e-3, 4e-3, 5e-3])
+    found = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
+    assert found == (pytest.approx(2e-3), 5, pytest.approx(2e-3))
+    engine = Slow(clock, [5e-3] * 3, [2e-2, 3e-2, 1e-2])
+    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (2e-2, 2, 4e-3)  # 0.05 s spent
+
+
+def test_a_long_run_is_not_repeated(monkeypatch):
+    engine = Slow(Clock(monkeypatch), [], [])
+    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 0.5, 4e-3) == (0.5, 1, 4e-3)
+
+
+def test_process_time_is_the_difference_of_two_readings(monkeypatch):
+    clock = Clock(monkeypatch)
+
+    def work():
+        clock.now += 3.0
+        return "done"
+
+    assert timing.process_seconds(work) == (3.0, "done")
+
+
+def test_the_round_trip_is_the_worst_distance_and_the_rotation_looked_at():
+    # A wheel of 0.5 m on a line; its poses are wrong by 0.1 m at one end only.
+    theta = np.linspace(0.1, 1.1, 41)
+    pose = np.stack([-0.5 * theta, 0 * theta + 0.5, theta], axis=-1)
+    space = np.stack([-0.5 * theta, 0 * theta], axis=-1)
+    body = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
+    right = Centrodes(pose, space, body, 0.0)
+    distance, rotation = returned(right)
+    assert distance < 1e-6
+    low, high = right.rolling().limits
+    looked = theta[(theta >= low) & (theta <= high)]
+    assert rotation == pytest.approx(looked[-1] - looked[0])
+    wrong = pose.copy()
+    wrong[np.argmax(theta >= low), 1] += 0.1
+    assert returned(Centrodes(wrong, space, body, 0.0))[0] == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_step_must_divide_the_sampling_to_ten_digits():
+    scene = Disc()
+    assert steps_per_sample(scene, scene.spacing / 7) == 7
+    assert steps_per_sample(scene, scene.spacing / 7 * (1 + 1e-10)) == 7
+    assert steps_per_sample(scene, scene.spacing) == 1
+    for wrong in (1.001, 0.999, 1 + 1e-7):
+        with pytest.raises(BadInput, match=r"does not divide .* --every 7"):
+            steps_per_sample(scene, scene.spacing / 7 * wrong)
+    with pytest.raises(BadInput, match="--every 1"):
+        steps_per_sample(scene, 1.0)
+
+
+def test_a_cells_step_is_the_duration_over_its_samples_and_steps():
+    assert Cell(Disc(duration=0.3), Toy(), 7).step == pytest.approx(0.3 / 30 / 7)
+    assert Cell(Disc(duration=0.3), Toy(), 7, samples=11).step == pytest.approx(0.3 / 11 / 7)
+    assert Cell(Disc(), Toy("tuned"), 3).label == "disc / toy tuned / 3.3e-03 s"
+
+
+@dataclass(frozen=True)
+class Costly(Toy):
+    """Says what a step costs."""
+
+    step_cost: float = 3e-3
+
+
+@dataclass(frozen=True)
+class Wrapped(Toy):
+    """Runs another at three levels."""
+
+    engine: Toy = Costly()
+    levels: tuple = (1, 2, 4)
+
+
+@dataclass(frozen=True)
+class Swept(Toy):
+    """Sweeps eleven times."""
+
+    def sweeps(self, mechanism):
+        return 11
+
+
+@dataclass(frozen=True)
+class Chooses(Toy):
+    """Takes another by the mechanism."""
+
+    def chosen(self, mechanism):
+        return Costly()
+
+
+def test_the_estimated_cost_is_that_of_all_steps_and_grows_with_the_bodies():
+    mechanism = Disc().mechanism()
+    assert step_cost(Costly()) == 3e-3
+    assert step_cost(Wrapped()) == pytest.approx(7 * 3e-3)
+    assert step_cost(Chooses(), mechanism) == 3e-3
+    assert step_cost(Toy()) == 50e-6
+    assert [step_cost(Toy(name=name)) for name in ("pymunk", "mujoco", "lagrange")] == [2e-6, 12e-6, 400e-6]
+    assert step_cost(Swept(), mechanism) == pytest.approx(50e-6 + 11 * SWEEP_COST)
+    assert estimated_cost(Cell(Disc(), Costly(), 7)) == pytest.approx(20 * 7 * 3e-3)
+    assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
+
+
+def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
+    assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300, 1000))
+    cells = sweep_cells((Disc(),), (Toy(),), FULL)
+    # 20 samples at 50 us a step: 0.7 s are 700 steps a sample.
+    assert [cell.every for cell in cells] == [1, 3, 10, 30, 100, 300]
+    assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Toy(), 1000))
+    dear = sweep_cells((Disc(),), (Costly(step_cost=10.0),), FULL)
+    assert [cell.every for cell in dear] == [1]
+    # The quick steps may take ten times as long: 20 * 10 steps of 30 ms are 6 s.
+    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(step_cost=3e-2),), FULL)] == [1, 3, 10]
+
+
+def test_the_row_of_a_step_is_the_nearest_by_ratio():
+    rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
+    assert nearest_step(rows, 2.9e-3).step == 1e-3
+    assert nearest_step(rows, 3.3e-3).step == 1e-2
+    assert nearest_step([], 1e-3) is None
+
+
+def test_constructions_are_told_at_the_compared_step_best_first():
+    rows = [
+        *falling("pymunk b", (3e-2, 3e-4, 3e-6), "position", cpu=7e-3),
+        *falling("pymunk a", (1e-2, 1e-4, 1e-6), "position"),
+        row_of("pymunk c", outcome=Outcome.UNSUPPORTED, position=math.nan),
+        row_of("pymunk d", step=1e-3, outcome=Outcome.TORN, position=2.0),
+    ]
+    head, *body = table(constructions(rows))
+    assert [line[0] for line in body] == ["pymunk a", "pymunk b", "pymunk d", "pymunk c"]
+    assert dict(zip(head, body[1], strict=True)) == {
+        "construction": "pymunk b",
+        "outcome": "finished",
+        "position [m]": "3.0e-6",
+        "slip [m/s]": "4.7e-3",
+        "energy": "5.3e-3",
+        "reaction": "5.9e-3",
+        "CPU [ms/s]": "7",
+        "as the step shrinks": "2.00 (±" + body[1][-1].split("±")[1],
+    }
+    assert body[2][-1] == "wrong at every step"
+    assert body[3][1] == "can't be built"
+    assert quantity("position").unit == "m"

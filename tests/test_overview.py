@@ -1,0 +1,258 @@
+"""The overview and the pages' sentences: each cell by hand, from its own scene's and its own method's rows."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import replace
+from typing import ClassVar
+
+import pytest
+
+from reports.cells import Cell
+from reports.outcomes import Outcome
+from reports.overview import BEGIN, COLUMNS, END, overview, with_overview
+from reports.page import Failure, Material, Observation, Page
+from reports.pages.told import told
+from reports.rendering import parameters, render_all, render_index, render_page, render_readme
+from reports.sweep import Verdict
+from reports.tables import number
+from tests.rows import falling, row_of, table
+from tests.toys import Disc, Toy
+
+METHODS = tuple(" ".join(column) for column in COLUMNS)
+
+
+class OtherDisc(Disc):
+    """Another scene.
+
+    Of which only the first paragraph is told.
+    """
+
+    name: ClassVar[str] = "other_disc"
+    source: ClassVar[str] = "invented too"
+
+
+PAGE = Page("base", "Discs", "One disc.", (Disc(), OtherDisc()), (Toy(),))
+
+
+def cell_of(rows, quantity: str = "angle", method: str = "mujoco tuned") -> str:
+    """The overview's cell of one method."""
+    head, line = table(overview([(replace(PAGE, quantity=quantity), rows)]))
+    assert head == ["scene", *METHODS]
+    return line[1 + METHODS.index(method)]
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [
+        ((1e-2, 1e-4, 1e-6), "1.0e-6 rad, 100 ms, order 2.0"),
+        ((1e-2, 1e-13), "1.0e-13 rad, 10 ms, to rounding"),
+        ((1e-2, 3e-5, 3e-5, 2e-5), "2.0e-5 rad, 1000 ms, **stays**"),
+        ((1e-2, 3e-5, 2.9e-5), "2.9e-5 rad, 100 ms, **levels off**"),
+        ((1e-4, 1e-3), "1.0e-4 rad, 1 ms, **grows**"),
+        ((1e-2, 1e-4, 1e-1), "1.0e-4 rad, 10 ms, **erratic**"),
+        ((1e-2,), "0.01 rad, 1 ms"),
+    ],
+)
+def test_a_cell_has_the_least_error_its_cost_and_what_a_smaller_step_brings(errors, words):
+    assert cell_of(falling("mujoco tuned", errors)) == words
+
+
+def test_an_error_that_grew_at_the_finest_step_has_no_order():
+    assert "order" not in cell_of(falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3)))
+
+
+def test_a_method_that_fails_at_its_finest_step_says_so():
+    rows = [*falling("mujoco tuned", (1e-2, 1e-4)), row_of("mujoco tuned", step=1e-3, outcome=Outcome.TORN)]
+    assert cell_of(rows) == "1.0e-4 rad, 10 ms, then **torn**"
+    assert cell_of(rows[::-1]) == cell_of(rows)
+
+
+def test_where_nothing_can_be_compared_the_outcomes_stand_and_where_nothing_ran_a_dash():
+    rows = [row_of("mujoco tuned", outcome=o) for o in (Outcome.TORN, Outcome.TORN, Outcome.RESET)]
+    assert cell_of(rows) == "torn, reset"
+    assert cell_of([row_of("mujoco default")]) == "-"
+
+
+def test_the_quantity_of_the_page_is_told_with_its_unit():
+    rows = falling("mujoco tuned", (1e-3, 1e-5), "position", angle=7.0)
+    assert cell_of(rows, "position") == "1.0e-5 m, 10 ms, order 2.0"
+
+
+def test_each_column_is_its_own_method_and_each_line_its_own_scene():
+    # Another error and another cost for each of twelve cells.
+    rows = [
+        row_of(method, scene=scene, angle=(10 + i) * factor, cpu=(10 + i) * 1e-3)
+        for scene, factor in (("disc", 1e-4), ("other_disc", 1e-6))
+        for i, method in enumerate(METHODS)
+    ]
+    _, first, second = table(overview([(PAGE, rows)], "folder/"))
+    for line, name, power in ((first, "disc", "e-3"), (second, "other disc", "e-5")):
+        assert line[0] == f"[{name}](folder/base.md)"
+        assert line[1:] == [f"1.{i}{power} rad, {10 + i} ms" for i in range(6)]
+
+
+def test_a_document_has_the_table_between_its_marks_and_nothing_else_changed():
+    text = f"before\n{BEGIN}\nold\n{END}\nafter\n"
+    assert with_overview(text, "new") == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
+    for lacking in (text.replace(BEGIN, ""), text.replace(END, ""), ""):
+        with pytest.raises(ValueError, match="lacks the marks"):
+            with_overview(lacking, "new")
+
+
+DISC, OTHER = Disc(), OtherDisc()
+CELLS = {
+    Cell(scene, Toy(variant), every): row_of(
+        f"mujoco {variant}", scene=scene.name, every=every, step=0.1 / every, angle=angle / every**2, cpu=angle
+    )
+    for scene, factor in ((DISC, 1.0), (OTHER, 0.1))
+    for variant, angle in (("default", 1.1e-2 * factor), ("tuned", 1.3e-3 * factor))
+    for every in (1, 10, 100)
+}
+
+
+def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
+    extra = {"some": [Cell(DISC, Toy("tuned"), 10), Cell(DISC, Toy("never run"), 1)]}
+    words = told(Material(CELLS), (DISC, OTHER), extra)
+    best = words["best"]("disc", "mujoco", "default")
+    assert (best.scene, best.variant, best.angle) == ("disc", "default", pytest.approx(1.1e-6))
+    assert words["best"]("other_disc", "mujoco", "tuned").angle == pytest.approx(1.3e-8)
+    assert words["best"]("disc", "pymunk", "tuned") is None
+    at = words["at"]("disc", "mujoco", "tuned", 10)
+    assert (at.scene, at.variant, at.every) == ("disc", "tuned", 10)
+    assert words["at"]("disc", "mujoco", "tuned", 7) is None
+    sweep = words["sweep"]("other_disc", "mujoco", "tuned")
+    assert (sweep.scene, sweep.variant, sweep.quantity.name) == ("other_disc", "tuned", "angle")
+    assert (sweep.best, sweep.verdict) == (pytest.approx(1.3e-8), Verdict.FALLS)
+    assert words["sweep"]("disc", "mujoco", "tuned", "gap").quantity.name == "gap"
+    assert words["sweep"]("disc", "pymunk", "tuned") is None
+    assert [r.every for r in words["rows"]("some")] == [10]
+    only = told(Material(CELLS), (OTHER,))
+    assert only["best"]("disc", "mujoco", "default") is None
+
+
+def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():
+    text = render_page(PAGE, Material(CELLS), "the command")["base.md"]
+    assert not {"saturated", "torn"} & set(re.findall(r"\w+", text))
+    titles = ("Work and precision", "Order and plateau", "Reactions", "What was modelled", "All errors")
+    parts = {title: text.split(f"## {title}")[1].split("\n## ")[0].split("\n---")[0] for title in titles}
+    for part in parts.values():
+        first, second = part.split("other_disc")
+        assert first.count("mujoco") == second.count("mujoco") > 0
+    disc, other = parts["All errors"].split("other_disc")
+    for piece, factor in ((disc, 1.0), (other, 0.1)):
+        lines = [line.split(" | ") for line in piece.splitlines() if line.startswith("| mujoco")]
+        assert [(line[0], line[4]) for line in lines] == [
+            (f"| mujoco {variant}", number(angle * factor / every**2))
+            for variant, angle in (("default", 1.1e-2), ("tuned", 1.3e-3))
+            for every in (1, 10, 100)
+        ]
+    # The cost is the error's number here: 11 ms and 1.3 ms in the first scene, a tenth in the second.
+    work = parts["Work and precision"]
+    found = [line.strip("| ").split(" | ") for line in work.splitlines() if line.startswith("| mujoco")]
+    assert [line[2] for line in found] == ["11", "1.3", "1.1", "0.13"]
+    assert "**other_disc**, invented too. Another scene." in text
+
+
+def test_a_scenes_parameters_are_its_fields():
+    assert table(parameters(Disc(rate=1.23456789, duration=0.3)))[1:] == [
+        ["rate", "1.23457"],
+        ["duration", "0.3"],
+        ["horizon", "0.2"],
+    ]
+
+
+def test_methods_that_are_not_featured_stand_in_the_table_of_all():
+    page = replace(PAGE, scenes=(DISC,), featured=lambda r: r.variant == "tuned")
+    text = render_page(page, Material(CELLS), "the command")["base.md"]
+    work = text.split("## Work and precision")[1].split("## Order")[0]
+    short, everything = work.split("<details>")
+    assert ("| mujoco tuned" in short, "| mujoco default" in short) == (True, False)
+    assert ("| mujoco tuned" in everything, "| mujoco default" in everything) == (True, True)
+
+
+def test_outcomes_of_a_page_are_those_that_its_tables_tell():
+    rows = {
+        **{Cell(DISC, Toy("default"), 10**i): r for i, r in enumerate(falling("mujoco default", (1e-2, 1e-4, 1e-6)))},
+        **{Cell(DISC, Toy("soft"), 10**i): r for i, r in enumerate(falling("mujoco soft", (1e-2, 3e-5, 3e-5, 3e-5)))},
+    }
+    torn = Cell(DISC, Toy("torn"), 1, "failure")
+    page = replace(PAGE, scenes=(DISC,), failures=(Failure("T", "E", (torn,)),))
+    rows[torn] = row_of("mujoco torn", purpose="failure", outcome=Outcome.TORN, sentence="it tore")
+    text = render_page(page, Material(rows), "the command")["base.md"]
+    assert re.findall(r"^- \*\*([\w ]+)\*\*: ", text, re.MULTILINE) == ["finished", "converged", "plateau", "torn"]
+
+
+def test_a_page_judges_by_the_quantity_that_it_compares():
+    errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
+    errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
+    rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
+    for quantity, outcome in (("position", "plateau"), ("angle", "converged")):
+        page = replace(PAGE, scenes=(DISC,), quantity=quantity)
+        text = render_page(page, Material(rows), "the command")["base.md"]
+        errors_told = text.split("## All errors")[1]
+        assert f"| mujoco default | {outcome} | 1.0e-4" in errors_told
+
+
+def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
+    torn, sound = (Cell(DISC, Toy(name), 1, "failure") for name in ("torn", "sound"))
+    rows = {
+        torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
+        sound: row_of("mujoco sound", sentence="", angle=1.9e-5, step=0.1),
+    }
+    first = Failure("First", "It should turn.", (torn,), lambda: [Observation("by hand", "a setting", "0.02 rad")])
+    second = Failure("Second", "So should this.", (sound,), columns=("energy",))
+    never = Failure("Third", "Never run.", (Cell(DISC, Toy("never"), 1, "failure"),))
+    page = replace(PAGE, scenes=(DISC,), failures=(first, second, never))
+    text = render_page(page, Material(rows), "the command")["base.md"]
+    one, two, three = (
+        text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second", "Third")
+    )
+    assert "| mujoco torn | **torn** 1.7 m |" in one
+    assert "**torn**: it tore" in one
+    assert "| by hand | a setting | 0.02 rad |" in one
+    assert "sound" not in one
+    assert "| mujoco sound | 0.1 | **finished** | 5.3e-3 |" in two
+    assert "|" not in three
+
+
+def test_a_method_that_cannot_build_a_scene_is_told_once():
+    rows = {
+        Cell(DISC, Toy(), every): row_of(
+            "mujoco x", every=every, outcome=Outcome.UNSUPPORTED, sentence="it has no pins"
+        )
+        for every in (1, 10)
+    }
+    text = render_page(replace(PAGE, scenes=(DISC,)), Material(rows), "the command")["base.md"]
+    assert text.count("mujoco x can't build it: it has no pins") == 1
+
+
+def test_index_and_readme_tell_the_scenes_of_the_pages():
+    pages = {PAGE: Material(CELLS)}
+    index = render_index(pages.items(), "the command")
+    assert "[disc](base.md)" in index
+    assert "[other disc](base.md)" in index
+    assert "- [Discs](base.md). One disc." in index
+    assert all(f"- **{outcome}**: {outcome.meaning}" in index for outcome in Outcome)
+    readme = render_readme(f"{BEGIN}\n{END}", pages)
+    assert "[disc](reports/results/base.md)" in readme
+    assert "other disc" not in readme
+    assert "order 2.0" in readme
+
+
+def test_all_files_end_with_one_end_of_line_and_have_every_row_once():
+    keyed = {cell: replace(r, key=str(i)) for i, (cell, r) in enumerate(CELLS.items())}
+    files = render_all({PAGE: Material(keyed), replace(PAGE, title="Again"): Material(keyed)}, "the command")
+    assert {"index.md", "base.md", "errors.csv", "timings.csv", "descriptions.csv"} <= set(files)
+    for name, text in files.items():
+        assert text.endswith("\n"), name
+        assert not text.endswith("\n\n"), name
+    for name in ("errors.csv", "timings.csv"):
+        lines = [line for line in files[name].splitlines() if not line.startswith("#")]
+        found = list(csv.DictReader(lines))
+        assert sorted((r["scene"], r["variant"], r["every"]) for r in found) == sorted(
+            (r.scene, r.variant, str(r.every)) for r in CELLS.values()
+        )
+    assert "angle" not in files["timings.csv"].splitlines()[-1]
+    assert "the command" in files["timings.csv"]

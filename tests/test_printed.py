@@ -1,0 +1,49 @@
+"""What is printed of versions, of the machine, and as a table on the terminal."""
+
+from __future__ import annotations
+
+import io
+import os
+import platform
+from importlib import metadata
+
+from rich.console import Console
+
+from reports.machine import machine, versions
+from reports.rendering import foot
+from reports.terminal import print_table
+
+
+def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
+    numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
+
+    def version(name):
+        if name not in numbers:
+            raise metadata.PackageNotFoundError(name)
+        return numbers[name]
+
+    monkeypatch.setattr(metadata, "version", version)
+    monkeypatch.setattr(platform, "python_version", lambda: "3.99")
+    assert versions() == "Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed"
+    assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
+
+
+def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
+    monkeypatch.setattr(os, "cpu_count", lambda: 97)
+    monkeypatch.setattr(platform, "machine", lambda: "an architecture")
+    told = machine()
+    assert told.startswith("an architecture, 97 processors, ")
+    assert platform.node() not in told
+    assert "/" not in told.replace("w/", "")
+
+
+def test_a_table_on_the_terminal_has_its_columns_in_order_and_keeps_brackets():
+    out = io.StringIO()
+    print_table(
+        Console(file=out, width=80), "A [b] title", ("method", "step [s]"), (("a x", "0.1"), ("b [y]", "0.01")), 1
+    )
+    title, head, *_, first, second = [line.replace("┃", " ").replace("│", " ") for line in out.getvalue().splitlines()]
+    assert title.split() == ["A", "[b]", "title"]
+    assert head.split() == ["method", "step", "[s]"]
+    assert first.split() == ["a", "x", "0.1"]
+    assert second.split() == ["b", "[y]", "0.01"]

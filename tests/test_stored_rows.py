@@ -1,0 +1,39 @@
+"""The store gives back what was put in, each row for its own cell."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+from reports.cells import Cell
+from reports.measure import Measurement
+from reports.running import missing
+from reports.store import Store
+from tests.rows import row
+from tests.toys import Disc, Toy
+
+CELLS = [Cell(Disc(), Toy(), every) for every in (1, 2, 3)]
+
+
+def test_every_field_of_a_row_comes_back(tmp_path):
+    stored = row(key=CELLS[0].key, energy=math.nan, gap=math.inf)
+    with Store(tmp_path / "cells.sqlite") as store:
+        store.put(stored)
+    with Store(tmp_path / "cells.sqlite") as store:
+        found = store.get(CELLS)
+    assert list(found) == CELLS[:1]
+    told = found[CELLS[0]]
+    assert math.isnan(told.energy)
+    assert replace(told, energy=0.0) == replace(stored, energy=0.0)
+    assert [type(getattr(told, f.name)).__name__ for f in fields(Measurement)] == [f.type for f in fields(Measurement)]
+
+
+def test_each_cell_has_its_own_row_the_newest_and_only_what_was_named_is_forgotten(tmp_path):
+    with Store(tmp_path / "cells.sqlite") as store:
+        for number, cell in enumerate(CELLS):
+            store.put(row(key=cell.key, angle=float(number)))
+        store.put(row(key=CELLS[1].key, angle=7.0))
+        assert [found.angle for found in store.get(CELLS).values()] == [0.0, 7.0, 2.0]
+        store.forget(CELLS[:1])
+        assert missing(CELLS, store) == tuple(CELLS[:1])
+        assert [found.angle for found in store.get(CELLS[::-1]).values()] == [2.0, 7.0]

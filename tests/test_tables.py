@@ -1,0 +1,309 @@
+"""Every table and CSV file from rows by hand: each column takes its own field, each line its own rows."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import math
+from dataclasses import fields
+
+import pytest
+
+from reports import tables
+from reports.measure import TIMINGS, Measurement
+from reports.outcomes import Outcome
+from reports.quantities import QUANTITIES, quantity
+from reports.sweep import Sweep, Verdict, sweeps
+from tests.rows import falling, row, row_of, table
+
+NAN = math.nan
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (1.234e-7, "1.2e-7"),
+        (-1.234e-7, "-1.2e-7"),
+        (0.25, "0.25"),
+        (0.01, "0.01"),
+        (0.00999, "1.0e-2"),
+        (12.0, "12"),
+        (99.6, "100"),
+        (100.0, "100"),
+        (123.4, "123"),
+        (9999.0, "9999"),
+        (2e4, "2.0e4"),
+        (math.nan, "-"),
+        (math.inf, "∞"),
+    ],
+)
+def test_numbers_are_printed_with_two_digits(value, text):
+    assert tables.number(value) == text
+
+
+def test_as_many_digits_are_printed_as_asked():
+    assert tables.number(1.26e-4, 1) == "1e-4"
+    assert tables.number(1.26e-4, 3) == "1.26e-4"
+    assert tables.number(0.1256, 3) == "0.126"
+
+
+def test_seconds_are_told_in_milliseconds():
+    assert tables.milliseconds(0.001) == "1"
+    assert tables.milliseconds(6.7e-2) == "67"
+
+
+def test_bars_and_line_ends_do_not_break_a_table():
+    assert tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1) == "| a | b |\n| --- | --: |\n| 1\\|2 | 3 4 |"
+
+
+def test_an_error_table_has_each_quantity_under_its_name():
+    [head, line] = table(tables.error_table([row()]))
+    assert dict(zip(head, line, strict=True)) == {
+        "method": "toy default",
+        "outcome": "finished",
+        "step [s]": "0.011",
+        "position [m]": "1.3e-3",
+        "angle [rad]": "1.9e-3",
+        "velocity [m/s]": "3.1e-3",
+        "rate [rad/s]": "3.7e-3",
+        "gap [m]": "4.1e-3",
+        "slip [m/s]": "4.7e-3",
+        "energy [relative]": "5.3e-3",
+        "reaction [relative]": "5.9e-3",
+        "CPU [ms/s]": "67",
+    }
+    assert tables.error_rows([row()]) == [line]
+
+
+def test_an_error_table_goes_from_coarse_to_fine_method_by_method_and_has_sweeps_alone():
+    rows = [
+        row_of("b x", step=1e-3),
+        row_of("a y", step=1e-2),
+        row_of("b x", step=1e-1),
+        row_of("b x", step=1e-4, purpose="map"),
+    ]
+    assert [line[:3:2] for line in tables.error_rows(rows)] == [["b x", "0.1"], ["b x", "1.0e-3"], ["a y", "0.01"]]
+
+
+def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float = NAN, best: float = 1.7e-5) -> Sweep:
+    return Sweep("s", "toy", "default", quantity("angle"), verdict, order, points, 0.13, plateau, best, 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (sweep(Verdict.FALLS, 1.994, 4), "1.99 (±0.13, 4 points)"),
+        (sweep(Verdict.FALLS, 1.994, 2), "1.99 (2 points, unchecked)"),
+        (sweep(Verdict.FALLS), "falls, 1.7e-5"),
+        (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), stays at **2.3e-5**"),
+        (sweep(Verdict.PLATEAU, plateau=2.3e-5), "stays at **2.3e-5**"),
+        (sweep(Verdict.ROUNDING, 3.9, 3), "3.90 (±0.13, 3 points), then rounding"),
+        (sweep(Verdict.ROUNDING), "rounding"),
+        (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), levels off at the finest step, best 1.7e-5"),
+        (sweep(Verdict.GROWS), "grows as the step shrinks, best 1.7e-5"),
+        (sweep(Verdict.ERRATIC), "erratic, best 1.7e-5"),
+        (sweep(Verdict.TOO_FEW), "not enough points, 1.7e-5"),
+        (sweep(Verdict.TOO_FEW, best=NAN), "-"),
+    ],
+)
+def test_a_sweep_is_told_in_words(found, words):
+    assert tables.sweep_words(found) == words
+
+
+def test_an_order_table_has_each_quantity_of_each_method_under_its_name():
+    # Orders 1 to 8 in the eight quantities, other errors in another method.
+    rows = []
+    for method, factor in (("toy default", 1.0), ("toy tuned", 10.0)):
+        for step in (1e-1, 1e-2, 1e-3):
+            errors = {q.name: q.rounding * factor * (step / 1e-4) ** (i + 1) for i, q in enumerate(QUANTITIES)}
+            rows.append(row_of(method, step=step, **errors))
+    names = [q.name for q in QUANTITIES]
+    for first, line in zip(("toy default", "toy tuned"), tables.order_rows(sweeps(rows), names), strict=True):
+        assert line[0] == first
+        assert [cell.split()[0] for cell in line[1:]] == [f"{i}.00" for i in range(1, 9)]
+    head, *body = table(tables.order_table(sweeps(rows), ("gap", "angle")))
+    assert head == ["method", "gap: order, plateau [m]", "angle: order, plateau [rad]"]
+    assert [[cell.split()[0] for cell in line] for line in body] == [["toy", "5.00", "2.00"]] * 2
+
+
+def test_a_reaction_table_tells_the_row_with_the_least_reaction_error_that_can_be_compared():
+    rows = [
+        row_of("a x", step=1e-1, reaction=2e-3, reaction_rows=3, own_rows=5, cpu=7e-3),
+        row_of("a x", step=1e-2, reaction=1.1e-3, reaction_rows=4, own_rows=5, cpu=13e-3, angle=1.0),
+        row_of("a x", step=1e-3, reaction=1e-9, outcome=Outcome.TORN),
+        row_of("b x", step=1e-2, reaction=NAN, reaction_rows=0, own_rows=5),
+        row_of("c x", step=1e-2, outcome=Outcome.DIVERGED),
+    ]
+    head, *body = table(tables.reaction_table(rows))
+    assert head == ["method", "rows told", "least error [relative]", "at step [s]", "CPU [ms/s]"]
+    assert body == [["a x", "4 of 5", "1.1e-3", "0.01", "13"], ["b x", "0 of 5", "-", "0.01", "67"]]
+
+
+def test_a_size_table_has_the_mechanism_first_and_each_model_once():
+    rows = [row_of("a x"), row_of("a y"), row_of("b x"), row_of("b y", solver_rows=211), row_of("b z", bodies=0)]
+    head, *body = table(tables.size_table(rows))
+    assert head == ["bodies", "coordinates", "rows", "solver rows", "modelled by"]
+    assert body == [
+        ["139", "149", "151", "-", "*the mechanism itself, 157 freedoms*"],
+        ["113", "127", "131", "137", "a (x, y); b (x)"],
+        ["113", "127", "131", "211", "b (y)"],
+    ]
+    assert "1 freedom*" in tables.size_table([row(own_freedoms=1)])
+
+
+def test_a_method_that_built_nothing_does_not_make_the_mechanism_empty():
+    nothing = dict.fromkeys(("bodies", "own_bodies", "own_coordinates", "own_rows", "own_freedoms"), 0)
+    unsupported = row_of("a x", outcome=Outcome.UNSUPPORTED, **nothing)
+    lost = row_of("b x", step=1.0, outcome=Outcome.TIMED_OUT, **nothing)
+    _, *body = table(tables.size_table([unsupported, lost, row_of("b x")]))
+    assert body == [
+        ["139", "149", "151", "-", "*the mechanism itself, 157 freedoms*"],
+        ["113", "127", "131", "137", "b (x)"],
+    ]
+    # Where nobody built it, there is nothing to say of it.
+    assert table(tables.size_table([unsupported])) == [["bodies", "coordinates", "rows", "solver rows", "modelled by"]]
+
+
+def test_an_outcome_grid_has_every_step_and_each_cell_under_its_own():
+    rows = [
+        row_of("a x", step=1e-3, angle=1.3e-5),
+        row_of("a x", step=1e-1, outcome=Outcome.TORN, gap=1.7e-2),
+        row_of("b x", step=1e-2, outcome=Outcome.SATURATED),
+        row_of("b x", step=1e-3, outcome=Outcome.TORN, gap=NAN),
+        row_of("b x", step=1e-1, outcome=Outcome.PLATEAU, angle=2.3e-4),
+    ]
+    assert table(tables.outcome_grid(rows)) == [
+        ["method", "0.1 s", "0.01 s", "1.0e-3 s"],
+        ["a x", "**torn** 0.017 m", "", "1.3e-5 rad"],
+        ["b x", "2.3e-4 rad", "**saturated**", "**torn**"],
+    ]
+
+
+def test_two_rows_that_would_stand_in_one_place_are_refused():
+    with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 0\.01 s"):
+        tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
+
+
+def test_a_cell_table_has_the_quantities_that_were_asked_for_in_that_order():
+    [head, line] = table(tables.cell_table([row(outcome=Outcome.RESET)], ("energy", "position", "slip")))
+    assert head == ["method", "step [s]", "outcome", "energy [relative]", "position [m]", "slip [m/s]"]
+    assert line == ["toy default", "0.011", "**reset**", "5.3e-3", "1.3e-3", "4.7e-3"]
+
+
+def test_an_outcome_table_has_each_cells_own_sentence():
+    head, *body = table(tables.outcome_table([row(outcome=Outcome.TORN, sentence="it tore"), row(sentence="")]))
+    assert head == ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
+    assert body == [
+        ["toy default", "0.011", "**torn**: it tore", "1.9e-3", "4.1e-3"],
+        ["toy default", "0.011", "**finished**", "1.9e-3", "4.1e-3"],
+    ]
+
+
+def test_a_work_table_has_the_least_cost_of_those_below_each_error():
+    rows = [
+        row_of("a x", step=1e-1, angle=1.1e-3, cpu=3e-3),
+        row_of("a x", step=1e-2, angle=1e-4, cpu=7e-3),
+        row_of("a x", step=1e-3, angle=1e-4, cpu=5e-3),
+        row_of("a x", step=1e-4, angle=1e-9, cpu=1e-3, outcome=Outcome.SATURATED),
+        row_of("b x", step=1e-1, angle=NAN, cpu=2e-3),
+    ]
+    head, *body = table(tables.work_table(rows, "angle", (1e-2, 1e-4, 1e-6)))
+    assert head == ["method", "0.01 rad", "1e-4 rad", "1e-6 rad"]
+    assert body == [["a x", "3", "5", "-"], ["b x", "-", "-", "-"]]
+    head, line = table(tables.work_table([row()], "position", (1.3e-3, 1.2e-3)))
+    assert (head, line) == (["method", "1e-3 m", "1e-3 m"], ["toy default", "67", "-"])
+
+
+def test_a_summary_has_each_number_under_its_name():
+    rows = [
+        *falling("toy default", (1e-2, 1e-4, 1e-6)),
+        row_of("toy default", step=1e-4, angle=1e-9, outcome=Outcome.TORN),
+        *falling("toy soft", (1e-2, 3e-5, 3e-5, 3e-5)),
+        *falling("toy exact", (1e-3, 1e-13)),
+        row_of("toy lost", outcome=Outcome.DIVERGED),
+    ]
+    lines = [dict(zip(tables.SUMMARY_HEADER, line, strict=True)) for line in tables.summary_rows(rows)]
+    assert lines[0] == {
+        "method": "toy default",
+        "angle error [rad]": "1.0e-6",
+        "at step [s]": "1.0e-3",
+        "CPU [ms/s]": "100",
+        "order": "2.0 (3)",
+        "stays at [rad]": "-",
+        "outcomes": "finished, torn",
+    }
+    assert lines[1]["stays at [rad]"] == "3.0e-5"
+    assert lines[2]["stays at [rad]"] == "rounding"
+    assert list(lines[3].values()) == ["toy lost", "-", "-", "-", "-", "-", "diverged"]
+
+
+def read(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+
+
+def test_each_column_of_the_errors_is_its_field_and_none_is_missing():
+    [found] = read(tables.as_csv([row()], timings=False))
+    told = {f.name for f in fields(Measurement)} - {"key", *TIMINGS}
+    assert set(found) == told
+    for name in told - set(tables.DESCRIPTIONS):
+        value = getattr(row(), name)
+        assert found[name] == (f"{value:.4g}" if isinstance(value, float) else str(value)), name
+    assert found["parameters"] == hashlib.sha256(b"Disc(rate=2.0)").hexdigest()[:8]
+    assert found["settings"] == hashlib.sha256(b"Toy(order=2.0)").hexdigest()[:8]
+
+
+def test_timings_are_the_costs_alone_under_their_header():
+    text = tables.as_csv([row()], timings=True, header="one\ntwo")
+    assert text.splitlines()[:2] == ["# one", "# two"]
+    [found] = read(text)
+    assert set(TIMINGS) == {"cpu", "runs", "build"}
+    identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
+    assert list(found) == [*identity, "cpu", "runs", "build"]
+    assert [found[name] for name in identity if name not in tables.DESCRIPTIONS] == [
+        "disc", "toy", "default", "sweep", "103", "101", "0.011",
+    ]  # fmt: skip
+    assert (found["cpu"], found["runs"], found["build"]) == ("0.067", "163", "0.071")
+
+
+def test_rows_stand_in_the_same_order_in_both_files_whatever_order_they_came_in():
+    rows = [row_of(f"{engine} x", scene=scene, every=every) for engine in "ba" for scene in "dc" for every in (3, 1)]
+    for timings in (False, True):
+        text = tables.as_csv(rows, timings)
+        assert text == tables.as_csv(rows[::-1], timings)
+        assert [(r["scene"], r["engine"], r["every"]) for r in read(text)] == sorted(
+            (r.scene, r.engine, str(r.every)) for r in rows
+        )
+
+
+def test_numbers_in_files_have_four_digits():
+    [found] = read(tables.as_csv([row(angle=1.23456e-7, position=NAN)], timings=False))
+    assert (found["angle"], found["position"]) == ("1.235e-07", "nan")
+
+
+def test_descriptions_have_each_digest_once_with_its_text_and_what_it_is_of():
+    rows = [row(), row(angle=1.0), row(settings="Toy(order=4.0)")]
+    found = read(tables.descriptions_csv(rows))
+    assert [(line["of"], line["description"]) for line in found] == [
+        ("parameters", "Disc(rate=2.0)"),
+        ("settings", "Toy(order=2.0)"),
+        ("settings", "Toy(order=4.0)"),
+    ]
+    assert all(line["digest"] == tables.digest(line["description"]) for line in found)
+
+
+def test_each_quantity_has_its_unit_and_the_error_below_which_it_tells_nothing():
+    assert [(q.name, q.label, q.unit, q.rounding) for q in QUANTITIES] == [
+        ("position", "position", "m", 1e-11),
+        ("angle", "angle", "rad", 1e-11),
+        ("velocity", "velocity", "m/s", 1e-10),
+        ("rate", "rate", "rad/s", 1e-10),
+        ("gap", "gap", "m", 1e-12),
+        ("slip", "slip", "m/s", 1e-11),
+        ("energy", "energy", "relative", 1e-11),
+        ("reaction", "reaction", "relative", 1e-9),
+    ]
+    for q in QUANTITIES:
+        assert quantity(q.name) is q
+    with pytest.raises(KeyError):
+        quantity("flips")
