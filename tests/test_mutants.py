@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.mutants import __main__ as command
 from tests.mutants.__main__ import ALLOWED, chosen, table
 from tests.mutants.catalogue import BadList, Mutant, faults, read, wider_tests
 from tests.mutants.trial import Fate, Verdict, ask, copy_tree, trial
@@ -131,6 +132,39 @@ def test_mistakes_are_chosen_by_name_or_by_the_beginning_of_their_file():
     assert chosen((SOUND, other), ["engines/"]) == (other,)
     assert chosen((SOUND, other), ["sign"]) == (SOUND,)
     assert chosen((SOUND, other), ["volume"]) == ()
+
+
+def test_the_status_tells_whether_all_is_as_it_should_be(tree, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "ROOT", tree)
+    told = {}
+    for name, mutants in (
+        ("caught", (SOUND,)),
+        ("stale", (SOUND, replace(SOUND, name="moved", old="return depth"))),
+        ("survived", (replace(SOUND, old='"area"', new='"volume"'),)),
+        ("too many", (SOUND, replace(SOUND, name="label", old='"area"', new='"volume"', survives="nobody reads it"))),
+    ):
+        monkeypatch.setattr(command, "read", lambda mutants=mutants: mutants)
+        told[name] = (command.main([]), capsys.readouterr())
+    assert {name: status for name, (status, _) in told.items()} == {
+        "caught": 0,
+        "stale": 1,
+        "survived": 1,
+        "too many": 1,
+    }
+    assert "moved: its text stands 0 times in shapes/area.py" in told["stale"][1].out
+    assert "| label |" in (tmp_path / "crosscheck-results" / "mutants.md").read_text()
+    assert command.main(["nowhere/"]) == 2
+    assert "nowhere/" in capsys.readouterr().err
+
+
+def test_tests_that_fail_without_a_mistake_stop_everything(tree, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "ROOT", tree)
+    (tree / "shapes" / "area.py").write_text(AREA.replace("return width", "return -1 + 0 * width"))
+    monkeypatch.setattr(command, "read", lambda: (replace(SOUND, old="return -1", new="return -2"),))
+    assert command.main([]) == 2
+    assert f"without any mistake, {POSITIVE} fails already" in capsys.readouterr().err
 
 
 def test_the_table_begins_with_what_is_not_as_it_should_be():

@@ -36,7 +36,7 @@ def in_trees(
     function: Callable[[Item, Path], Result],
     items: Sequence[Item],
     trees: Sequence[Path],
-    done: Callable[[Result], None],
+    done: Callable[[Result], None] = lambda result: None,
 ) -> list[Result]:
     """The results for all items in their order, each worked on in a tree of its own."""
     free: queue.SimpleQueue[Path] = queue.SimpleQueue()
@@ -96,7 +96,7 @@ def main(words: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         trees = [copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
         if not given.skip_baseline:
-            tests = sorted({test for mutant in mutants if not faults(mutant) for test in mutant.tests})
+            tests = sorted({test for mutant in mutants if not faults(mutant, ROOT) for test in mutant.tests})
             parts = [part for part in (tests[n :: len(trees)] for n in range(len(trees))) if part]
             for answer in in_trees(lambda part, tree: ask(tree, part, BASELINE_LIMIT), parts, trees):
                 if not answer.passed:
