@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: report test check bench clean
+.PHONY: report test check bench mutants clean
 
 report: .venv/installed          ## run the grid into crosscheck-results, publish it in reports/results and README.md
 	$(BIN)/crosscheck run --full
@@ -19,6 +19,9 @@ check: .venv/installed-develop   ## style, types, layers
 
 bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the reference beside its peers
 	$(BIN)/crosscheck bench
+
+mutants: .venv/installed         ## about 300 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
+	$(BIN)/python -m tests.mutants $(ONLY)
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

@@ -48,3 +48,19 @@ def test_a_pin_given_twice_falls_back_to_the_smallest_forces() -> None:
     # Of three equal rows each carries a third; the smallest singular values are cut at 1e-9.
     assert np.abs(shared[:, -2:] - shared[:, -6:-4]).max() < 1e-8 * np.abs(once).max()
     assert np.abs(3 * shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
+
+
+def test_two_pins_a_micrometre_apart_fall_back_to_the_smallest_forces() -> None:
+    mechanism = TenLinks().mechanism()
+    last = mechanism.joints[-1]
+    assert isinstance(last, Pin)
+    (x1, y1), (x2, y2) = last.first_point, last.second_point
+    beside = replace(last, name="beside", first_point=(x1, y1 + 1e-6), second_point=(x2, y2 + 1e-6))
+    nearly = replace(mechanism, joints=(*mechanism.joints, beside))
+    # At angles that differ the rows of the two pins do so by 1e-6: the factorisation ends, with pivots of 1e-12, and
+    # forces of a million times their size if nobody looks at the pivots.
+    pose, acceleration = displaced(nearly)
+    assert np.isnan(banded_reaction(nearly, pose, acceleration)).any(axis=1).all()
+    once, shared = mechanism.reaction(pose, acceleration), nearly.reaction(pose, acceleration)
+    assert np.abs(shared).max() < 2 * np.abs(once).max()
+    assert np.abs(shared[:, -4:-2] + shared[:, -2:] - once[:, -2:]).max() < 1e-4 * np.abs(once).max()

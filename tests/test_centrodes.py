@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses, instant_centre
+from reference.centrodes import Centrodes, _assembled, _halved, centrode_error, centrodes, from_poses, instant_centre
 from reference.curves.ellipse import Ellipse
 from reference.four_bar.linkage import FourBar
 from reference.rolling.kinematics import Rolling
@@ -143,6 +143,22 @@ def test_the_stated_error_is_above_the_true_one_and_falls_with_it():
     assert true[0] > 30 * true[1] > 900 * true[2]
 
 
+@pytest.mark.parametrize("worse", ["body", "space"])
+def test_the_stated_error_is_that_of_the_worse_of_the_two_curves(worse):
+    # A circle of 1 mm rolls on the outside of one of a metre, or inside it turns at its own centre's place: the curve
+    # that runs round once a turn is resolved coarsely by eight places a turn, the other, of one gentle arc, well.
+    t = np.linspace(0, 1, 65)
+    small, angle = 1e-3 * np.exp(8j * np.pi * t), 4 * np.pi * t
+    gentle = 1e-3 * np.exp(0.5j * t)
+    space = small if worse == "space" else gentle
+    body = gentle if worse == "space" else small
+    pose = np.column_stack([np.zeros((65, 2)), angle])
+    found = _assembled(pose, *(np.column_stack([z.real, z.imag]) for z in (space, body)))
+    coarse, fine = (_halved(angle, np.column_stack([z.real, z.imag])) for z in (small, gentle))
+    assert coarse > 1e3 * fine
+    assert found.error == coarse
+
+
 def test_neither_speed_nor_wrapping_nor_direction_of_the_table_changes_the_shapes():
     t, pose, _ = coupler(*ARCS["coupler forward"], 401)
     plain = from_poses(t, pose)
@@ -195,9 +211,20 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     )
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.read(io.StringIO(as_dxf(shapes)))
+    assert document.units == 6  # metres, in the format's own list
     lines = {line.dxf.layer: np.array([point[:2] for point in line.get_points()]) for line in document.modelspace()}
     np.testing.assert_allclose(lines["SPACE"], shapes.space, atol=1e-12)
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)
+
+
+def test_what_is_higher_in_the_world_is_higher_in_the_drawing():
+    shapes = shapes_of_motion(*cardan(), points=60)
+    root = ElementTree.fromstring(as_svg(shapes, width=150.0))
+    text = next(path.get("d") for path in root.iter() if path.get("id") == "space")
+    drawn = np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
+    # SVG counts y downwards. One scale for both directions, to the four decimals written.
+    scale = np.ptp(drawn[:, 0]) / np.ptp(shapes.space[:, 0])
+    np.testing.assert_allclose(drawn[1:] - drawn[0], (shapes.space[1:] - shapes.space[0]) * [scale, -scale], atol=2e-4)
 
 
 def test_a_table_of_poses_is_read_in_any_order_of_columns():

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from reference.errata.catalogue import ERRATA, WORD_SLIPS
+from reference.errata.erratum import Values
 from reference.errata.rolling import rolling_acceleration
 from reports import __main__ as command_line
 from reports import referees
 from reports.page import Material
-from reports.pages.errata import PAGE, SNIPPETS, digits
+from reports.pages.errata import PAGE, SNIPPETS, digits, table
 from reports.referees import CONFIRMED, REFEREES, Ruling, Window, rulings
 from reports.rendering import TEMPLATES, render_page
 
@@ -97,6 +98,23 @@ def test_the_acceleration_in_rolling_is_right_as_printed_and_not_with_the_other_
     values = rolling_acceleration()
     assert values.agreement < 1e-12  # rounding over the circle's radius squared
     assert values.miss > 1  # twice the rolling term, 2 w^2 a b / (a + b)
+
+
+def test_a_table_tells_by_how_much_each_formula_misses_what_decides_for_each_engine():
+    erratum = ERRATA[0]
+    computed = Values(np.array([3.0]), np.array([1.0]), np.array([1.25]))
+    measured = Values(np.array([3.0]), np.array([1.0]), np.array([1.5]))
+    lines = [
+        [cell.strip() for cell in line.split("|")[1:-1]]
+        for line in table(erratum, computed, [Ruling(erratum.number, "toy", "a wheel", measured)]).splitlines()
+    ]
+    assert lines[0][1:] == [f"value [{erratum.unit}]", "the printed one misses by", "the right one misses by"]
+    assert lines[2:] == [
+        ["as printed", "3", "1.8", ""],
+        ["as it must be", "1", "", "0.25"],
+        [f"**decides**: {erratum.deciding}", "1.25", "", ""],
+        ["toy: a wheel", "1.5", "1.5", "0.5"],
+    ]
 
 
 def test_the_page_quotes_every_slip_and_says_where_there_is_nothing_to_compute(text):

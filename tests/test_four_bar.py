@@ -278,6 +278,14 @@ def test_grashof_classes_by_name(lengths, ground, name):
     assert FourBar(*lengths, ground).grashof() == name
 
 
+@pytest.mark.parametrize(
+    ("excess", "name"), [(1e-11, "triple-rocker"), (-1e-11, "crank-rocker"), (0.0, "change-point")]
+)
+def test_a_hundredth_of_a_nanometre_a_metre_is_no_rounding(excess, name):
+    # s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
+    assert FourBar(1.0, 1.5, 2.5 - excess, (3.0, 0.0)).grashof() == name
+
+
 def test_a_parallelogram_keeps_its_digits_beside_its_change_point():
     parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
     assert parallelogram.crank_limits() is None
@@ -313,6 +321,14 @@ def test_transmission_angle_is_that_of_the_triangle_and_its_extremes_are_reached
         if linkage.crank_limits() is None:
             assert np.allclose(linkage.transmission_angle(heading + np.array([0, np.pi])), (low, high), atol=1e-12)
         assert np.allclose(linkage.transmission_angle(theta, -1), angle, atol=1e-6)
+
+
+def test_a_coupler_point_across_lies_to_the_left_of_the_coupler():
+    # At the start B = (0, 0.4) and C = (0.4, 0.8): along B -> C is up to the right, and left of that up to the left.
+    diagonal = math.sqrt(0.5)
+    np.testing.assert_allclose(
+        CHAPTER.coupler_point(math.pi / 2, 0.3, 0.1), [0.2 * diagonal, 0.4 + 0.4 * diagonal], atol=1e-15
+    )
 
 
 def test_coupler_point_velocity_and_acceleration_are_its_derivatives():
@@ -397,6 +413,14 @@ def test_the_ground_carries_the_weight_at_rest():
     assert np.max(np.abs(at_a + at_d - (0.0, weight))) < 1e-13
 
 
+@pytest.mark.parametrize("given", [{}, {"density": (1.0, 3.0, 0.5), "gravity": (2.0, -5.0), "theta_ddot": 7.0}])
+def test_the_torque_and_the_pin_forces_asked_for_alone_are_those_asked_for_together(given):
+    theta = np.linspace(0, 6, 20)
+    together = CHAPTER.forces(theta, 10.0, **given)
+    np.testing.assert_array_equal(CHAPTER.drive_torque(theta, 10.0, **given), together.torque)
+    np.testing.assert_array_equal(CHAPTER.reactions(theta, 10.0, **given), together[:4])
+
+
 def test_integrated_rates_at_the_common_tolerance_miss_by_two_hundredths_in_one_revolution():
     times = np.linspace(0, np.pi / 5, 401)
     run = CHAPTER.integrate_rates(times)  # RK45, rtol 1e-3, atol 1e-6
@@ -444,6 +468,16 @@ def test_integration_stops_and_says_so():
         CHAPTER.integrate_rates(times, method="ode45")
     with pytest.raises(ValueError, match="increasing"):
         CHAPTER.integrate_rates([1.0, 0.0])
+
+
+@pytest.mark.parametrize(("method", "cost"), [("euler", 1), ("rk4", 4)])
+def test_a_limit_that_is_a_whole_number_of_steps_is_used_up(method, cost):
+    run = CHAPTER.integrate_rates([0.0, 0.01, 0.02], method=method, every=10, limit=20 * cost)
+    assert run.stopped == ""
+    assert run.evaluations == 20 * cost
+    short = CHAPTER.integrate_rates([0.0, 0.01, 0.02], method=method, every=10, limit=20 * cost - 1)
+    assert short.evaluations == 19 * cost
+    assert "stopped at" in short.stopped
 
 
 def test_the_bench_times_the_same_motion_as_pylinkage():

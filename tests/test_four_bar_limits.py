@@ -61,6 +61,16 @@ def test_the_limit_is_found_backwards_too_and_a_crank_that_turns_fully_has_none(
     assert free.stopping_time == np.inf
 
 
+@pytest.mark.parametrize("rate", [4.0, -4.0])
+def test_the_way_to_the_limit_depends_on_the_sense_of_rotation(rate):
+    scene = OverdrivenFourBar(start=0.3, rate=rate)
+    (low, high), *_ = scene.four_bar.crank_limits()
+    assert scene.stopping_time == pytest.approx((high - 0.3 if rate > 0 else 0.3 - low) / 4, rel=1e-14)
+    scene.motion([scene.stopping_time * (1 - 1e-9)])
+    with pytest.raises(Unreachable, match="can't close"):
+        scene.motion([scene.stopping_time * (1 + 1e-9)])
+
+
 def test_a_parallelogram_with_unequal_sides_is_refused():
     with pytest.raises(InvalidMechanism, match="must be equal"):
         Parallelogram(rocker=0.5)

@@ -16,7 +16,15 @@ from reference.validation import InvalidMechanism
 # No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
 TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
 TURNED = FreeFourBar(
-    crank=0.5, coupler=0.9, rocker=0.8, ground=(-0.6, 0.7), assembly=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0
+    crank=0.5,
+    coupler=0.9,
+    rocker=0.8,
+    ground=(-0.6, 0.7),
+    assembly=-1,
+    rate=-4.0,
+    density=(1.0, 3.0, 0.5),
+    start=1.0,
+    gravity=(3.0, -8.0),
 )
 FREE = (FreeFourBar(), SpinningFourBar(), TRIPLE_ROCKER, TURNED)
 DRIVEN = (
@@ -94,6 +102,15 @@ def test_the_nine_configurations_of_the_figure_end_where_they_begin():
     steps = np.diff(angle[:, 0])
     assert np.max(np.abs(steps - np.pi / 4)) < 1e-14
     assert np.max(np.abs(angle[8, 1:] - angle[0, 1:])) < 1e-14
+
+
+def test_a_scene_is_sampled_every_hundredth_of_a_second():
+    assert FreeFourBar(duration=1.0).samples == 100
+    assert FreeFourBar(duration=1.0).spacing == 0.01
+    # A duration that is no multiple: the samples stand as near to that as their number allows.
+    assert DrivenFourBar().samples == round(0.2 * math.pi / 0.01)
+    assert DrivenFourBar().spacing == pytest.approx(0.2 * math.pi / 63, rel=1e-15)
+    assert FreeFourBar(duration=1e-3).samples == 1
 
 
 @pytest.mark.parametrize("each", FREE)

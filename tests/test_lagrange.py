@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines.lagrange import METHODS, TRUTH, Lagrange
+from engines.lagrange import _RK4, METHODS, TRUTH, Lagrange, _Dynamics, _runge_kutta
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy, joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
@@ -52,6 +52,45 @@ def test_without_stabilisation_the_joints_drift_apart_and_projection_closes_them
     assert gaps["baumgarte"] < gaps["none"]
 
 
+def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_work_against_the_joints():
+    mechanism, random = four_bar(), np.random.default_rng(3)
+    apart = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
+    wild = random.normal(size=mechanism.twist.shape)
+    pose, twist = _Dynamics(mechanism, 0.0).project(apart, wild, 0.0)
+    assert np.max(np.abs(mechanism.gap(pose, 0.0))) < 1e-14
+    assert np.max(np.abs(mechanism.slip(pose, twist))) < 1e-13
+    # The nearest in the metric of the masses: what is taken away carries no momentum along what is left.
+    assert np.sum(mechanism.inertias * (wild - twist) * twist) == pytest.approx(0, abs=1e-13)
+
+
+def test_baumgarte_closes_an_open_joint_critically_damped():
+    # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
+    mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
+    step = _runge_kutta(_Dynamics(mechanism, 1 / constant), _RK4)
+    pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
+    for i in range(150):
+        pose, twist = step(pose, twist, i * dt, dt)
+    times = 150 * dt / constant
+    # RK4 over 150 steps of a fiftieth of the time constant: 1e-7 of the start's gap.
+    assert mechanism.gap(pose, 0.0)[0] == pytest.approx(0.02 * (1 + times) * np.exp(-times), rel=1e-5)
+
+
+def test_baumgartes_spring_knows_the_drives_angle_at_every_stage():
+    mechanism = four_bar(crank_rate=10.0, drive=10.0)
+    run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)(20, 5)
+    # A drive turns evenly, which every stage of a step follows to rounding, if it is asked for its own time.
+    assert np.max(np.abs(joint_gap(mechanism, run)[:, -1])) < 1e-13
+
+
+def test_baumgartes_time_constant_is_five_steps():
+    mechanism = pendulum()
+    run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)
+    moved = mechanism.pose + np.array([1e-3, 0.0, 0.0])
+    # At rest and open by a millimetre the joint accelerates back by gap / T^2.
+    back = mechanism.rows(moved) @ run._dynamics.acceleration(moved, mechanism.twist, 0.0).reshape(-1)
+    np.testing.assert_allclose(back, [-1e-3 / 5e-3**2, 0.0], atol=1e-9)
+
+
 def test_a_driven_crank_keeps_its_rate_and_its_torque_balances_the_power():
     mechanism = four_bar(crank_rate=10.0, drive=10.0)
     run = TRUTH.build(mechanism, 2 * np.pi / 1000)(100, 1)
@@ -75,6 +114,13 @@ def test_a_body_without_joints_falls_freely():
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, 2.0 - 9.81 / 2, 3.0], atol=1e-14)
 
 
+def test_eulers_method_drifts_with_the_velocity_after_its_kick():
+    mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
+    run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
+    # Ten kicks of g dt, each felt by the drift of its own step: g dt^2 (1 + 2 + ... + 10), not (0 + 1 + ... + 9).
+    np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
+
+
 def test_every_integrator_comes_with_every_stabilisation():
     assert len({method.variant for method in METHODS}) == 9
 
@@ -93,6 +139,7 @@ def test_a_wrong_length_is_caught():
         lambda: Lagrange("leapfrog"),
         lambda: Lagrange("rk4", "glue"),
         lambda: Lagrange("rk4", "none", tolerance=1e-6),
+        lambda: Lagrange("dop853", "baumgarte", 1e-9),
         lambda: Lagrange(tolerance=0.0),
         lambda: Lagrange().build(pendulum(), -1e-3),
         lambda: Lagrange().build(pendulum(), float("nan")),

@@ -82,6 +82,17 @@ def test_the_truth_own_error_is_shown_by_two_tolerances(scene: LinkPendulum) -> 
     assert scene.error(np.linspace(0, min(scene.horizon, scene.duration), 7)).max() < 1e-10
 
 
+def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form() -> None:
+    chain, exact = LinkPendulum(links=1, angle=2.0, duration=3.0), BarPendulum()
+    # From half a second on: at the start both are rounding, and so is their difference.
+    t = np.linspace(0.5, 3, 26)
+    true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
+    stated = chain.error(t).max()
+    assert stated > true > 0
+    # Ten times the tolerance, about ten times the error: a bound that says something.
+    assert stated < 1e3 * true
+
+
 def test_one_link_is_the_exact_pendulum() -> None:
     chain, exact = LinkPendulum(links=1, angle=2.0, duration=3.0), BarPendulum()
     t = np.linspace(0, 3, 31)

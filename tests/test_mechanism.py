@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from reference.joints import Drive, Pin
+from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy, joint_gap, slip
 from reference.validation import InvalidMechanism
@@ -104,12 +106,33 @@ def test_energy_gap_and_slip_need_no_reference():
     np.testing.assert_allclose(energy(mechanism, start), [2 / 3], rtol=1e-15)
     assert np.max(np.abs(joint_gap(mechanism, start))) == 0
     assert np.max(np.abs(slip(mechanism, start))) < 1e-15
+    lifted = replace(start, pose=start.pose + np.array([5.0, 2.0, 1.0]))
+    np.testing.assert_allclose(energy(mechanism, lifted), [2 / 3 + 9.81 * 2], rtol=1e-15)
 
 
 def test_scales_come_from_the_description():
     assert four_bar().length_scale == pytest.approx(0.8 * np.sqrt(2))
     assert four_bar(10.0, drive=10.0).time_scale == pytest.approx(0.1)
     assert Mechanism((Body("still", 1, 1, (0, 0, 0)),), ()).time_scale == 1.0
+
+
+def test_a_body_that_only_slides_sets_the_time_scale_by_its_length():
+    # 3 and 4 m/s along a blade whose point is 2 m ahead: the length is 2 m, the speed 5 m/s.
+    body = Body("sled", 1, 1, (0, 0, math.atan2(4, 3)), (3, 4, 0))
+    sliding = Mechanism((body,), (Skate("blade", None, "sled", (2.0, 0.0)),))
+    assert sliding.length_scale == 2
+    assert sliding.time_scale == pytest.approx(2 / 5)
+
+
+@pytest.mark.parametrize(("miss", "taken"), [(1e-11, True), (1e-8, False), (1e-6, False)])
+def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
+    sound = pendulum(angle=-np.pi / 2, rate=1.0)
+    (body,) = sound.bodies
+    apart = replace(body, pose=(body.pose[0] + miss, *body.pose[1:]))
+    sliding = replace(body, twist=(body.twist[0] + miss, *body.twist[1:]))
+    for wrong in (apart, sliding):
+        with nullcontext() if taken else pytest.raises(InvalidMechanism, match="'A x' is"):
+            replace(sound, bodies=(wrong,))
 
 
 @pytest.mark.parametrize(

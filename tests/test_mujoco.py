@@ -152,6 +152,43 @@ def test_free_coordinates_give_the_same_motion_with_every_pin_a_constraint() -> 
     assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 9, 8, 12)
 
 
+def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_first() -> None:
+    mechanism = FREE.mechanism()
+    turned = tuple(
+        replace(pin, first=pin.second, second=None, first_point=pin.second_point, second_point=pin.first_point)
+        if isinstance(pin, Pin) and pin.first is None
+        else pin
+        for pin in mechanism.joints
+    )
+    engine = replace(EXTENDED, coordinates="free")
+    motions = [engine.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
+    # The rows are the negative ones, and the anchor is rounded in another frame.
+    assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
+    grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
+    signs = np.where(grounded, -1.0, 1.0)
+    assert np.abs(motions[0].reaction - signs * motions[1].reaction).max() < 1e-6
+
+
+def test_the_solvers_tolerance_is_measured_by_what_is_not_driven() -> None:
+    compiled = EXTENDED.model(DRIVEN.mechanism(), 1e-3).compiled
+    inertias = sorted(compiled.dof_M0)
+    assert inertias[-1] > 1e10  # the driven crank's armature
+    assert compiled.stat.meaninertia == pytest.approx(np.mean(inertias[:-1]), rel=1e-12)
+
+
+def test_who_listened_to_mujocos_warnings_before_a_run_does_so_afterwards() -> None:
+    def own(message: str) -> None:
+        """Hears nothing."""
+
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(own)
+    try:
+        DEFAULT.build(pendulum(), 1e-3)(2, 1)
+        assert mujoco.get_mju_user_warning() is own
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
 def test_a_tree_closes_only_the_loops() -> None:
     size = EXTENDED.build(FREE.mechanism(), 1e-3).size
     assert (size.bodies, size.coordinates, size.rows, size.solver_rows) == (3, 3, 2, 3)
@@ -185,6 +222,8 @@ def test_a_servo_lags_and_an_overwritten_crank_tears_the_loop_at_any_step() -> N
     for every in (10, 40):
         motion, _ = run(replace(DEFAULT, drive="overwrite"), DRIVEN, every)
         gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
+        # The crank itself is where it is put: at the angle of the sample's own time.
+        assert np.abs(mechanism.gap(motion.pose, motion.t)[:, 8]).max() < 1e-12
         assert any(warning.startswith("ours:") for warning in motion.warnings)
     assert gaps[1] > 0.5 * gaps[0] > 5e-3
 
@@ -332,6 +371,18 @@ def test_bad_steps_are_refused(dt: float) -> None:
 def test_bad_stiffness_is_refused(make: Any) -> None:
     with pytest.raises(ValueError, match="greater than zero"):
         make()
+
+
+@pytest.mark.parametrize("stiffness", [Shipped(), TiedToStep(), TiedToStep(1.0), Hardened()])
+def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
+    mechanism, dt = four_bar(crank_rate=10.0), 1e-3
+    spring, damper = stiffness.gains(mechanism, dt)
+    assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
+    first, second = stiffness.reference(mechanism, dt)
+    if first < 0:  # the direct form tells both; the other a time constant, at least two steps, and a damping ratio
+        assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
+    else:
+        assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
 
 
 def test_the_shipped_stiffness_is_mujocos_own() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import mujoco
@@ -16,7 +17,7 @@ from engines.mujoco.skates import METHODS
 from engines.mujoco.skating import skate_rows
 from engines.mujoco.slots import slot_rows
 from engines.mujoco.tree import spanning_tree
-from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_writer
+from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_writer, writing
 from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.skate.sleigh import ChaplyginSleigh
@@ -172,6 +173,14 @@ def test_a_blade_as_shipped_creeps_whatever_the_step() -> None:
     assert fine > 0.8 * coarse
 
 
+def test_a_thin_wheel_begins_rolling_at_the_blades_own_speed() -> None:
+    mechanism = SLEIGH.mechanism()
+    model = NAMED["thin wheel"].model(mechanism, 1e-3)
+    wheel = model.compiled.joint("wheel skate").dofadr[0]
+    # A tenth of the sleigh's length as radius, and the skate's speed of 1 m/s along its heading.
+    assert model.start().qvel[wheel] == pytest.approx(SLEIGH.speed / (0.1 * mechanism.length_scale), rel=1e-12)
+
+
 def test_without_hardening_written_rows_keep_the_compliance_as_their_floor() -> None:
     soft = NAMED["rows, shipped compliance"]
     assert position_error(soft, SLEIGH, 1e-3) > 0.8 * position_error(soft, SLEIGH, 2e-3) > 1e-6
@@ -244,6 +253,17 @@ def test_callbacks_are_as_they_were_even_after_a_failure() -> None:
     NAMED["passive force"].build(SLEIGH.mechanism(), 1e-2)(2, 1)
     assert mujoco.get_mjcb_control() is None
     assert mujoco.get_mjcb_passive() is None
+
+
+def test_rows_that_can_not_be_written_make_the_reference_no_number() -> None:
+    def rows(t: float, position: list[float], velocity: list[float]) -> tuple[list[float], list[float]]:
+        raise OverflowError("math range error")
+
+    state = np.array([1.0, 2.0])
+    data = SimpleNamespace(time=0.0, qpos=state, qvel=state, efc_J=np.ones(6), efc_aref=np.ones(3))
+    writing(rows, 1, 2)(None, data)
+    assert data.efc_aref[0] == 1  # a row before ours stays
+    assert np.isnan(data.efc_aref[1:]).all()
 
 
 def test_a_motion_that_blows_up_inside_a_callback_ends_as_a_reset() -> None:

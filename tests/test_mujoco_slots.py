@@ -96,6 +96,18 @@ def test_a_slot_in_a_moving_body_is_a_slide_and_a_hinge_or_a_slide_alone(keeps_a
     assert np.abs(motion.reaction - truth.reaction).max() < 1e-9 * np.abs(truth.reaction).max()
 
 
+def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
+    angle, along = 0.6, np.array([np.cos(0.6), np.sin(0.6)])
+    bead = Body("bead", 2.0, 0.1, (0.2, 0.3, 0.0), (0.5 * along[0], 0.5 * along[1], 3.0))
+    slot = Slot("wire", None, "bead", (0.2, 0.3), angle, (0.0, 0.0))
+    mechanism = Mechanism((bead,), (slot,), (0.0, -9.81))
+    motion = replace(EXTENDED, coordinates="free").build(mechanism, 1e-3)(20, 10)
+    way = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
+    # What is left of the compliance: the weight across the wire over the hardened spring's stiffness.
+    assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - way[:, None] * along).max() < 1e-7
+    assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
+
+
 def test_a_slot_that_no_slide_stands_for_is_a_written_row_and_is_refused_without() -> None:
     mechanism = slotted_arm(False)
     truth = lagrange.TRUTH.build(mechanism, 1e-2)(20, 1)

@@ -107,12 +107,16 @@ def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
     folded[0], folded[3] = (0.5, 0.0, 0.0), (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank)
     assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14  # an assembly too
     assert scene.branch(folded) == -1
-    # And the second on its right: crank 2 along the ground to pivot 1, coupler 1 back along crank 1.
-    folded = scene.motion([0.3]).pose[0].copy()
-    folded[2] = (1.5, 0.0, math.pi)
-    folded[4] = (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank + math.pi)
-    assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14
-    assert scene.branch(folded) == -1
+    # And the second on its right: crank 2 along the ground to pivot 1, coupler 1 back along crank 1; while crank 1
+    # stands upright, and while it lies to the left, where a parallelogram is nearer than the first way to fold.
+    for t in (0.3, 1.25):
+        folded = scene.motion([t]).pose[0].copy()
+        crank = folded[1, 2]
+        folded[2] = (1.5, 0.0, math.pi)
+        folded[4] = (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank + math.pi)
+        assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14
+        assert scene.branch(folded) == -1
+    assert math.cos(crank) < -1 / 2
 
 
 def test_the_benchmark_starts_upright_with_one_metre_a_second() -> None:

@@ -147,6 +147,16 @@ def test_passages_are_the_times_at_an_angle_and_none_is_missed(angle: float, rat
     assert np.count_nonzero(fine[1:] * fine[:-1] < 0) == len(times)
 
 
+def test_a_passage_at_the_start_and_one_at_the_end_are_counted() -> None:
+    # Upright in the middle, where sn is zero exactly: the start is a passage at t = 0, not next to it.
+    pendulum = Pendulum(FREQUENCY, 0.0, 1.0)
+    times = pendulum.passages(0.0, 10.0)
+    assert times[0] == 0
+    last = float(times[-1])
+    assert list(pendulum.passages(0.0, last)) == list(times)
+    assert list(pendulum.passages(0.0, math.nextafter(last, 0))) == list(times[:-1])
+
+
 def test_an_angle_out_of_reach_has_no_passages() -> None:
     assert len(Pendulum(FREQUENCY, 1.0).passages(1.5, 10.0)) == 0
 

@@ -9,12 +9,14 @@ import numpy as np
 import pymunk
 import pytest
 from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import lib
 from scipy.special import ellipj, ellipk
 
 from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, bare_loop
+from engines.pymunk.recorder import Recorder
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
@@ -115,6 +117,18 @@ def test_a_crank_turns_about_its_pin_whatever_the_order_of_its_joints(grounded_f
         # Before the first sample no step lies: there stands the third step's force, 0.09 rad on, or what the third and
         # fourth extrapolate to, 6 (rate dt)^2 of the force away, or that extrapolated, with a fifth of the step.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
+
+
+def test_bodies_are_recorded_in_the_order_asked_for_whatever_the_order_in_which_c_visits_them():
+    model = DEFAULT.model(four_bar(), 1e-3)
+    told = []
+    for bodies in (model.bodies, model.bodies[::-1]):
+        recorder = Recorder(model.space, bodies, 2, 0)
+        for _ in range(2):
+            lib.cpSpaceEachBody(model.space._space, recorder.visitor, recorder.states)
+        told.append(recorder.read(1, with_velocities=False)[0])
+    np.testing.assert_array_equal(told[0], told[1][:, ::-1])
+    np.testing.assert_array_equal(told[0][0, :, :3], four_bar().pose)
 
 
 def test_two_bodies_of_prescribed_motion_cannot_be_joined():

@@ -15,7 +15,7 @@ from engines import Size, Unsupported
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, slots
 from engines.pymunk.contraction import contraction, gain, sweeps
-from reference.joints import Drive, Slot
+from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.n_four_bar import NFourBar
 from reference.pendulum.scenes import LinkPendulum, TenLinks
@@ -134,6 +134,21 @@ def test_a_body_driven_against_the_ground_without_a_pin_turns_exactly(method):
     assert largest(trajectory.pose[:, 0, 2] - 0.2 - 2.0 * trajectory.t) < 1e-11  # 1600 steps, weighted
     # A slot stops the fall, and nothing stops the slide.
     assert largest(trajectory.pose[-1, 0, 0] - trajectory.t[-1]) < 1e-11
+
+
+@every_method
+def test_what_hangs_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
+    block = Body("block", 1.0, 0.1, (0.0, 0.0, 0.0))
+    pendulum = Body("pendulum", 2.0, 0.1, (0.8, 0.0, 0.0))
+    joints = (
+        Drive("level", None, "block", 0.0, 0.0),
+        Slot("guide", None, "block", (0.0, 0.0), 0.0, (0.0, 0.0)),
+        Pin("hook", "block", "pendulum", (0.3, 0.0), (-0.5, 0.0)),
+    )
+    trajectory = method.build(Mechanism((block, pendulum), joints, (0.0, -9.81)), 1e-3)(20, 10)
+    # The bar falls from level, 0.3 m off the block's middle: its weight would turn the block if it could be turned.
+    assert largest(trajectory.pose[:, 0, 2]) < 1e-12
+    assert largest(trajectory.pose[-1, 1, 2]) > 0.1
 
 
 def test_a_second_drive_of_a_body_that_can_only_turn_as_driven_is_refused():

@@ -132,6 +132,15 @@ def test_a_scene_that_slips_and_hops_ends_its_horizon_there():
     assert RollingEllipse(friction=0.25).horizon < 1.0
 
 
+def test_a_contact_that_must_pull_needs_infinite_friction():
+    scene = RollingOnCircle()
+    beyond = np.linspace(scene.hop * (1 + 1e-6), scene.duration, 20)
+    law = scene.motion_law
+    pulling = law.forces(beyond)[1] < 0
+    assert pulling.any()
+    assert np.all(law.required_friction(beyond)[pulling] == math.inf)
+
+
 def test_small_oscillations_have_the_closed_frequencies():
     a, b = 0.5, 0.3
     flat = RollingEllipse().motion_law
