@@ -26,7 +26,8 @@ class AllowListContract(Contract):
 
     def check(self, graph: ImportGraph, verbose: bool) -> ContractCheck:
         source, within = str(self.source), str(self.within)
-        reached = {name for name in graph.find_upstream_modules(source, as_package=True) if name.startswith(f"{within}.")}
+        upstream = graph.find_upstream_modules(source, as_package=True)
+        reached = {name for name in upstream if name.startswith(f"{within}.")}
         chains = {
             name: graph.find_shortest_chain(source, name, as_packages=True)
             for name in sorted(reached)
