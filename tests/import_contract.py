@@ -1,0 +1,50 @@
+"""The import contract of engines, for import-linter: of the reference they may reach an allow-list, and nothing else.
+
+A list of what is forbidden forgets what is added later. Here a closed form is refused whatever its name is, also when
+an adapter reaches it through another module. pyproject.toml names this class and the list.
+"""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+
+from grimp import ImportGraph
+from importlinter import Contract, ContractCheck, fields, output
+
+
+class AllowListContract(Contract):
+    """`source` may import, also indirectly, of the package `within` only the modules that `allowed` names.
+
+    An entry that ends in ".*" allows all modules of a package, the package itself included.
+    """
+
+    type_name = "allow_list"
+
+    source = fields.StringField()
+    within = fields.StringField()
+    allowed = fields.ListField(subfield=fields.StringField())
+
+    def check(self, graph: ImportGraph, verbose: bool) -> ContractCheck:
+        source, within = str(self.source), str(self.within)
+        upstream = graph.find_upstream_modules(source, as_package=True)
+        reached = {name for name in upstream if name.startswith(f"{within}.")}
+        chains = {
+            name: graph.find_shortest_chain(source, name, as_packages=True)
+            for name in sorted(reached)
+            if not self._is_allowed(name)
+        }
+        unused = [entry for entry in self.allowed if not any(self._matches(name, str(entry)) for name in reached)]
+        return ContractCheck(kept=not chains and not unused, metadata={"chains": chains, "unused": unused})
+
+    def _is_allowed(self, name: str) -> bool:
+        return any(self._matches(name, str(entry)) for entry in self.allowed)
+
+    @staticmethod
+    def _matches(name: str, entry: str) -> bool:
+        return fnmatchcase(name, entry) or (entry.endswith(".*") and name == entry[:-2])
+
+    def render_broken_contract(self, check: ContractCheck) -> None:
+        for name, chain in check.metadata["chains"].items():
+            output.print_error(f"{self.source} may not reach {name}: {' -> '.join(chain or ())}")
+        for entry in check.metadata["unused"]:
+            output.print_error(f"{entry} is allowed, and {self.source} does not import it: take it off the list")
