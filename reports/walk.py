@@ -57,7 +57,7 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
     """
     chosen, workers = tuple(chosen), workers or os.cpu_count() or 1
     found: dict[Scene, Prediction] = {}
-    for (scene, _), result in supervise(_predicted, predictions(chosen).items(), JUDGE_LIMIT, workers):
+    for (scene, _), result, _ in supervise(_predicted, predictions(chosen).items(), JUDGE_LIMIT, workers):
         if isinstance(result, Loss):
             raise RuntimeError(f"the judge has no prediction for {scene.name}: {result.sentence}")
         found[scene] = result

@@ -46,7 +46,7 @@ class Pair(Scene):
         joints = (Pin("axle", None, "first", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "first", 5.0, 0.0))
         return Mechanism((first, second), joints, (0.0, -10.0))
 
-    def motion(self, t: ArrayLike) -> Trajectory:
+    def _motion(self, t: ArrayLike) -> Trajectory:
         """The second disc moves along x at 6 t: not a motion of this mechanism, and no error knows that."""
         t = np.asarray(t, dtype=float)
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))

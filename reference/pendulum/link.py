@@ -127,7 +127,7 @@ class Pendulum(Valid):
         return times[(times >= 0) & (times <= until)]
 
 
-def direction_of(angle: Array) -> Array:
+def direction_of(angle: NDArray[Any]) -> Any:
     """From the pin down a link (..., 2) [1], for angles from the downward vertical, counter-clockwise [rad]."""
     return np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
 
