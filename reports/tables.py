@@ -120,8 +120,9 @@ def size_table(rows: Iterable[Measurement]) -> str:
     own: list[str] = []
     sizes: dict[tuple[int, ...], dict[str, list[str]]] = {}
     for members in groups(rows).values():
-        row = members[0]
-        if not own:
+        # What could not be built has no sizes.
+        row = next((row for row in members if row.own_bodies), members[0])
+        if not own and row.own_bodies:
             freedoms = f"*the mechanism itself, {row.own_freedoms} freedom{'' if row.own_freedoms == 1 else 's'}*"
             own = [*map(str, (row.own_bodies, row.own_coordinates, row.own_rows)), NOTHING, freedoms]
         if row.bodies:
