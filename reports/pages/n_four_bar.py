@@ -36,9 +36,8 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and the errors that are soft.
-
-    `soft` is UNMEASURED unless all that was run of it left the branch, as the sentence says.
+    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: the errors of
+    soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
     """
     lookups = told(material, SCENES_HERE)
 
