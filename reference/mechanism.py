@@ -7,6 +7,7 @@ mechanism's vectors q and v stack them in the order of `Mechanism.bodies`. Nothi
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -18,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Drive, Joint, Vector
+from reference.memory import require_room
 
 Triple = tuple[float, float, float]
 
@@ -25,6 +27,8 @@ Triple = tuple[float, float, float]
 # more than this fraction of the mechanism's own length or speed is refused: far above rounding, far below a mistake.
 RANK_TOLERANCE = 1e-9
 START_TOLERANCE = 1e-9
+# The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
+LARGEST_RANK = 2**28
 
 
 @dataclass(frozen=True)
@@ -84,8 +88,8 @@ class Mechanism:
         if not self.bodies:
             raise InvalidMechanism("mechanism: it has no bodies; give at least one")
         for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
-            for name in names:
-                if names.count(name) > 1:
+            for name, count in Counter(names).items():
+                if count > 1:
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
         for joint in self.joints:
             for name in (joint.first, joint.second):
@@ -177,6 +181,10 @@ class Mechanism:
         """Which rows are derivatives of a position (rows,)."""
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
+    def require_room(self, samples: int) -> None:
+        """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than memory.LARGEST."""
+        require_room("mechanism: a trajectory", (samples + 1, len(self.bodies), 3))
+
     def _with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
         pose = np.asarray(pose)
         return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
@@ -195,10 +203,15 @@ class Mechanism:
         return out
 
     def rows(self, pose: NDArray[Any]) -> NDArray[Any]:
-        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes."""
+        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes.
+
+        Dense, though each row has two bodies: raises InvalidMechanism where that would take more than memory.LARGEST.
+        """
         everything = self._with_ground(pose)
         leading, count = everything.shape[:-2], everything.shape[-2]
-        out = np.zeros((*leading, self.row_count, count, 3), dtype=np.result_type(everything, float))
+        kind = np.result_type(everything, float)
+        require_room("mechanism: dense rows", (*leading, self.row_count, count, 3), kind.itemsize)
+        out = np.zeros((*leading, self.row_count, count, 3), dtype=kind)
         for group in self._groups:
             block = group.joint.rows(everything[..., group.first, :], everything[..., group.second, :])
             out[..., group.rows, group.first[:, None], :] += block[..., 0:3]
@@ -207,12 +220,23 @@ class Mechanism:
 
     def slip(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
         """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
-        return (self.rows(pose) @ _column(twist))[..., 0] - self.rate
+        return self._velocities(pose, twist) - self.rate
 
     def bias(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
-        return -(np.imag(self.rows(pose + 1j * step * twist)) @ _column(twist))[..., 0] / step
+        return -np.imag(self._velocities(pose + 1j * step * twist, twist)) / step
+
+    def _velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+        """J v (..., rows) joint by joint: O(joints), where J alone is O(joints bodies)."""
+        poses, twists = self._with_ground(pose), self._with_ground(twist)
+        leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
+        out = np.zeros((*leading, self.row_count), dtype=np.result_type(poses, twists, float))
+        for group in self._groups:
+            block = group.joint.rows(poses[..., group.first, :], poses[..., group.second, :])
+            ends = np.concatenate([twists[..., group.first, :], twists[..., group.second, :]], axis=-1)
+            out[..., group.rows] = (block @ ends[..., None])[..., 0]
+        return out
 
     def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
@@ -220,6 +244,8 @@ class Mechanism:
         pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
         have applied. Unique when the rows are independent; of redundant rows it gives the smallest.
         """
+        if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(acceleration) == 2:
+            return self.reaction(np.asarray(pose)[None], np.asarray(acceleration)[None])[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
             found = banded_reaction(self, pose, acceleration)
             dependent = np.isnan(found).any(axis=1)
@@ -238,8 +264,11 @@ class Mechanism:
     def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
         """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
 
-        A skate takes a freedom of velocity and none of configuration; a drive takes one of both.
+        A skate takes a freedom of velocity and none of configuration; a drive takes one of both. Dense linear algebra,
+        O(bodies^3): raises InvalidMechanism where the rows take more than LARGEST_RANK.
         """
+        shape = (self.row_count, 3 * len(self.bodies))
+        require_room("mechanism: the rank of rows", shape, largest=LARGEST_RANK)
         rows = self.rows(self.pose if pose is None else pose)
         coordinates = rows.shape[-1]
         return coordinates - _rank(rows[self.holonomic]), coordinates - _rank(rows)

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
+from reference.memory import require_room
 from reference.pendulum.link import Pendulum, across, direction_of
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -119,6 +120,7 @@ class NFourBar(Scene):
 
     def motion(self, t: ArrayLike) -> Trajectory:
         t = np.atleast_1d(np.asarray(t, dtype=float))
+        require_room(f"scene {self.name!r}: a trajectory", (len(t), 2 * self.loops + 1, 3))
         angle, rate, acceleration = self.pendulum.motion(t)
         pose, twist, _ = self._placement(angle, rate, acceleration)
         return Trajectory(t, pose, twist, self.forces(angle, rate, acceleration))

@@ -70,6 +70,7 @@ class MuJoCoRun:
     def __call__(self, samples: int, every: int) -> Trajectory:
         """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already."""
         check_counts(samples, every)
+        self.model.mechanism.require_room(samples)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
         step = self.model.compiled.opt.timestep

@@ -179,6 +179,7 @@ class PymunkRun:
     def __call__(self, samples: int, every: int) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         check_counts(samples, every)
+        self._mechanism.require_room(samples)
         if self._model is None:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         model, self._model = self._model, None

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh, solveh_banded
 
 from reference.checks import InvalidMechanism, require_finite, require_positive
+from reference.memory import require_room
 from reference.numerics.integration import error_of, integrate
 from reference.pendulum.link import across, direction_of
 
@@ -107,7 +108,11 @@ class Chain:
 
     @cached_property
     def inertia_matrix(self) -> Array:
-        """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links)."""
+        """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
+
+        Raises InvalidMechanism where that would take more than memory.LARGEST.
+        """
+        require_room("chain: the dense inertia matrix", (self.links, self.links))
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])  # mass hanging from each link
         lever = self._length * (self._mass / 2 + below)
         index = np.arange(self.links)

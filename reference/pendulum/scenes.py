@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.checks import InvalidMechanism, require_finite, require_positive
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.memory import require_room
 from reference.numerics.integration import Integrated, integrate
 from reference.pendulum.chain import Chain
 from reference.scene import Scene
@@ -63,6 +64,7 @@ class LinkPendulum(Scene):
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """Angles and rates (times, links) at times t >= 0 [s]."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
+        require_room(f"scene {self.name!r}: a trajectory", (len(t), self.links, 3))
         state = _integrated(self.chain, self.angle, self.rate, max(self.duration, float(t.max())))(t)
         return state[:, : self.links], state[:, self.links :]
 
