@@ -14,13 +14,14 @@ from functools import cache
 import pytest
 
 from engines import Unsupported
-from reports import observing, referees, theme
+from reports import observing, referees, rolling_charts, rolling_drawings, theme
 from reports.cells import Cell
 from reports.choice import page_cells
 from reports.measure import Measurement, blank
 from reports.outcomes import Outcome
 from reports.page import Material, Page
-from reports.pages import PAGES, skate_failures, wheels_failures
+from reports.pages import PAGES, rolling, scaling, skate_failures, wheels_failures
+from reports.pages.rolling_failures import polygon_cells, softness_cells
 from reports.rendering import environment, render_index, render_page, render_readme
 from reports.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
@@ -31,6 +32,9 @@ NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name !
 FROM_ROWS = tuple(page for page in PAGES if page_cells(page))  # the two others are computed when they are written
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
 DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
+
+# Some errors stay and others fall: only of those that stay can a sentence say where.
+PLATEAU = ("however small the step", "at every step", "(plateau ")
 
 Rows = Mapping[Cell, Measurement]
 
@@ -96,6 +100,7 @@ def undrawn(monkeypatch):
                 monkeypatch.setattr(module, name, lambda *arguments, **settings: None)
             elif value is theme.svg:
                 monkeypatch.setattr(module, name, lambda figure, title: "<svg/>")
+    monkeypatch.setattr(rolling_drawings, "roulettes", lambda: None)
 
 
 @cache
@@ -104,7 +109,7 @@ def pictures_of_the_truth(page: Page) -> Mapping[str, str]:
 
 
 def cheap(page: Page) -> Page:
-    """A page without what needs no rows and takes long: methods that are no engines, and pictures of the truth alone."""
+    """A page without what needs no rows and takes long: methods that are no engines, pictures of the truth alone."""
     quiet = tuple(replace(failure, observations=None) for failure in page.failures)
     if page.name in DRAWN_FROM_ROWS:
         return replace(page, failures=quiet)
@@ -128,18 +133,32 @@ def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
 @pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
-    rows = whole(page)
-    chance = random.Random(page.name)
+    chance, rows = random.Random(page.name), whole(page)
     few = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
-    broken = {cell: replace(row, **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan)) for cell, row in few.items()}
-    drawn = replace(page, figures=page.figures if page.name in DRAWN_FROM_ROWS[1:] else lambda material: {})
-    for material in (few, broken):
-        for name, text in written(replace(cheap(page), figures=drawn.figures), material).items():
-            assert not name.endswith(".svg") or text.startswith("<?xml")
+    for cell in list(few)[::2]:
+        few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
+    for name, text in written(replace(cheap(page), figures=lambda material: {}), few).items():
+        assert not name.endswith(".svg") or text.startswith("<?xml")
+
+
+def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones():
+    chance = random.Random(0)
+    rows = whole(rolling.PAGE)
+    corners = [(value, rows[cell]) for value, cell in polygon_cells()]
+    constants = [(value, rows[cell]) for value, cell in softness_cells()]
+    chains = whole(scaling.PAGE)
+    for count in (1, 4):
+        few = [chance.sample(own, count) for own in (corners, constants)]
+        failed = [[(value, replace(row, angle=math.nan)) for value, row in own] for own in few]
+        assert theme.svg(rolling_charts.draw_plateaus(*few), "few")
+        assert theme.svg(rolling_charts.draw_plateaus(*failed), "failed")
+        some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
+        for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
+            assert scaling.figures(Material(own))
 
 
 def test_the_overview_can_be_read_whatever_was_run():
-    for seed in range(SUBSETS):
+    for seed in range(4):
         materials = {page: Material(some(whole(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
         text = render_index(materials.items(), "the command")
         assert complaints("index", {"index.md": text}) == [], seed
@@ -152,7 +171,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
     vanished: list[str] = []
 
     def kept(clause: str) -> str:
-        if MARK in clause:
+        if MARK in clause and not any(words in clause for words in PLATEAU):
             vanished.append(clause)
         return "" if MARK in clause else clause
 
@@ -166,7 +185,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
     [
         ("{{ row.angle | number }}", WORDS),
         ("{{ row.cpu | milliseconds }}", WORDS),
-        ("{{ 1e3 * row.step / row.other.step | number }}", WORDS),
+        ("{{ (1e3 * row.step / row.other.step) | number }}", WORDS),
         ("{{ rows[3].step | number(3) }}", WORDS),
         ("{{ '%.2f' | format(row.order) }}", WORDS),
         ("{{ row }} {{ unknown }} {{ nothing }}", f"{WORDS} {WORDS} {WORDS}"),
@@ -175,7 +194,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
         ("a{% filter if_measured %}: {{ 0.25 | number }} rad{% endfilter %}.", "a: 0.25 rad."),
         (
-            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ unknown | number }}{% endfilter %}{% endfilter %}.",
+            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
             "a: 1.",
         ),
         ("a\n![A chart]({{ pictures.chart }})\nb", "a\nb"),
@@ -193,10 +212,8 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
     assert without_marks(environment().from_string(template).render(given)) == said
 
 
-@pytest.mark.parametrize(
-    ("raised", "word"), [(RuntimeError("no such thing"), "no such thing"), (Unsupported("no"), "")]
-)
-def test_an_engine_that_fails_while_a_page_is_written_costs_its_own_line_alone(raised, word, monkeypatch):
+@pytest.mark.parametrize("raised", [RuntimeError("no such thing"), Unsupported("no such joint")])
+def test_an_engine_that_fails_while_a_page_is_written_costs_its_own_line_alone(raised, monkeypatch):
     def fails(cell):
         raise raised
 
@@ -205,7 +222,7 @@ def test_an_engine_that_fails_while_a_page_is_written_costs_its_own_line_alone(r
         told = observations()
         assert [seen for seen in told if "exact" in seen.method or "reference" in seen.method]
         lost = [seen for seen in told if "failed: RuntimeError: no such thing" in seen.outcome]
-        assert bool(lost) == bool(word)
+        assert bool(lost) == isinstance(raised, RuntimeError)
 
 
 def test_a_referee_that_fails_is_named_and_the_others_rule():

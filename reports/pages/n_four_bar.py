@@ -36,7 +36,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: the errors of
+    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
     soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
     """
     lookups = told(material, SCENES_HERE)

@@ -28,6 +28,8 @@ COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler proje
 BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_rolls.STALE_PIVOT, pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED)
 ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_rolls.METHODS)
 
+HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
+
 
 def compared(scene: Scene, engine: Engine) -> bool:
     """All but exact multipliers where each contact is a search within a search: the tests hold those to the truth."""
@@ -67,7 +69,7 @@ def words(material: Material) -> Mapping[str, Any]:
     polygons = Known(
         {(corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows}
     )
-    return {**told(material, SCENES_HERE), "at": at, "polygons": polygons, "hill": RollingOnCircle()}
+    return {**told(material, SCENES_HERE), "at": at, "polygons": polygons, "hill": HILL}
 
 
 PAGE = Page(

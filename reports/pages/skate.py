@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -145,7 +146,8 @@ def constructions(rows: Sequence[Measurement]) -> str:
     return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=2)
 
 
-def counted(scenes: Sequence[Scene]) -> str:
+@cache
+def counted(scenes: tuple[Scene, ...]) -> str:
     """Freedoms of scenes by rank and by brackets, as a table."""
     body = []
     for scene in scenes:
