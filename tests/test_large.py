@@ -20,8 +20,8 @@ from reference.wheels.car_and_trailer import CarAndTrailer
 from tests.mechanisms import four_bar
 
 LINKS = 5_000
-# Measured: 1.4 to 1.9 kB a link, in Python objects and in arrays of all of them. One dense matrix of the rows alone would
-# be 48 N bytes a link: 240 kB with 5000 links.
+# Measured: 1.4 to 1.9 kB a link, in Python objects and in arrays of all of them. One dense matrix of the rows alone
+# would be 48 N bytes a link: 240 kB with 5000 links.
 BYTES_A_LINK = 4_000
 
 
