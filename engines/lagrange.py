@@ -210,6 +210,7 @@ class _LagrangeRun:
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
+        self._mechanism.require_room(samples)
         dynamics, mechanism, step = self._dynamics, self._mechanism, self._step()
         steps, dt = (1, self._dt * every) if self._engine.tolerance is not None else (every, self._dt)
         project = self._engine.stabilisation == "projection"

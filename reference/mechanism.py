@@ -7,6 +7,7 @@ mechanism's vectors q and v stack them in the order of `Mechanism.bodies`. Nothi
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, fields
@@ -19,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.joints import Drive, Joint, Vector
 from reference.kinds import Floats
+from reference.memory import require_room
 from reference.row_system import rank, reactions
 from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
@@ -28,6 +30,8 @@ States = AnyComplexes  # (..., bodies, 3)
 # A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
 # rounding, far below a mistake.
 START_TOLERANCE = 1e-9
+# The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
+LARGEST_RANK = 2**28
 
 
 @dataclass(frozen=True)
@@ -82,8 +86,8 @@ class Mechanism(Valid):
         if not self.bodies:
             raise InvalidMechanism("mechanism: it has no bodies; give at least one")
         for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
-            for name in names:
-                if names.count(name) > 1:
+            for name, count in Counter(names).items():
+                if count > 1:
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
         for joint in self.joints:
             for name in (joint.first, joint.second):
@@ -181,6 +185,10 @@ class Mechanism(Valid):
         """Which rows are derivatives of a position (rows,)."""
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
+    def require_room(self, samples: int) -> None:
+        """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than memory.LARGEST."""
+        require_room("mechanism: a trajectory", (samples + 1, len(self.bodies), 3))
+
     def _with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
         if pose.shape[-2:] != (len(self.bodies), 3):
             raise InvalidMechanism(
@@ -205,10 +213,15 @@ class Mechanism(Valid):
 
     @validated
     def rows(self, pose: States) -> NDArray[Any]:
-        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes."""
+        """The velocity rows J (..., rows, 3 bodies) at poses (..., bodies, 3); analytic, so a complex step passes.
+
+        Dense, though each row has two bodies: raises InvalidMechanism where that would take more than memory.LARGEST.
+        """
         everything = self._with_ground(pose)
         leading, count = everything.shape[:-2], everything.shape[-2]
-        out = np.zeros((*leading, self.row_count, count, 3), dtype=np.result_type(everything, float))
+        kind = np.result_type(everything, float)
+        require_room("mechanism: dense rows", (*leading, self.row_count, count, 3), kind.itemsize)
+        out = np.zeros((*leading, self.row_count, count, 3), dtype=kind)
         for group in self._groups:
             block = group.joint.rows(everything[..., group.first, :], everything[..., group.second, :])
             out[..., group.rows, group.first[:, None], :] += block[..., 0:3]
@@ -218,13 +231,24 @@ class Mechanism(Valid):
     @validated
     def slip(self, pose: States, twist: States) -> NDArray[Any]:
         """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
-        return (self.rows(pose) @ _column(twist))[..., 0] - self.rate
+        return self._velocities(pose, twist) - self.rate
 
     @validated
     def bias(self, pose: Numbers, twist: Numbers) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
-        return -(np.imag(self.rows(pose + 1j * step * twist)) @ _column(twist))[..., 0] / step
+        return -np.imag(self._velocities(pose + 1j * step * twist, twist)) / step
+
+    def _velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+        """J v (..., rows) joint by joint: O(joints), where J alone is O(joints bodies)."""
+        poses, twists = self._with_ground(pose), self._with_ground(twist)
+        leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
+        out = np.zeros((*leading, self.row_count), dtype=np.result_type(poses, twists, float))
+        for group in self._groups:
+            block = group.joint.rows(poses[..., group.first, :], poses[..., group.second, :])
+            ends = np.concatenate([twists[..., group.first, :], twists[..., group.second, :]], axis=-1)
+            out[..., group.rows] = (block @ ends[..., None])[..., 0]
+        return out
 
     @validated
     def reaction(
@@ -250,6 +274,8 @@ class Mechanism(Valid):
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Reactions (..., rows) that move masses (bodies, 3) by `excess` (..., bodies, 3) other than in free fall."""
+        if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
+            return self.forces(pose[None], excess[None], inertias)[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
             found = banded_reaction(self, pose, excess, inertias)
             dependent = np.isnan(found).any(axis=1)
@@ -269,8 +295,11 @@ class Mechanism(Valid):
     def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:
         """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
 
-        A skate takes a freedom of velocity and none of configuration; a drive takes one of both.
+        A skate takes a freedom of velocity and none of configuration; a drive takes one of both. Dense linear algebra,
+        O(bodies^3): raises InvalidMechanism where the rows take more than LARGEST_RANK.
         """
+        shape = (self.row_count, 3 * len(self.bodies))
+        require_room("mechanism: the rank of rows", shape, largest=LARGEST_RANK)
         rows = self.rows(self.pose if pose is None else pose)
         coordinates = rows.shape[-1]
         length = self.length_scale

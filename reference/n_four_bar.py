@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
+from reference.memory import require_room
 from reference.pendulum.link import Pendulum, across, direction_of
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
@@ -114,6 +115,7 @@ class NFourBar(Scene):
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
+        require_room(f"scene {self.name!r}: a trajectory", (len(times), 2 * self.loops + 1, 3))
         # The double nearest to pi is not quite the top, from which a chain at rest must not fall.
         still = np.zeros(len(times))
         angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (still + math.pi, still, still)

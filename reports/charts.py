@@ -5,6 +5,7 @@ Engine is colour and marker shape; variant is line style and marker filling, so 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -71,8 +72,13 @@ def _shown_variants(rows: Sequence[Measurement]) -> dict[str, list[str]]:
     return found
 
 
-def _comparable(rows: Iterable[Measurement]) -> list[Measurement]:
-    return [row for row in rows if row.purpose == "sweep" and Outcome(row.outcome).comparable]
+def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
+    """The rows of sweeps whose error has a place on a logarithmic axis."""
+    return [
+        row
+        for row in rows
+        if row.purpose == "sweep" and Outcome(row.outcome).comparable and 0 < getattr(row, field) < math.inf
+    ]
 
 
 def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure, list[Axes]]:
@@ -120,7 +126,7 @@ def work_precision(
 
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
     """
-    rows = [row for row in _comparable(rows) if getattr(row, field) > 0 and row.cpu > 0]
+    rows = [row for row in drawable(rows, field) if row.cpu > 0]
     scenes = list(dict.fromkeys(row.scene for row in rows))
     shown = [row for row in rows if featured(row)]
     variants = _shown_variants(shown)
@@ -152,7 +158,7 @@ def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
 ) -> Figure:
     """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
-    rows = [row for row in _comparable(rows) if getattr(row, field) > 0 and featured(row)]
+    rows = [row for row in drawable(rows, field) if featured(row)]
     scenes = list(dict.fromkeys(row.scene for row in rows))
     variants = _shown_variants(rows)
     with settings():

@@ -34,14 +34,17 @@ def errata(
         from reports.referees import rulings
         from reports.tables import number as short
 
+        lost: list[str] = []
         said = [
             (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
-            for r in rulings()
+            for r in rulings(lost=lost)
             if r.number in (number or known)
         ]
         wide.print()
         header = ("no.", "engine", "its motion", "printed misses by", "right misses by")
         print_table(wide, "Engines as referees", header, said, 3)
+        for sentence in lost:
+            wide.print(sentence, markup=False)
 
 
 def rows_of_slips() -> list[tuple[str, ...]]:

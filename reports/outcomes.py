@@ -40,6 +40,11 @@ class Outcome(StrEnum):
         """Whether the errors of such a cell say how exact the method is (else they only say that it failed)."""
         return self in (Outcome.FINISHED, Outcome.CONVERGED, Outcome.PLATEAU)
 
+    @property
+    def wrong(self) -> bool:
+        """Whether the cell ran and what it did is not the scene's motion."""
+        return self in (Outcome.SATURATED, Outcome.BRANCH_FLIP, Outcome.TORN, Outcome.DIVERGED, Outcome.RESET)
+
 
 MEANINGS = {
     Outcome.FINISHED: "ran to its end on the right branch with closed joints; too few steps to say more",

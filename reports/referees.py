@@ -153,18 +153,26 @@ class Ruling:
     values: Values
 
 
-def rulings(referees: Iterable[Engine] = REFEREES) -> tuple[Ruling, ...]:
-    """Every referee's answer to every question, by number; an engine that has no such joint says nothing."""
-    found = []
+def rulings(referees: Iterable[Engine] = REFEREES, lost: list[str] | None = None) -> tuple[Ruling, ...]:
+    """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
+
+    Whatever else an engine raises becomes a sentence in `lost`, if that is given.
+    """
+    found: list[Ruling] = []
     referees = tuple(referees)
     for question in QUESTIONS:
         mechanism = question.mechanism()
         for engine in referees:
+            method = f"{engine.name} {engine.variant}"
             try:
                 motion = engine.build(mechanism, SPACING)(SAMPLES, 1)
+                said = question.read(Window(motion.pose[-POINTS:], motion.twist[-POINTS:]))
             except Unsupported:
                 continue
-            window = Window(motion.pose[-POINTS:], motion.twist[-POINTS:])
-            method = f"{engine.name} {engine.variant}"
-            found += [Ruling(number, method, question.about, v) for number, v in question.read(window).items()]
+            except Exception as reason:
+                if lost is None:
+                    raise
+                lost.append(f"{method} failed where {question.about}: {type(reason).__name__}: {reason}")
+                continue
+            found += [Ruling(number, method, question.about, values) for number, values in said.items()]
     return tuple(sorted(found, key=lambda ruling: ruling.number))

@@ -66,12 +66,13 @@ class BandedRun:
     """A chain at its start; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, chain: Chain, dt: float) -> None:
-        self._chain, self._dt = chain, dt
+        self._mechanism, self._chain, self._dt = mechanism, chain, dt
         self._start = np.concatenate([mechanism.pose[:, 2] + math.pi / 2, mechanism.twist[:, 2]])
         self.size = Size(chain.links, chain.links, 0, 0)
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
+        self._mechanism.require_room(samples)
         chain, states = self._chain, np.empty((samples + 1, len(self._start)))
         state = states[0] = self._start
         begin = time.process_time()

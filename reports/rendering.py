@@ -10,7 +10,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from reference.scene import Scene
-from reports import charts, maps, tables
+from reports import charts, maps, tables, unmeasured
 from reports.machine import machine, today, versions
 from reports.measure import Measurement
 from reports.outcomes import Outcome
@@ -36,7 +36,7 @@ class Told:
 
 
 def environment() -> Environment:
-    """Templates fail loudly on a name that has no value."""
+    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known."""
     out = Environment(
         loader=FileSystemLoader(TEMPLATES),
         undefined=StrictUndefined,
@@ -44,9 +44,9 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        finalize=unmeasured.marked,
     )
-    out.filters["number"] = tables.number
-    out.filters["milliseconds"] = tables.milliseconds
+    out.filters |= unmeasured.FILTERS
     return out
 
 
@@ -78,11 +78,13 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         files[f"{page.name}_{name}.svg"] = text
         pictures[name] = f"{page.name}_{name}.svg"
 
-    if any(row.purpose == "sweep" and Outcome(row.outcome).comparable for row in rows):
+    drawable = charts.drawable(rows, page.quantity)
+    if any(row.cpu > 0 for row in drawable):
         keep(
             "work",
             svg(charts.work_precision(rows, page.featured, page.quantity), f"{page.title}: error against CPU time"),
         )
+    if any(page.featured(row) for row in drawable):
         keep(
             "steps",
             svg(charts.error_against_step(rows, page.featured, page.quantity), f"{page.title}: error against step"),
@@ -91,13 +93,13 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     for name, text in page.figures(material).items():
         keep(name, text)
     scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name], page) for scene in page.scenes]
-    files[f"{page.name}.md"] = (
+    text = (
         environment()
         .get_template(f"{page.name}.md")
         .render(
             page=page,
             scenes=scenes,
-            pictures=pictures,
+            pictures=unmeasured.Known(pictures),
             failures=[_told_failure(failure, material) for failure in page.failures],
             maps=[told for told in told_maps if told],
             outcomes=[outcome for outcome in Outcome if outcome in met],
@@ -105,7 +107,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
             **page.words(material),
         )
     )
-    return files
+    return files | {f"{page.name}.md": unmeasured.without_marks(text)}
 
 
 def _told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, Any]:

@@ -133,7 +133,7 @@ def _by_step(panel: Axes, rows: Sequence[tuple[float, Measurement]], theme: Them
                        label=f"step {step:.0e} s".replace("e-0", "e-"))  # fmt: skip
     panel.set_xscale("log")
     panel.set_yscale("log")
-    if steps:
+    if panel.lines:
         for text in panel.legend(frameon=False).get_texts():
             text.set_color(theme.ink)
 

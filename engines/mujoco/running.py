@@ -71,6 +71,7 @@ class MuJoCoRun:
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already."""
+        self.model.mechanism.require_room(samples)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
         step = self.model.compiled.opt.timestep

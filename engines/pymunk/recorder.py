@@ -195,6 +195,7 @@ class PymunkRun:
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        self._mechanism.require_room(samples)
         if self._model is None:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         model, self._model = self._model, None

@@ -95,6 +95,7 @@ class ReflectedRun:
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        self._mechanism.require_room(samples)
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
+from reference.memory import require_room
 from reference.numerics.integration import error_of, integrate
 from reference.pendulum.link import across, direction_of
 from reference.validation import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -150,7 +151,11 @@ class Chain(Valid):
 
     @cached_property
     def inertia_matrix(self) -> Array:
-        """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links)."""
+        """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
+
+        Raises InvalidMechanism where that would take more than memory.LARGEST.
+        """
+        require_room("chain: the dense inertia matrix", (self.links, self.links))
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])  # mass hanging from each link
         lever = self._length * (self._mass / 2 + below)
         index = np.arange(self.links)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.memory import require_room
 from reference.numerics.integration import Integrated, integrate
 from reference.pendulum.chain import Chain
 from reference.scene import Scene
@@ -57,6 +58,7 @@ class LinkPendulum(Scene):
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """Angles and rates (times, links) at times t >= 0 [s]."""
         times = self.times(t)
+        require_room(f"scene {self.name!r}: a trajectory", (len(times), self.links, 3))
         until = max(self.duration, float(times.max(initial=0.0)))
         state = _integrated(self.chain, self.angle, self.rate, until)(times)
         return state[:, : self.links], state[:, self.links :]

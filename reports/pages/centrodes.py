@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -86,8 +87,14 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
         within = (run.t >= low) & (run.t <= high)
         apart = np.abs(run.pose - truth.pose)[within, COUPLER, 2], np.abs(run.twist - truth.twist)[within, COUPLER, 2]
         centre = centrode_error(truth, run, COUPLER)[within]
-        out.append((cell, float(np.nanmax(centre)), float(apart[0].max()), float(apart[1].max())))
+        # Where a body hardly turns its centre is not defined; where a run broke off, nothing is.
+        out.append((cell, largest(centre[np.isfinite(centre)]), largest(apart[0]), largest(apart[1])))
     return out
+
+
+def largest(values: np.ndarray) -> float:
+    """NaN if there is none, or one is NaN."""
+    return float(values.max()) if values.size else math.nan
 
 
 def words(material: Material) -> Mapping[str, Any]:
@@ -111,7 +118,9 @@ def words(material: Material) -> Mapping[str, Any]:
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
     """The method whose angle flatters it most: that with the largest ratio of centre error to angle error."""
-    known = [(centre / angle, cell, centre, angle) for cell, centre, angle, _ in rows if angle > 0]
+    known = [
+        (centre / angle, cell, centre, angle) for cell, centre, angle, _ in rows if angle > 0 and math.isfinite(centre)
+    ]
     if not known:
         return ""
     _, cell, centre, angle = max(known, key=lambda each: each[0])

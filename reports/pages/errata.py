@@ -51,7 +51,8 @@ def table(erratum: Erratum, values: Values, said: Iterable[Ruling]) -> str:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Everything is computed when the page is written: nothing here comes from stored rows."""
-    said = rulings()
+    lost: list[str] = []
+    said = rulings(lost=lost)
     told = [
         Told(
             erratum,
@@ -67,6 +68,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "blind": [erratum.number for erratum in ERRATA if not erratum.dimensions],
         "seen": [erratum.number for erratum in ERRATA if erratum.dimensions],
         "rates": rates,
+        "lost": lost,
         "rolling": rolling_acceleration(),
     }
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.scenes import SCENES
+from reports.outcomes import Outcome
 from reports.page import Material, Page
 from reports.pages.chain_orders import CLOSED, from_rest
 from reports.pages.n_four_bar_failures import FAILURES, MAPS, SOFT
@@ -15,6 +17,7 @@ from reports.pages.n_four_bar_known import KNOWN
 from reports.pages.told import told
 from reports.stroboscope import Strip, stroboscope
 from reports.theme import svg
+from reports.unmeasured import UNMEASURED
 
 NAME = "n_four_bar"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
@@ -33,12 +36,27 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows, and the exact instants of each scene."""
+    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
+    soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
+    """
+    lookups = told(material, SCENES_HERE)
+
+    def failed(scene: str, engine: str, variant: str) -> Any:
+        outcomes = lookups["ended"](scene, engine, variant)
+        if not outcomes:
+            return UNMEASURED
+        wrong = all(Outcome(outcome).wrong for outcome in outcomes)
+        return "stays on the branch" if wrong else f"can be compared: {', '.join(outcomes)}"
+
+    rows = material.of(SOFT)
+    angles = [row.angle for row in rows if Outcome(row.outcome).wrong and math.isfinite(row.angle)]
+    whole = rows and len(angles) == len(rows)
+    soft = {"count": len(rows), "least": min(angles), "most": max(angles)} if whole else UNMEASURED
     exact = {
         scene.name: {"period": scene.period, "singular": [float(t) for t in scene.singular_times(scene.period)]}
         for scene in (NFourBar(), TenFourBars(), FortyFourBars())
     }
-    return {**told(material, SCENES_HERE, {"soft": SOFT}), "exact": exact}
+    return {**lookups, "failed": failed, "soft": soft, "exact": exact}
 
 
 PAGE = Page(

@@ -17,8 +17,9 @@ from reports import rolling_charts, rolling_drawings
 from reports.page import Material, Page
 from reports.pages.rolling_failures import FAILURES, MAPS, polygon_cells, softness_cells
 from reports.pages.rolling_known import KNOWN, ORDERS
-from reports.pages.told import told
+from reports.pages.told import nearest_step, told
 from reports.theme import svg
+from reports.unmeasured import UNMEASURED, Known
 
 NAME = "rolling"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
@@ -26,6 +27,8 @@ SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
 COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
 BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_rolls.STALE_PIVOT, pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED)
 ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_rolls.METHODS)
+
+HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
@@ -59,14 +62,14 @@ def words(material: Material) -> Mapping[str, Any]:
     rows = material.sweep(SCENES_HERE)
 
     def at(scene: str, method: str, step: float) -> Any:
-        """The row of a method ("mujoco tuned") at the step nearest to one [s]."""
-        own = [row for row in rows if row.scene == scene and row.method == method]
-        return min(own, key=lambda row: abs(row.step / step - 1), default=None)
+        """The row of a method ("mujoco tuned") at about a step [s]."""
+        own = (row for row in rows if row.scene == scene and row.method == method)
+        return nearest_step(own, step) or UNMEASURED
 
-    polygons = {
-        (corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows
-    }
-    return {**told(material, SCENES_HERE), "at": at, "polygons": polygons, "hill": RollingOnCircle()}
+    polygons = Known(
+        {(corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows}
+    )
+    return {**told(material, SCENES_HERE), "at": at, "polygons": polygons, "hill": HILL}
 
 
 PAGE = Page(

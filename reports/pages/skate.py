@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,9 +26,11 @@ from reports.pages import skate_pictures
 from reports.pages.skate_failures import FAILURES, MAPS
 from reports.pages.skate_known import KNOWN, ORDERS
 from reports.pages.skate_methods import CONSTRUCTIONS, method
+from reports.pages.told import nearest_step
 from reports.paths import Blades, Panel, Path, paths
-from reports.sweep import by_method, groups, sweeps
+from reports.sweep import best_of, by_method, groups, sweeps
 from reports.theme import svg
+from reports.unmeasured import UNMEASURED
 
 NAME = "skate"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
@@ -109,23 +112,27 @@ def figures(material: Material) -> dict[str, str]:
     return found
 
 
-def nearest_step(rows: Iterable[Measurement], step: float) -> Measurement | None:
-    """The row whose step is nearest to this one, by ratio; None without rows."""
-    return min(rows, key=lambda row: abs(np.log(row.step / step)), default=None)
-
-
 def constructions(rows: Sequence[Measurement]) -> str:
-    """One line a construction: what it gives at the compared step and costs there, and what its error does."""
+    """One line a construction: what it gives at about the compared step and costs there, and what its error does.
+
+    Constructions that were run at other steps alone have no line; the text is empty if none has one.
+    """
     verdicts = by_method(sweeps(rows), "position")
     told = []
     for key, members in groups(rows).items():
-        row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
-        if row is None:
+        if all(row.outcome == Outcome.UNSUPPORTED for row in members):
             told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 5, ""]))
             continue
+        row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
+        if row is None:
+            continue
         numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
-        words = tables.sweep_words(verdicts[key]) if Outcome(row.outcome).comparable else "wrong at every step"
-        told.append((row.position, [row.method, row.outcome, *numbers, tables.milliseconds(row.cpu), words]))
+        wrong = all(Outcome(member.outcome).wrong for member in members)
+        words = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
+        error = row.position if np.isfinite(row.position) else np.inf
+        told.append((error, [row.method, row.outcome, *numbers, tables.milliseconds(row.cpu), words]))
+    if not told:
+        return ""
     header = [
         "construction",
         "outcome",
@@ -139,7 +146,8 @@ def constructions(rows: Sequence[Measurement]) -> str:
     return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=2)
 
 
-def counted(scenes: Sequence[Scene]) -> str:
+@cache
+def counted(scenes: tuple[Scene, ...]) -> str:
     """Freedoms of scenes by rank and by brackets, as a table."""
     body = []
     for scene in scenes:
@@ -153,22 +161,22 @@ def counted(scenes: Sequence[Scene]) -> str:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """`constructions` and `counted` as tables; `at(method, step)`: the sleigh's row nearest to that step, or None;
-    `least(method)`: its row with the least position error; `stays(method)`: its plateau in position or None.
+    """`constructions` and `counted` as tables. Of the sleigh, UNMEASURED where there is none: `at(method, step)`, the
+    row at about that step; `least(engine, variant)`, the row with the least position error; `stays(method)`, the
+    plateau in position.
     """
     rows = material.sweep((SLEIGH,))
     verdicts = {sweep.method: sweep for sweep in by_method(sweeps(rows), "position").values()}
 
-    def at(name: str, step: float = COMPARED) -> Measurement | None:
-        return nearest_step((row for row in rows if row.method == name and np.isfinite(row.position)), step)
+    def at(name: str, step: float = COMPARED) -> Any:
+        own = (row for row in rows if row.method == name and np.isfinite(row.position))
+        return nearest_step(own, step) or UNMEASURED
 
-    def least(name: str) -> Measurement | None:
-        usable = [row for row in rows if row.method == name and Outcome(row.outcome).comparable]
-        return min(usable, key=lambda row: row.position, default=None)
+    def least(engine: str, variant: str) -> Any:
+        return best_of(rows, engine, variant, "position") or UNMEASURED
 
-    def stays(name: str) -> float | None:
-        sweep = verdicts.get(name)
-        return sweep.plateau if sweep is not None and np.isfinite(sweep.plateau) else None
+    def stays(name: str) -> float:
+        return verdicts[name].plateau if name in verdicts else UNMEASURED
 
     commutator = commutator_displacement(0.1, 0.1)
     return {

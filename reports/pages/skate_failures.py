@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from engines import Engine, Unsupported
+from engines import Engine
 from engines.registry import VARIANTS
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
@@ -14,10 +14,11 @@ from reference.scene import Scene
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.trajectory import Trajectory
 from reports.cells import Cell
+from reports.observing import observe
 from reports.page import Failure, Observation, StabilityMap
 from reports.pages.skate_methods import CONSTRUCTIONS, limited, method
-from reports.running import trajectory_of
 from reports.tables import number
 
 Columns = tuple[str, ...]
@@ -73,16 +74,8 @@ def backwards() -> list[Observation]:
     ]
     for engine in (*ORDINARY, *CONSTRUCTIONS):
         cell = Cell(scene, engine, 1, "failure")
-        try:
-            run = trajectory_of(cell)
-        except Unsupported:
-            continue
-        found.append(Observation(named(engine), f"step {number(cell.step)} s", _grown(run.t, run.twist[:, 0, 2])))
+        found += observe(cell, f"step {number(cell.step)} s", lambda run: _grown(run.t, run.twist[:, 0, 2]))
     return found
-
-
-def named(engine: Engine) -> str:
-    return f"{engine.name} {engine.variant}"
 
 
 def _grown(t: np.ndarray, rate: np.ndarray) -> str:
@@ -146,14 +139,14 @@ def slipping() -> list[Observation]:
         when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
         found.append(Observation("exact lateral force", f"{limit:g} N", when))
         for engine in limited(limit):
-            run = trajectory_of(Cell(SLIDING, engine, 10, "failure"))
-            slip = np.abs(SLIDING.mechanism().slip(run.pose, run.twist)[:, 0])
-            over = np.flatnonzero(slip > SLIPS)
-            said = (
-                f"slips by {SLIPS:g} m/s at {run.t[over[0]]:.2f} s, at most {slip.max():.2g}" if over.size else "holds"
-            )
-            found.append(Observation(named(engine), f"{limit:g} N", said))
+            found += observe(Cell(SLIDING, engine, 10, "failure"), f"{limit:g} N", _slipped)
     return found
+
+
+def _slipped(run: Trajectory) -> str:
+    slip = np.abs(SLIDING.mechanism().slip(run.pose, run.twist)[:, 0])
+    over = np.flatnonzero(slip > SLIPS)
+    return f"slips by {SLIPS:g} m/s at {run.t[over[0]]:.2f} s, at most {slip.max():.2g}" if over.size else "holds"
 
 
 SLIDING = SleighBackwards()

@@ -11,7 +11,7 @@ from reference.scenes import SCENES
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.page import Material, Page
 from reports.pages.chain_orders import CLOSED, prescribed
-from reports.pages.slider_crank_failures import FAILURES, GROOVES, MAPS
+from reports.pages.slider_crank_failures import FAILURES, MAPS
 from reports.pages.slider_crank_known import KNOWN
 from reports.pages.told import told
 from reports.stroboscope import Strip, stroboscope
@@ -39,7 +39,7 @@ def words(material: Material) -> Mapping[str, Any]:
     shape = DrivenSliderCrank().moving.shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
-    return {**told(material, SCENES_HERE, {"grooves": GROOVES}), **formulas}
+    return {**told(material, SCENES_HERE), **formulas}
 
 
 PAGE = Page(

@@ -12,8 +12,6 @@ from reference.scenes import SCENES
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reports.cells import Cell
-from reports.measure import Measurement
-from reports.outcomes import Outcome
 from reports.page import Material, Page
 from reports.pages import wheels_pictures
 from reports.pages.skate import counted
@@ -21,7 +19,9 @@ from reports.pages.skate_methods import method
 from reports.pages.wheels_failures import FAILURES
 from reports.pages.wheels_known import KNOWN, ORDERS
 from reports.paths import paths
+from reports.sweep import best_of
 from reports.theme import svg
+from reports.unmeasured import UNMEASURED
 
 NAME = "wheels"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
@@ -55,12 +55,12 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """`counted`: the freedoms' table; `least(scene, method)`: the row with the least position error, or None."""
+    """`counted`: the freedoms' table; `least(scene, engine, variant)`: the row with the least position error."""
     rows = material.sweep(SCENES_HERE)
 
-    def least(scene: str, name: str) -> Measurement | None:
-        usable = [row for row in rows if (row.scene, row.method) == (scene, name) and Outcome(row.outcome).comparable]
-        return min(usable, key=lambda row: row.position, default=None)
+    def least(scene: str, engine: str, variant: str) -> Any:
+        own = (row for row in rows if row.scene == scene)
+        return best_of(own, engine, variant, "position") or UNMEASURED
 
     shown = (*SCENES_HERE, CarAndTrailer(redundant=True), Cart(redundant=True))
     return {"counted": counted(shown), "least": least}

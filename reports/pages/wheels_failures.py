@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from engines import Engine, Unsupported
+from engines import Engine
 from engines.registry import VARIANTS
 from reference.scene import Scene
 from reference.wheels.car_and_trailer import CarAndTrailer
@@ -15,8 +15,8 @@ from reference.wheels.cart import Cart
 from reference.wheels.tractrix import Tow
 from reference.wheels.trailers import CarWithTrailers
 from reports.cells import Cell
+from reports.observing import observe
 from reports.page import Failure, Observation
-from reports.running import trajectory_of
 from reports.tables import number
 
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
@@ -67,20 +67,15 @@ def folding() -> list[Observation]:
     for engine in ENGINES_ALONE:
         for every in _affordable(engine, (1, 10)):
             cell = Cell(BACKING, engine, every, "failure")
-            try:
-                run = trajectory_of(cell)
-            except Unsupported:
-                continue
-            found.append(
-                Observation(f"{engine.name} {engine.variant}", f"step {number(cell.step)} s", _folded(run.t, run.pose))
-            )
+            found += observe(cell, f"step {number(cell.step)} s", lambda run: _folded(run.t, run.pose))
     return found
 
 
 def _folded(t: np.ndarray, pose: np.ndarray) -> str:
     bend = pose[:, 1, 2] - pose[:, 0, 2]
-    when = crossing(t, np.where(np.isfinite(bend), bend, 0.0), FOLDED)
-    return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.nanmax(np.abs(bend)):.3f} rad"
+    bend = np.where(np.isfinite(bend), bend, 0.0)
+    when = crossing(t, bend, FOLDED)
+    return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
 
 
 FAILURES: tuple[Failure, ...] = (
