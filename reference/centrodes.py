@@ -18,7 +18,7 @@ from reference.curves.traced import FEWEST, STILL, Traced, spline
 from reference.kinds import NOT_FINITE, of_shape
 from reference.rolling.kinematics import Rolling
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism, Numbers, Valid, validated
+from reference.validation import InvalidMechanism, Numbers, Valid, index_of, validated
 
 # A rotation this much slower than its fastest has its instant centre a million times farther away than the motion is
 # large: for the shapes it is at infinity.
@@ -49,6 +49,7 @@ def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array
     """
     if truth.t.shape != other.t.shape or not np.allclose(truth.t, other.t, rtol=0, atol=1e-9):
         raise ValueError("centrode error: the two trajectories have different times; sample the truth at the engine's")
+    body = index_of("centrode_error", "body", body, truth.pose.shape[1])
     exact = instant_centre(truth.pose[:, body], truth.twist[:, body])[0]
     return np.linalg.norm(instant_centre(other.pose[:, body], other.twist[:, body])[0] - exact, axis=-1)
 

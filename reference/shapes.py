@@ -12,7 +12,7 @@ import numpy as np
 from reference.centrodes import Centrodes, from_poses
 from reference.curves.curve import Array
 from reference.kinds import NOT_FINITE, from_to, of_shape
-from reference.validation import LARGEST_COUNT, InvalidMechanism, Positive, Valid, validated
+from reference.validation import LARGEST_COUNT, InvalidMechanism, Positive, Valid, index_of, validated
 
 COLUMNS = ("t", "x", "y", "angle")
 Places = Annotated[Array, of_shape("n", 2)]
@@ -115,7 +115,7 @@ def as_svg(shapes: Shapes, width: Positive = 200.0) -> str:
 @validated
 def placed_body(shapes: Shapes, index: int) -> Array:
     """The moving part's points (n, 2) [m] in the world, when contact `index` touches."""
-    x, y, angle = shapes.pose[index]
+    x, y, angle = shapes.pose[index_of("placed_body", "index", index, len(shapes.pose))]
     cosine, sine = np.cos(angle), np.sin(angle)
     return shapes.body @ np.array([[cosine, sine], [-sine, cosine]]) + [x, y]
 

@@ -127,6 +127,7 @@ def validated(function: Function) -> Function:
                 named[name] = _taken(function, name, value, known)
         return function(*plain, **named)
 
+    checked.__validated__ = True  # type: ignore[attr-defined]
     return checked  # type: ignore[return-value]
 
 
@@ -135,6 +136,11 @@ def _taken(function: Any, name: str, value: Any, known: dict[str, Kind]) -> Any:
     if taken is NOT_TAKEN:
         raise refusal(function.__qualname__, name, value, known[name].words)
     return taken
+
+
+def index_of(owner: str, name: str, value: int, count: int) -> int:
+    """A place among `count`, counted from 0; InvalidMechanism for any other."""
+    return take(owner, name, value, Annotated[int, from_to(0, count - 1)])
 
 
 def sample_times(owner: str, t: ArrayLike) -> Floats:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from reference.validation import Positive, validated
+from reference.validation import Numbers, Positive, validated
 
 Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
 
@@ -36,9 +35,9 @@ def bar_forces(
     lengths: tuple[Positive, Positive, Positive],
     density: Densities,
     gravity: tuple[float, float],
-    angles: tuple[ArrayLike, ArrayLike, ArrayLike],
-    rates: tuple[Any, Any, Any],
-    accelerations: tuple[Any, Any, Any],
+    angles: tuple[Numbers, Numbers, Numbers],
+    rates: tuple[Numbers, Numbers, Numbers],
+    accelerations: tuple[Numbers, Numbers, Numbers],
 ) -> Forces:
     """Forces for uniform bars of the given lengths [m], density [kg/m] and gravity [m/s^2], in a given motion.
 

@@ -235,9 +235,9 @@ class FourBar(Valid):
             self.lengths,
             density,
             gravity,
-            (theta, motion.beta, motion.phi),
-            (theta_dot, motion.beta_dot, motion.phi_dot),
-            (theta_ddot, motion.beta_ddot, motion.phi_ddot),
+            (np.asarray(theta, dtype=float), motion.beta, motion.phi),
+            (np.asarray(theta_dot, dtype=float), motion.beta_dot, motion.phi_dot),
+            (np.asarray(theta_ddot, dtype=float), motion.beta_ddot, motion.phi_ddot),
         )
 
     @validated

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Vector
 from reference.numerics.integration import error_of, integrate
-from reference.validation import Complexes, Positive, Times, Valid, sample_times, validated
+from reference.validation import Complexes, Positive, Times, Valid, index_of, sample_times, validated
 from reference.wheels.tractrix import Tow
 
 Array = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Casters(Valid):
 
         The caster's angle beta at time t is then tow.relative_angle(kingpin speed * t) + (angle - tow.angle).
         """
-        x, y = self.places[caster]
+        x, y = self.places[index_of("Casters.tow", "caster", caster, len(self.places))]
         along, across = speed - y * turning_rate, x * turning_rate
         size = math.hypot(along, across)
         radius = math.inf if turning_rate == 0 or size == 0 else size / turning_rate

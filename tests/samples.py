@@ -1,0 +1,72 @@
+"""One valid instance of every class that checks its fields."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from engines import registry
+from engines.extrapolated import Extrapolated
+from engines.lagrange import Lagrange
+from engines.mujoco.roll_contact import CompletedContact, RollContact
+from engines.mujoco.roll_rows import RollEquality, RollRows
+from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
+from engines.pymunk.engine import Pymunk
+from engines.pymunk.outlines import SHIPPED_CONTACT
+from engines.pymunk.reflection import Reflected
+from reference import centrodes, shapes
+from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
+from reference.four_bar import OverdrivenFourBar, Parallelogram
+from reference.four_bar.free_motion import CurveMotion
+from reference.four_bar.linkage import FourBar
+from reference.joints import Drive, Pin, Skate, Slot
+from reference.mechanism import Body
+from reference.pendulum.chain import Chain
+from reference.pendulum.link import Pendulum
+from reference.pendulum.long import LongPendulum, OpenChain
+from reference.person.segments import THIGH
+from reference.rolling.limits import DiscInHole, SquareOnCatenaries
+from reference.rolling.roll import Roll
+from reference.rolling.scenes import RollingDisc
+from reference.rolling.spinning_ring import SpinningRing
+from reference.scenes import SCENES
+from reference.skate.limits import HeldBySkates, SkateOnSlope
+from reference.skate.parking import Move
+from reference.skate.path import SkatePath
+from reference.slider_crank.limits import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
+from reports.cells import Cell
+from tests.mechanisms import four_bar
+
+SCENES_OF_LIMITS = (
+    *(Parallelogram(), OverdrivenFourBar(), SkateOnSlope(), HeldBySkates(), DiscInHole(), SquareOnCatenaries()),
+    *(SpinningRing(links=5), RodEndInSlot(), SliderAtDeadCentre(), LongPendulum()),
+)
+_times = np.linspace(0.0, 1.0, 33)
+_table = np.stack([np.cos(_times), np.sin(2 * _times), 0.1 + 2 * _times], axis=-1)
+_centrodes = centrodes.from_poses(_times, _table)
+_chain = LongPendulum().mechanism()
+_crank = SliderCrank(0.3, 1.0)
+_curve = CurveMotion(FourBar(1.0, 2.0, 2.0, (2.0, 0.0)), (1.0, 1.0, 1.0), (0.0, -9.81))
+
+# One valid instance of each class that checks its fields.
+INSTANCES: tuple[Any, ...] = (
+    *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES),
+    *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
+    *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),
+    *(Slot("s", None, "b", (0.0, 0.5), 0.5, (1.0, 0.0)), Skate("k", None, "b", (0.5, 0.0), 0.5)),
+    *(Roll("r", None, "b", RollingDisc().motion_law.rolling), RollingDisc().motion_law.rolling),
+    *(RollingDisc().motion_law, RollingDisc().motion([0.0, 0.1])),
+    *(Cam(1.0, (0.1, 0.05), (0.05, 0.02)), Catenary(1.0), Circle(1.0), Ellipse(2.0, 1.0), Line(), LogSpiral(1.0, 0.5)),
+    *(Parabola(1.0), Placed(Circle(1.0), (0.5, 0.0), 0.5), Ring(2.0), Side(1.0)),
+    *(Traced(_times, np.stack([_times, _times**2], axis=-1)), _centrodes, shapes.shapes_of(_centrodes, 5)),
+    *(_curve.four_bar, _curve, Chain((1.0, 0.5), (1.0, 2.0)), Pendulum(2.0, 0.5, 0.5), THIGH, Move(0.5, 0.5)),
+    *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
+    *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
+    *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),
+    *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
+    *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
+    Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),
+)

@@ -1,0 +1,228 @@
+"""What can't be meant is refused in a sentence that names it, by everything that users call; what can be is taken."""
+
+from __future__ import annotations
+
+import dataclasses
+import faulthandler
+import math
+import pickle
+import random
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engines import registry
+from engines.extrapolated import Extrapolated
+from engines.pymunk.reflection import Reflected
+from reference.four_bar import FourBar, OverdrivenFourBar
+from reference.four_bar.linkage import Unreachable
+from reference.mechanism import Body
+from reference.rolling.scenes import RollingDisc
+from reference.scenes import SCENES
+from reference.skate.parking import park
+from reference.validation import InvalidMechanism, Valid, validated
+from reports.cells import Cell
+from tests.arguments import Trial, dataclasses_of_the_suite, functions_of_the_suite, trials
+from tests.mechanisms import four_bar
+from tests.samples import INSTANCES, SCENES_OF_LIMITS
+
+TRIED = 2000
+# Dataclasses that users don't make: what the suite gives back or uses inside, and the catalogue of errata.
+NOT_MADE_BY_USERS = {
+    *("reference.errata.catalogue.WordSlip", "reference.errata.erratum.Values", "reference.errata.erratum.Erratum"),
+    *("reference.errata.pendulum.BarState", "reference.four_bar.sweep.Constants", "reference.kinds.Rule"),
+    *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.pendulum.chain.TwoPoints"),
+    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.Size"),
+    *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
+    *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
+    *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.pymunk.boundaries.Straight"),
+    *("engines.pymunk.boundaries.Round", "engines.pymunk.drives.Crank", "engines.pymunk.model.Settings"),
+    *("engines.pymunk.model.Model", "engines.pymunk.recorder.Recording"),
+}
+ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
+
+
+@pytest.fixture(autouse=True)
+def _nothing_hangs():
+    faulthandler.dump_traceback_later(300, exit=True)  # a check that lets a number through may step for ever
+    yield
+    faulthandler.cancel_dump_traceback_later()
+
+
+def outcome(trial: Trial) -> str:
+    """'refused', or what happened instead."""
+    try:
+        trial.call()
+    except ValueError as refusal:
+        if isinstance(refusal, InvalidMechanism) and f"{trial.name} is " in str(refusal) and "must be" in str(refusal):
+            return "refused"
+        return f"another sentence: {refusal}"
+    except Exception as foreign:
+        return f"{type(foreign).__name__}: {foreign}"
+    return "answered"
+
+
+def told(tried: list[Trial]) -> list[str]:
+    """One line for every argument that was not refused."""
+    results = [(trial, outcome(trial)) for trial in tried]
+    print(dict(Counter("refused" if what == "refused" else what.split(":")[0] for _, what in results)))
+    return [f"{trial.owner}({trial.name}={trial.value!r}): {what}" for trial, what in results if what != "refused"]
+
+
+def test_two_thousand_arguments_that_can_not_be_meant_are_refused():
+    assert told(random.Random(0).sample(trials(), TRIED)) == []
+
+
+@pytest.mark.slow
+def test_every_argument_that_can_not_be_meant_is_refused():
+    assert told(trials()) == []
+
+
+def test_a_class_without_checks_is_caught():
+    @dataclasses.dataclass(frozen=True)
+    class Careless:
+        mass: float
+
+    assert outcome(Trial("Careless", "mass", "heavy", lambda: Careless("heavy"))) == "answered"  # type: ignore[arg-type]
+    assert outcome(Trial("float", "mass", "heavy", lambda: float("heavy"))).startswith("another sentence")
+    assert outcome(Trial("len", "mass", 1, lambda: len(1))).startswith("TypeError")  # type: ignore[arg-type]
+
+
+def test_every_class_that_users_make_checks_its_fields_and_is_tried():
+    found = dataclasses_of_the_suite()
+    assert {name for name, each in found.items() if not issubclass(each, Valid)} <= NOT_MADE_BY_USERS
+    kinds = {type(each) for each in INSTANCES}
+    assert {name for name, each in found.items() if issubclass(each, Valid) and each not in kinds} == ABSTRACT
+
+
+def test_functions_of_every_part_are_tried():
+    owners = [function.__module__.split(".")[:2] for function, _ in functions_of_the_suite()]
+    assert len(owners) > 150
+    for part in ("four_bar", "skate", "wheels", "rolling", "pendulum", "slider_crank", "shapes", "mechanism"):
+        assert ["reference", part] in owners
+
+
+# ------------------------------------------------------------------------------------------------- what can be meant
+
+
+def unusual(value: Any) -> list[Any]:
+    """The same value in other clothes."""
+    if isinstance(value, bool):
+        return [np.bool_(value)]
+    if isinstance(value, int):
+        return [np.int64(value), np.int32(value)]
+    if isinstance(value, float):
+        whole = [int(value)] if math.isfinite(value) and value.is_integer() else []
+        return [np.float64(value), *whole, *([np.float32(value)] if float(np.float32(value)) == value else [])]
+    if isinstance(value, str):
+        return [np.str_(value)]
+    if isinstance(value, tuple) and value and all(isinstance(each, float) for each in value):
+        return [list(value), np.array(value), tuple(np.float64(each) for each in value)]
+    return []
+
+
+@pytest.mark.parametrize("sample", INSTANCES, ids=lambda each: type(each).__name__)
+def test_the_same_values_in_other_clothes_make_the_same(sample):
+    for field in dataclasses.fields(sample):
+        for value in unusual(getattr(sample, field.name)):
+            assert repr(dataclasses.replace(sample, **{field.name: value})) == repr(sample), (field.name, value)
+
+
+@pytest.mark.parametrize("sample", INSTANCES, ids=lambda each: type(each).__name__)
+def test_what_is_checked_can_be_replaced_and_travels(sample):
+    assert repr(dataclasses.replace(sample)) == repr(sample)
+    assert repr(pickle.loads(pickle.dumps(sample))) == repr(sample)
+
+
+def test_lists_and_numbers_of_numpy_are_taken_by_functions():
+    linkage = FourBar(0.4, np.float64(0.5), 0.6, [0.5, 0])  # type: ignore[arg-type]
+    assert repr(linkage) == "FourBar(crank=0.4, coupler=0.5, rocker=0.6, ground=(0.5, 0.0))"
+    assert linkage.angles([1.0], np.int64(1))[0] == linkage.angles(1.0)[0]
+    assert park([0, 0, 0], np.array([1, 1, 0])) == park((0.0, 0.0, 0.0), (1.0, 1.0, 0.0))  # type: ignore[arg-type]
+    cell = Cell(SCENES[0], registry.ENGINES[0], np.int64(3), samples=np.int64(2))  # type: ignore[arg-type]
+    assert (type(cell.every), type(cell.samples)) == (int, int)
+
+
+@pytest.mark.parametrize(
+    "engine", [*registry.ENGINES, Reflected("r"), Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))]
+)
+def test_every_engine_takes_numpys_steps_and_counts_and_refuses_others_alike(engine):
+    mechanism = RollingDisc().mechanism() if isinstance(engine, Reflected) else four_bar()
+    plain = engine.build(mechanism, 0.0009765625)(2, 1)
+    numpys = engine.build(mechanism, np.float32(0.0009765625))(np.int64(2), np.int32(1))
+    np.testing.assert_array_equal(plain.pose, numpys.pose)
+    for wrong in (True, "1e-3", 1e-3j, None, math.nan, 0.0, -1e-3, [1e-3]):
+        with pytest.raises(InvalidMechanism, match=r"dt is .*must be a finite number greater than zero"):
+            engine.build(mechanism, wrong)
+    with pytest.raises(InvalidMechanism, match=r"mechanism is .*must be a Mechanism"):
+        engine.build(SCENES[0], 1e-3)
+    for wrong in (True, 2.0, "2", None, 0, -1, 2**31):
+        with pytest.raises(InvalidMechanism, match=r"samples is .*must be a whole number from 1"):
+            engine.build(mechanism, 1e-3)(wrong, 1)
+        with pytest.raises(InvalidMechanism, match=r"every is .*must be a whole number from 1"):
+            engine.build(mechanism, 1e-3)(1, wrong)
+
+
+# -------------------------------------------------------------------------------------------------------------- times
+
+NO_TIMES = [[math.inf], [math.nan], [-1.0], [0.0, -1e-9], "abc", ["0"], None, [[0.0, 0.1]], [1j], [True], {}]
+TOO_LATE = [[1e16], [1e300], [0.0, 1e6]]
+
+
+@pytest.mark.parametrize("scene", [*SCENES, *SCENES_OF_LIMITS], ids=lambda scene: scene.name)
+def test_a_scene_refuses_times_that_are_none(scene):
+    for times in NO_TIMES:
+        with pytest.raises(InvalidMechanism, match=f"scene '{scene.name}': t is .*must be finite numbers in one row"):
+            scene.motion(times)
+    for times in TOO_LATE:
+        with pytest.raises(InvalidMechanism, match=r"known up to .* times its duration"):
+            scene.motion(times)
+
+
+@pytest.mark.parametrize("scene", [*SCENES, *SCENES_OF_LIMITS], ids=lambda scene: scene.name)
+def test_no_times_give_a_motion_without_samples_and_one_number_one_sample(scene):
+    one, none = scene.motion(0), scene.motion([])
+    for name in ("t", "pose", "twist", "reaction"):
+        assert getattr(one, name).shape[0] == 1
+        assert getattr(none, name).shape == (0, *getattr(one, name).shape[1:])
+
+
+def test_a_crank_beyond_its_limit_is_refused_also_where_its_angle_could_be_reached_again():
+    scene = OverdrivenFourBar()
+    again = scene.stopping_time + 0.9 * 2 * math.pi / scene.rate
+    scene.four_bar.angles(scene.start + scene.rate * 2 * scene.duration)  # reachable, but not from the start
+    with pytest.raises(Unreachable):
+        scene.motion([2 * scene.duration])
+    with pytest.raises(Unreachable):
+        scene.motion([min(again, scene.latest)])
+
+
+# ---------------------------------------------------------------------------------------------------------- sentences
+
+
+def test_a_refusal_names_the_owner_the_field_the_value_and_what_would_be_valid():
+    with pytest.raises(InvalidMechanism) as refusal:
+        Body("crank", np.complex128(1 + 2j), 1.0, (0.0, 0.0, 0.0))  # type: ignore[arg-type]
+    assert str(refusal.value) == (
+        "Body 'crank': mass is np.complex128(1+2j); it must be a finite number greater than zero"
+    )
+    with pytest.raises(InvalidMechanism) as refusal:
+        park((0.0, 0.0), (0.0, 0.0, 0.0))  # type: ignore[arg-type]
+    assert str(refusal.value) == "park: start is (0.0, 0.0); it must be a tuple of 3 values, each a finite number"
+
+
+def test_a_value_too_long_to_print_is_shortened():
+    for value in (np.zeros(1000), 10**5000, "x" * 1000):
+        with pytest.raises(InvalidMechanism, match="mass is ") as refusal:
+            Body("b", value, 1.0, (0.0, 0.0, 0.0))  # type: ignore[arg-type]
+        assert len(str(refusal.value)) < 200
+
+
+def test_an_annotation_that_no_check_is_known_for_is_an_error_and_not_skipped():
+    @validated
+    def strange(value: bytes | frozenset[int]) -> None: ...
+
+    with pytest.raises(TypeError, match="no check is known"):
+        strange(b"")
