@@ -27,7 +27,7 @@ ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
 # Room above the judge's own error of the same order. Methods of one order differ in their constants: a spring of five
 # steps has 5^2 / 2 at second order, and the grid's right methods lie within a decade of the judge, most within a third
 # of one. It is narrow enough only because a method's own coarser steps bound it too.
-ROOM = 40.0
+ROOM = 20.0
 # Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
 ROOM_SOFT = 4.0
 # Room above what a method's own coarser steps let expect of a finer one: their constant is known, and what is left is

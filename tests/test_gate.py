@@ -1,0 +1,343 @@
+"""The gates themselves: each check fails where it should, and lets through what it should."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import fields, replace
+from pathlib import Path
+
+import pytest
+
+from engines import Softness
+from reports.baseline import BadBaseline, Baseline, Old, identity, read_baseline
+from reports.cells import Cell
+from reports.change import change, drift
+from reports.checks import Check, Deviation, complaints, nearest
+from reports.gate import Case, checks
+from reports.gate_report import lines, report
+from reports.measure import Measurement, blank, measure
+from reports.nudged import Nudged, nudge, nudged_cells
+from reports.order_check import order
+from reports.outcomes import Outcome
+from reports.prediction import Prediction
+from reports.promises import EXACT, Promise
+from reports.quantities import QUANTITIES
+from reports.tables import as_csv
+from reports.theory import ROOM, ROOM_OWN, theory
+from reports.walk import Verdict
+from tests.toys import Disc, Toy
+
+SCENE = Disc()
+# A judge whose errors are round numbers: second order 1e-4, fourth 1e-8 at a step of 1e-2, so a factor of 100 an order.
+NAMES = tuple(quantity.name for quantity in QUANTITIES)
+JUDGE = Prediction(
+    step=1e-2,
+    second=dict.fromkeys(NAMES, 1e-4),
+    fourth=dict.fromkeys(NAMES, 1e-8),
+    length=1.0,
+    speed=1.0,
+    acceleration=10.0,
+    changing=(1.0, 1.0),
+    soft={((True, True), True): dict.fromkeys(NAMES, 1e-3)},
+)
+FINE = 1e-3
+
+
+def row(every: int = 10, outcome: Outcome = Outcome.FINISHED, **errors: float) -> Measurement:
+    """A row of the toy at 1e-2 / every [s], every error 1e-9 unless it is given."""
+    return replace(blank(Cell(SCENE, Toy(), every), outcome), **{**dict.fromkeys(NAMES, 1e-9), **errors})
+
+
+def of(found: tuple[Check, ...], quantity: str) -> Check:
+    return next(check for check in found if check.quantity == quantity)
+
+
+@pytest.mark.parametrize(
+    ("order_of", "expected"), [(1, 1e-2 * 0.1), (2, 1e-4 * 0.1**2), (4, 1e-8 * 0.1**4), (EXACT, 0.0)]
+)
+def test_two_orders_tell_what_any_order_costs(order_of, expected):
+    assert JUDGE.error("angle", order_of, FINE) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("quantity", NAMES)
+def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
+    promise = Promise(2)
+    assert all(check.passed for check in theory(JUDGE, promise, None, row()))
+    # Second order at a tenth of the judge's step: a hundredth of 1e-4, and the room above it.
+    found = theory(JUDGE, promise, None, row(**{quantity: 1.1 * (ROOM * 1e-6 + 2e-9)}))
+    assert [check.quantity for check in found if not check.passed] == [quantity]
+    assert all(check.passed for check in theory(JUDGE, promise, None, row(**{quantity: 0.9 * ROOM * 1e-6})))
+
+
+def test_a_bound_is_the_sum_of_the_terms_that_it_tells():
+    check = of(theory(JUDGE, Promise(2), Softness(2500.0, 100.0, 0.01, (True, True)), row()), "angle")
+    assert check.bound == pytest.approx(sum(value for _, value in check.terms), rel=1e-12)
+    assert [name for name, _ in check.terms] == ["step", "softness", "rounding"]
+
+
+def test_softness_costs_in_proportion_to_compliance_over_stiffness():
+    soft = Softness(2500.0, 100.0, 0.01, (True, True))
+    assert JUDGE.give("angle", soft) == pytest.approx(1e-3, rel=1e-12)
+    assert JUDGE.give("angle", replace(soft, compliance=0.005)) == pytest.approx(5e-4, rel=1e-12)
+    assert JUDGE.give("angle", replace(soft, stiffness=25000.0)) == pytest.approx(1e-4, rel=1e-12)
+    assert JUDGE.give("angle", None) == 0
+
+
+def test_no_bound_is_above_what_the_outcome_refuses():
+    wild = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
+    found = theory(wild, Promise(1), None, row())
+    assert of(found, "angle").bound == 0.5
+    assert of(found, "gap").bound == pytest.approx(0.05)
+
+
+def test_a_methods_own_coarser_steps_bound_its_finest():
+    coarse = row(every=1, angle=1e-7)
+    found = theory(JUDGE, Promise(2), None, row(angle=2e-9), [coarse])
+    assert of(found, "angle").bound == pytest.approx(ROOM_OWN * 1e-9 + 1e-11)
+    assert of(found, "angle").passed
+    assert not of(theory(JUDGE, Promise(2), None, row(angle=3e-9), [coarse]), "angle").passed
+
+
+def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
+    found = theory(JUDGE, Promise(1), None, row(outcome=Outcome.TORN))
+    assert [(check.name, check.passed) for check in found] == [("outcome", False)]
+    assert theory(JUDGE, Promise(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
+
+
+def test_a_reaction_that_is_no_number_makes_no_check_and_an_error_that_is_infinite_fails():
+    found = theory(JUDGE, Promise(1), None, row(reaction=math.nan, angle=math.inf))
+    assert "reaction" not in {check.name for check in found}
+    assert not of(found, "angle").passed
+
+
+def rows(*errors: float) -> list[Measurement]:
+    return [row(every=every, angle=error) for every, error in zip((1, 3, 10, 30), errors, strict=False)]
+
+
+def falling(power: float, points: int = 4) -> list[Measurement]:
+    return rows(*(1e-3 / every**power for every in (1, 3, 10, 30)[:points]))
+
+
+def test_the_promised_order_passes():
+    (check,) = order(Promise(2), falling(2))
+    assert check.passed
+    assert order(Promise(2), falling(1.7))[0].passed
+
+
+@pytest.mark.parametrize(
+    ("promised", "errors"),
+    [
+        (2, falling(1)),  # falls too slowly
+        (1, falling(2)),  # the promise is weaker than the method
+        (1, rows(1e-3, 3.3e-4, 3.2e-4, 3.1e-4)),  # a plateau
+        (1, rows(1e-3, 3.3e-4, 3.2e-4)),  # levels off
+        (1, rows(1e-5, 1e-4, 1e-3, 1e-2)),  # grows
+    ],
+)
+def test_another_order_a_plateau_and_growth_fail(promised, errors):
+    (check,) = order(Promise(promised), errors)
+    assert not check.passed
+
+
+def test_no_order_is_asked_of_two_points_or_of_rounding():
+    assert order(Promise(2), falling(2, points=2)) == ()
+    assert order(Promise(2), rows(1e-12, 1e-13, 1e-13, 1e-12)) == ()
+
+
+def toy_checks(engine: Toy) -> tuple[Check, ...]:
+    """The angle's checks of a toy that promises second order, by a judge that says 1 rad/s^2 times the step squared."""
+    case = Case(SCENE, engine, Promise(2))
+    measured = [measure(cell, repeat=False) for cell in case.cells()]
+    return tuple(check for check in checks(case, measured, JUDGE) if check.quantity == "angle")
+
+
+def test_a_toy_that_is_right_passes_and_one_that_is_thirty_times_as_wrong_at_every_step_does_not():
+    assert all(check.passed for check in toy_checks(Toy("good", factor=1.0)))
+    failed = [check.name for check in toy_checks(Toy("bad", factor=30.0)) if not check.passed]
+    assert failed == ["error"]
+
+
+def test_a_toy_whose_model_is_wrong_by_a_constant_fails_though_every_step_is_below_the_judges_bound():
+    failed = {check.name for check in toy_checks(Toy("soft", factor=1.0, plateau=2e-6)) if not check.passed}
+    assert failed == {"error", "order"}
+
+
+def old(outcome: Outcome = Outcome.FINISHED, **errors: float) -> Old:
+    return Old(outcome, {**dict.fromkeys(NAMES, 1e-9), **errors})
+
+
+@pytest.mark.parametrize("quantity", NAMES)
+def test_a_number_that_changed_by_a_hundredth_is_noticed(quantity):
+    found = change(row(**{quantity: 1.01e-9}), old())
+    assert [check.quantity for check in found if not check.passed] == [quantity]
+
+
+def test_numbers_that_differ_beyond_the_printed_digits_are_the_same():
+    assert all(check.passed for check in change(row(angle=1.23449e-5), old(angle=1.234e-5)))
+
+
+def test_what_rounding_does_to_a_start_is_what_it_may_do_to_a_number():
+    now, before = row(angle=3e-13), old(angle=2e-13)
+    assert not of(change(now, before), "angle").passed
+    near = [row(angle=2.8e-13), row(angle=3.1e-13)]
+    assert of(change(now, before, near), "angle").passed
+    nearer = [row(angle=3.001e-13)]
+    assert not of(change(now, before, nearer), "angle").passed
+
+
+def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
+    torn = row(outcome=Outcome.TORN)
+    assert not change(torn, old())[0].passed
+    assert change(torn, old(Outcome.TORN))[0].passed
+    assert change(torn, old(Outcome.SATURATED), [row(outcome=Outcome.SATURATED)])[0].passed
+
+
+def test_with_other_versions_three_times_as_large_fails_and_twice_does_not():
+    assert all(check.passed for check in drift(row(angle=2e-5), old(angle=1e-5)))
+    assert not of(drift(row(angle=4e-5), old(angle=1e-5)), "angle").passed
+    assert of(drift(row(angle=5e-12), old(angle=1e-13)), "angle").passed, "rounding"
+
+
+def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
+    def found(measured: float) -> tuple[Check, ...]:
+        return (Check("error", "angle", measured, 1.0),)
+
+    known = {"error": Deviation("by design: soft", 10.0)}
+    assert not complaints(found(10.0), known)
+    assert not complaints(found(19.0), known)
+    assert "known are 10" in complaints(found(21.0), known)[0]
+    assert "no longer" in complaints(found(0.4), known)[0]
+    assert "no such check" in complaints((), known)[0]
+    assert complaints(found(1.1), {}) == (str(found(1.1)[0]),)
+
+
+@pytest.mark.parametrize(("reason", "factor"), [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan)])
+def test_a_deviation_says_whose_it_is_and_by_how_much(reason, factor):
+    with pytest.raises(ValueError, match="deviation"):
+        Deviation(reason, factor)
+
+
+def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
+    far, near = Check("gap", "gap", 3.0, 1.0), Check("error", "angle", 0.5, 1.0)
+    assert nearest((near, far)) is far
+    assert Check("error", "angle", 1.0, 0.0).nearness == math.inf
+    assert Check("error", "angle", 0.0, 0.0).passed
+
+
+def written(path: Path, *measured: Measurement) -> Path:
+    path.write_text(as_csv(measured, timings=False), encoding="utf-8")
+    return path
+
+
+def test_a_baseline_is_read_as_it_was_written_with_the_versions_beside_it(tmp_path):
+    path = written(tmp_path / "errors.csv", row(angle=1.5e-5), row(every=3, outcome=Outcome.TORN))
+    found = read_baseline(path)
+    assert found.cells[identity(row())].errors["angle"] == 1.5e-5
+    assert found.cells[identity(row(every=3))].outcome == Outcome.TORN
+    assert found.same_versions
+    (tmp_path / "timings.csv").write_text("# 2026-01-01\n# Python 2.7, numpy 0.1\n")
+    assert read_baseline(path).versions == "Python 2.7, numpy 0.1"
+    assert not read_baseline(path).same_versions
+
+
+@pytest.mark.parametrize("text", [None, "", "a,b\n1,2\n", "\0\0", "damaged"])
+def test_a_file_that_is_no_baseline_is_one_line(tmp_path, text):
+    path = tmp_path / "errors.csv"
+    if text == "damaged":
+        written(path, row())
+        path.write_text(path.read_text().replace("finished", "dissolved"))
+    elif text is not None:
+        path.write_text(text)
+    with pytest.raises(BadBaseline, match=r"baseline .*errors\.csv") as told:
+        read_baseline(path)
+    assert "\n" not in str(told.value)
+
+
+def test_a_nudged_start_is_another_rounding_of_the_same_and_the_same_for_a_seed():
+    mechanism = SCENE.mechanism()
+    spins = {nudge(mechanism, seed).twist[0, 2] for seed in range(20)}
+    assert len(spins) == 3
+    assert max(abs(spin / mechanism.twist[0, 2] - 1) for spin in spins) <= 2.3e-16
+    assert nudge(mechanism, 1) == nudge(mechanism, 1)
+    cells = nudged_cells(Cell(SCENE, Toy(), 1))
+    assert len({cell.key for cell in cells}) == len(cells)
+    assert all(isinstance(cell.engine, Nudged) and cell.label == Cell(SCENE, Toy(), 1).label for cell in cells)
+
+
+def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> Verdict:
+    return Verdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, new=1)
+
+
+def test_the_report_tells_every_case_its_bound_and_what_failed():
+    good = verdict(Check("error", "angle", 2e-5, 1e-4), Check("gap", "gap", 0.9, 1.0))
+    assert lines([good]) == [["disc", "toy default", "1.0e-3", "2.0e-5", "1.0e-4", "gap", "0.9", "passed"]]
+    bad = verdict(Check("error", "angle", 2e-4, 1e-4))
+    assert lines([bad])[0][-1] == "FAILED: theory"
+    changed = verdict(Check("error", "angle", 1.0, 2.0), moved=(Check("change", "angle", 1.0, 0.5),))
+    assert lines([changed])[0][-1] == "FAILED: change"
+    known = verdict(Check("error", "angle", 2e-4, 1e-4), known=(("error", Deviation("by design: soft", 3.0)),))
+    text = report([good, bad, known], Baseline({}))
+    assert "3 scenes and methods, 1 failed, 1 with known deviations" in text
+    assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text
+    assert "| disc | toy default | error | 3 | by design: soft |" in text
+    assert "cells are not in the baseline" in text
+
+
+SUITE = """
+import pytest
+from reports.gate import Case
+from reports.promises import Promise
+from tests.toys import Disc, Toy
+
+CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in CASES])
+def test_case(verdicts, case):
+    assert case in verdicts
+    print("ran", sorted(each.method for each in verdicts))
+"""
+
+
+@pytest.fixture
+def suite(pytester):
+    """A grid of three toys in a folder of its own."""
+    root = Path(__file__).parents[1]
+    pytester.makeini(f"[pytest]\npythonpath = {root}\n")
+    pytester.makeconftest('pytest_plugins = ["reports.pytest_plugin"]')
+    pytester.makepyfile(SUITE)
+    written(pytester.path / "errors.csv", row())
+    return pytester
+
+
+def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
+    found = suite.runpytest_subprocess(
+        "-s", "--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md"
+    )
+    found.assert_outcomes(passed=1, deselected=2)
+    found.stdout.fnmatch_lines(
+        ["*ran [[]'toy two'[]]*", "*crosscheck*", "scene *bound*", "disc *toy two*", "written to *"]
+    )
+    assert "| disc | toy two |" in (suite.path / "out.md").read_text()
+    assert "toy one" not in (suite.path / "out.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
+        (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
+        (["--scene", "moon"], "no case of --scene"),
+    ],
+)
+def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):
+    found = suite.runpytest_subprocess("--baseline", "errors.csv", *arguments)
+    assert found.ret == pytest.ExitCode.USAGE_ERROR
+    assert told in found.stderr.str()
+    assert "Traceback" not in found.stderr.str()
+
+
+def test_every_field_that_a_baseline_needs_is_a_field_of_a_measurement():
+    header = next(csv.reader(as_csv([row()], timings=False).splitlines()))
+    assert {"scene", "engine", "variant", "purpose", "samples", "every", "outcome", *NAMES} <= set(header)
+    assert set(NAMES) <= {field.name for field in fields(Measurement)}
