@@ -53,6 +53,7 @@ def rows():
     for scene, factor in (("one_scene", 1.0), ("other", 7.0)):
         found += falling("pymunk default", (1.1e-2, 1.3e-3, 1.7e-4), scene=scene)
         found += falling("mujoco tuned", (1.9e-2 * factor, 2.3e-3 * factor), scene=scene, position=5e-5)
+        found += falling("mujoco extended", (3.7e-2 * factor, 4.1e-5), scene=scene)
         found += falling("mujoco own", (2.9e-2, 3.1e-3), scene=scene)
         found.append(row_of("pymunk default", scene=scene, step=1e-4, angle=1e-9, outcome=Outcome.SATURATED))
         found.append(row_of("pymunk default", scene=scene, step=1e-5, angle=1e-9, purpose="map"))
@@ -94,7 +95,7 @@ def test_each_method_is_drawn_with_its_numbers_in_its_scenes_panel(draw, across,
     entries = legend(figure)
     for panel, scene in zip(found, ("other", "one_scene"), strict=True):
         drawn = series(panel)
-        methods = ("pymunk default", "mujoco tuned")
+        methods = ("pymunk default", "mujoco tuned", "mujoco extended")
         assert drawn == {
             entries[method]: [pytest.approx(point) for point in expected(scene, method, across)] for method in methods
         }
@@ -132,7 +133,11 @@ def test_the_front_is_of_all_methods_and_those_not_featured_are_dots():
         row_of("pymunk default", step=1e-2, angle=1e-2, cpu=1e-3),
         row_of("pymunk default", step=1e-3, angle=1e-4, cpu=5e-3),
     ]
-    figure = charts.work_precision([*shown, *cheap], featured)
+    never = [
+        row_of("mujoco own", step=1e-4, angle=1e-9, cpu=1e-4, purpose="map"),
+        row_of("mujoco own", step=1e-4, angle=1e-9, cpu=1e-4, outcome=Outcome.SATURATED),
+    ]
+    figure = charts.work_precision([*shown, *cheap, *never], featured)
     [panel] = panels(figure)
     assert front(panel) == [pytest.approx(point) for point in ((1.0, 1e-2), (2.0, 1e-3), (5.0, 1e-4))]
     assert dots(panel) == [pytest.approx(point) for point in ((2.0, 1e-3), (9.0, 5e-3))]

@@ -75,7 +75,8 @@ def helper():
 """,
     "theirs/near.py": "from theirs import further",
     "theirs/further.py": "from .deep import inner",
-    "theirs/deep/__init__.py": "START = 1",
+    "theirs/deep/__init__.py": "from . import deepest",
+    "theirs/deep/deepest.py": "",
     "theirs/deep/inner.py": "VALUE = 1",
     "theirs/plain.py": "import theirs.furthest",
     "theirs/furthest.py": "",
@@ -162,12 +163,12 @@ def test_bytes_count_and_not_names_alone_and_names_and_not_bytes_alone(theirs):
 
 def test_the_same_bytes_under_another_name_are_another_source(theirs):
     folder, engine = theirs
-    text = "try:\n    import theirs.fast\nexcept ImportError:\n    import theirs.slow\n"
+    text = "try:\n    import theirs.quick_a\nexcept ImportError:\n    import theirs.quick_b\n"
     (folder / "theirs/furthest.py").write_text(text, encoding="utf-8")
-    (folder / "theirs/fast.py").write_text("VALUE = 1", encoding="utf-8")
+    (folder / "theirs/quick_a.py").write_text("VALUE = 1", encoding="utf-8")
     forget()
     before = fingerprint(engine)
-    (folder / "theirs/fast.py").rename(folder / "theirs/slow.py")
+    (folder / "theirs/quick_a.py").rename(folder / "theirs/quick_b.py")
     forget()
     assert fingerprint(engine) != before
 

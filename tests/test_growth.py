@@ -95,6 +95,7 @@ def test_a_crossing_is_where_the_first_becomes_the_dearer():
     assert crossing(line(1, 4, 9), line(3, 3, 3)) == (1, 10)
     assert crossing(line(9, 2, 1), line(3, 3, 3)) is None
     assert crossing(line(1, 1, 1), line(3, 3, 3)) is None
+    assert crossing(line(9, 9, 9), line(3, 3, 3)) is None
     assert crossing(None, line(1, 1, 1)) is None
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from reports.cells import Cell
 from reports.outcomes import Outcome
-from reports.overview import BEGIN, COLUMNS, END, overview, with_overview
+from reports.overview import BEGIN, END, overview, with_overview
 from reports.page import Failure, Material, Observation, Page
 from reports.pages.told import told
 from reports.rendering import parameters, render_all, render_index, render_page, render_readme
@@ -20,7 +20,10 @@ from reports.tables import number
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 
-METHODS = tuple(" ".join(column) for column in COLUMNS)
+METHODS = (
+    *("pymunk default", "pymunk tuned", "pymunk extended"),
+    *("mujoco default", "mujoco tuned", "mujoco extended"),
+)
 
 
 class OtherDisc(Disc):

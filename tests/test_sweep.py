@@ -121,9 +121,9 @@ def test_verdicts_by_hand():
     assert fit(steps, [1e-2, 1e-4, 1e-6, 1e-6], ROUNDING)[0] is Verdict.LEVELS
     assert fit(steps, [1e-6, 1e-5, 1e-4, 1e-3], ROUNDING)[0] is Verdict.GROWS
     assert fit(steps, [1e-2, 1e-4, 1e-6, 1e-3], ROUNDING)[0] is Verdict.ERRATIC
-    # Slopes 1 and 2: the least squares between them, and how far each is from it.
-    _, order, points, spread, _ = fit(steps[:3], [1e-2, 1e-3, 1e-5], 0.0)
-    assert (order, points, spread) == (pytest.approx(1.5), 3, pytest.approx(0.5))
+    # Slopes 1, 1 and 2: the least squares between them, and how far the furthest is from it.
+    _, order, points, spread, _ = fit(steps, [1e-2, 1e-3, 1e-4, 1e-6], 0.0)
+    assert (order, points, spread) == (pytest.approx(1.3), 4, pytest.approx(0.7))
 
 
 def test_steps_may_come_in_any_order_and_unknown_errors_are_left_out():
@@ -152,6 +152,13 @@ def test_a_sweep_is_of_one_method_in_one_scene_with_each_quantity_its_own():
     assert by_method(found, "angle")["two", "a", "x"].order == pytest.approx(2.0)
 
 
+def test_each_quantity_has_its_own_rounding():
+    for q in QUANTITIES:
+        for last, verdict in ((0.9 * q.rounding, Verdict.ROUNDING), (1.1 * q.rounding, Verdict.FALLS)):
+            found = sweeps(falling("a x", (1e4 * last, 1e2 * last, last), q.name))
+            assert by_method(found, q.name)["disc", "a", "x"].verdict is verdict, q.name
+
+
 def test_groups_go_from_coarse_to_fine_and_leave_out_what_is_no_sweep():
     rows = [row_of("a x", step=1e-3), row_of("b x"), row_of("a x", step=1e-1), row_of("a x", purpose="map")]
     assert {key: [r.step for r in members] for key, members in groups(rows).items()} == {
@@ -173,6 +180,7 @@ def test_a_sweep_judges_its_rows():
     assert judgements(1e-2, 1e-4, 1e-6, 1e-6) == ["finished"] * 4  # it may be a crossing of signs
     assert judgements(1e-6, 1e-5, 1e-4) == ["finished"] * 3
     assert judgements(1e-2, 1e-4, 1e-6, quantity="position") == ["converged"] * 3
+    assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 3
 
 
 def test_only_what_finished_in_a_sweep_is_judged():
