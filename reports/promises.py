@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf
@@ -44,7 +45,7 @@ class Promise:
 
 
 # Method -> promise; (scene, method) -> promise where a scene's motion makes it another.
-Promises = Mapping[str | tuple[str, str], Promise]
+Promises = Mapping[Any, Promise]  # Any: a key of either kind, since a Mapping's keys are invariant
 
 
 def promised(promises: Promises, scene: str, method: str) -> Promise:

@@ -31,7 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Bad files are one line, before anything is run."""
     try:
-        config.stash[KNOWN] = read_baseline(config.getoption("--baseline"))
+        config.stash[KNOWN] = read_baseline(Path(config.getoption("--baseline") or BASELINE))
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
     target = config.getoption("--crosscheck-report")
@@ -49,7 +49,7 @@ def case_of(item: pytest.Item) -> Case | None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
-    scenes, engines = config.getoption("--scene"), config.getoption("--engine")
+    scenes, engines = config.getoption("--scene") or [], config.getoption("--engine") or []
     if not (scenes or engines):
         return
     kept = [item for item in items if _wanted(case_of(item), scenes, engines)]

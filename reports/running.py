@@ -41,9 +41,7 @@ def run_into(
     An interruption passes through, with the rows so far stored. Cells whose processes were killed from outside are not
     stored; when all others are done, WorkersLost is raised, with one line about them.
     """
-    if fresh:
-        store.forget(cells)
-    waiting = missing(cells, store, limit)
+    waiting = tuple(cells) if fresh else missing(cells, store, limit)  # an old row stays until the new one replaces it
     lost: list[Measurement] = []
     for row in run_cells(waiting, limit, workers, watch, timed):
         if row.outcome == Outcome.LOST:

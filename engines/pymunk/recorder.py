@@ -152,7 +152,7 @@ def reactions(
     sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
     if mechanism.row_count and np.any(sane):
         with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, gravity)
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity))
     return out
 
 
