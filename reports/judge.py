@@ -118,7 +118,7 @@ def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None
         twist = twist + dt * np.tensordot(weights, acceleration, 1)
         if project:
             pose, twist = projected(mechanism, pose, twist, t + dt)
-    return Trajectory(np.arange(samples + 1) * scene.spacing, poses, twists, reactions)
+    return Trajectory(np.arange(samples + 1, dtype=np.float64) * scene.spacing, poses, twists, reactions)
 
 
 def errors(
