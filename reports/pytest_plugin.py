@@ -31,12 +31,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Bad files are one line, before anything is run."""
     try:
-        config.stash[KNOWN] = read_baseline(Path(config.getoption("--baseline") or BASELINE))
+        config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
-    target = config.getoption("--crosscheck-report")
+    target = _option(config, "--crosscheck-report")
     if target is not None and not target.resolve().parent.is_dir():
         raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
+
+
+def _option(config: pytest.Config, name: str) -> Any:
+    """The value of an option of this file."""
+    return config.getoption(name)
 
 
 def case_of(item: pytest.Item) -> Case | None:
@@ -49,7 +54,7 @@ def case_of(item: pytest.Item) -> Case | None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
-    scenes, engines = config.getoption("--scene") or [], config.getoption("--engine") or []
+    scenes, engines = _option(config, "--scene"), _option(config, "--engine")
     if not (scenes or engines):
         return
     kept = [item for item in items if _wanted(case_of(item), scenes, engines)]
@@ -86,7 +91,7 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
     terminalreporter.section("crosscheck")
     for line in (*plain(HEADER, lines(found.values())), *changes(found.values(), baseline)):
         terminalreporter.line(line)
-    target = config.getoption("--crosscheck-report")
+    target = _option(config, "--crosscheck-report")
     if target is not None:
         target.write_text(report(found.values(), baseline), encoding="utf-8", newline="\n")
         terminalreporter.line(f"written to {target}")

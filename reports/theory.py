@@ -29,7 +29,7 @@ ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
 # of one. It is narrow enough only because a method's own coarser steps bound it too.
 ROOM = 20.0
 # Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
-ROOM_SOFT = 4.0
+ROOM_SOFT = 2.0
 # Room above what a method's own coarser steps let expect of a finer one: their constant is known, and what is left is
 # the next power of the step, and that a largest error over samples is met at another one. It is below the three of half
 # a decade, so that an error that stays is seen between the two finest steps even at first order.

@@ -22,7 +22,7 @@ EXTRAPOLATED = Promise(6, reaction=4, differences=8, amplified=AMPLIFIED)
 SPRUNG = Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=4)
 
 # A tree of joints has no constraint, so what MuJoCo's settings leave is the integrator's order, and joints can't part.
-OPEN: Promises = {
+OPEN: dict[str, Promise] = {
     "pymunk default": STEPPED,
     "pymunk tuned": CLOSING,
     "pymunk extended": EXTRAPOLATED,
@@ -33,7 +33,7 @@ OPEN: Promises = {
     "lagrange rk4 projection": Promise(4, gap=EXACT, slip=EXACT),
 }
 # Where a loop is closed by a spring tied to the step, its softness sets the order, not RK4.
-CLOSED: Promises = {
+CLOSED: dict[str, Promise] = {
     **OPEN,
     "mujoco default": Promise(1),
     "mujoco tuned": SPRUNG,

@@ -15,7 +15,7 @@ SPRING = "by design: with every joint a spring, its own motion adds to the link'
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("pendulum_1", "lagrange euler projection", "outcome"): Deviation(EULER),
-    ("pendulum_1", "mujoco extended, free, sparse Newton", "error"): Deviation(SPRING, 2.5),
+    ("pendulum_1", "mujoco extended, free, sparse Newton", "error"): Deviation(SPRING, 4.1),
     ("pendulum_2", "mujoco default, free coordinates", "order"): Deviation(SOFT, 2.5),
     ("pendulum_10", "mujoco default", "energy"): Deviation(EULER, 1.9),
     ("pendulum_10", "lagrange euler projection", "outcome"): Deviation(EULER),

@@ -4,4 +4,11 @@ from __future__ import annotations
 
 from reports.checks import Deviation
 
-KNOWN: dict[tuple[str, str, str], Deviation] = {}
+ESTIMATED = (
+    "ours: the judge takes the inverse inertia of the row itself, MuJoCo an estimate that is larger in this loop"
+)
+
+KNOWN: dict[tuple[str, str, str], Deviation] = {
+    ("person_two_feet", "mujoco tuned", "error"): Deviation(ESTIMATED, 1.2),
+    ("person_two_feet", "mujoco tuned", "gap"): Deviation(ESTIMATED, 1.6),
+}
