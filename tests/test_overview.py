@@ -115,6 +115,14 @@ CELLS = {
 }
 
 
+def test_a_pages_material_gives_the_rows_of_the_sweep_and_no_experiments_among_them():
+    tried = Cell(DISC, Toy("default"), 3, "failure")
+    material = Material({**CELLS, tried: row_of("mujoco default", scene="disc", every=3, purpose="failure")})
+    assert [row.scene for row in material.sweep((DISC,))] == ["disc"] * 6
+    assert all(row.purpose == "sweep" for row in material.sweep((DISC, OTHER)))
+    assert [row.every for row in material.of((tried,))] == [3]
+
+
 def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
     extra = {"some": [Cell(DISC, Toy("tuned"), 10), Cell(DISC, Toy("never run"), 1)]}
     words = told(Material(CELLS), (DISC, OTHER), extra)
