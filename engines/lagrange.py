@@ -65,16 +65,21 @@ class _Dynamics:
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
         """Accelerations (bodies, 3) under gravity and the joints' reactions."""
+        if not self.mechanism.row_count:
+            return self.mechanism.free_fall
+        rows, reaction = self.reaction(pose, twist, t)
+        return (self.free_fall + self.weight * (rows.T @ reaction)).reshape(-1, 3)
+
+    def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
+        """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
         mechanism = self.mechanism
-        if not mechanism.row_count:
-            return mechanism.free_fall
         rows = mechanism.rows(pose)
         right = mechanism.bias(pose, twist) - rows @ self.free_fall
         if self.baumgarte:
             slip = rows @ twist.reshape(-1) - mechanism.rate
             gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
             right -= self.baumgarte * (2 * slip + self.baumgarte * gap)
-        return (self.free_fall + self.weight * (rows.T @ self._solve(rows, right))).reshape(-1, 3)
+        return rows, self._solve(rows, right)
 
     def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The nearest pose (Newton) and twist, in the metric of the mass matrix, that satisfy the joints."""
@@ -236,8 +241,7 @@ class _LagrangeRun:
         alive = np.all(np.isfinite(poses) & np.isfinite(twists), axis=(1, 2))
         if self._mechanism.row_count and np.any(alive):
             states = zip(t[alive], poses[alive], twists[alive], strict=True)
-            accelerations = np.array([self._dynamics.acceleration(pose, twist, at) for at, pose, twist in states])
-            reactions[alive] = self._mechanism.reaction(poses[alive], accelerations)
+            reactions[alive] = [self._dynamics.reaction(pose, twist, at)[1] for at, pose, twist in states]
         return reactions
 
 

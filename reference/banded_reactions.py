@@ -22,16 +22,17 @@ MANY_ROWS = 24
 SMALLEST_PIVOT = 1e-9
 
 
-def banded_reaction(mechanism: Mechanism, pose: Array, acceleration: Array) -> Array:
-    """Reactions (times, rows) [N, N m] for poses and accelerations (times, bodies, 3); NaN where rows are dependent.
+def banded_reaction(mechanism: Mechanism, pose: Array, excess: Array, inertias: Array) -> Array:
+    """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
 
-    J M^-1 J^T times the reactions is J (a - f / M): built from the joints' blocks, in an order that makes its band
-    narrow, and factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
+    `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
+    the mass matrix M. J M^-1 J^T times the reactions is J excess: built from the joints' blocks, in an order that makes
+    its band narrow, and factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
     """
     everything = mechanism._with_ground(pose)
     times, count = len(pose), len(mechanism.bodies)
-    weight = np.concatenate([1 / mechanism.inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
-    excess = np.concatenate([acceleration - mechanism.free_fall, np.zeros((times, 1, 3))], axis=1)
+    weight = np.concatenate([1 / inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
+    excess = np.concatenate([excess, np.zeros((times, 1, 3))], axis=1)
     right = np.zeros((times, mechanism.row_count))
     ends: dict[int, list[tuple[NDArray[np.intp], Array]]] = {}  # of each body, the rows on it and their blocks
     for group in mechanism._groups:

@@ -214,25 +214,43 @@ class Mechanism:
         step = 1e-100
         return -(np.imag(self.rows(pose + 1j * step * twist)) @ _column(twist))[..., 0] / step
 
-    def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reaction(
+        self,
+        pose: NDArray[np.float64],
+        acceleration: NDArray[np.float64],
+        inertias: NDArray[np.float64] | None = None,
+        gravity: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
 
         pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
-        have applied. Unique when the rows are independent; of redundant rows it gives the smallest.
+        have applied. `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an
+        engine gives those of its own model (NaN for what it has none of): then the reactions are the forces that the
+        engine has applied, and a wrong mass in it shows even where the motion is prescribed. Unique when the rows are
+        independent; of redundant rows it gives the smallest.
         """
+        inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
+        falling = self.free_fall if gravity is None else np.append(gravity, 0.0)
+        return self.forces(pose, np.asarray(acceleration) - falling, inertias)
+
+    def forces(
+        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Reactions (..., rows) that move masses (bodies, 3) by `excess` (..., bodies, 3) other than in free fall."""
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
-            found = banded_reaction(self, pose, acceleration)
+            found = banded_reaction(self, pose, excess, inertias)
             dependent = np.isnan(found).any(axis=1)
             if dependent.any():
-                found[dependent] = self._dense_reaction(pose[dependent], acceleration[dependent])
+                found[dependent] = self._dense_reaction(pose[dependent], excess[dependent], inertias)
             return found
-        return self._dense_reaction(pose, acceleration)
+        return self._dense_reaction(pose, excess, inertias)
 
-    def _dense_reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _dense_reaction(
+        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         rows = self.rows(pose)
-        weighted = rows / self.inertias.reshape(-1)
-        excess = _column(acceleration - self.free_fall)
-        matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ excess
+        weighted = rows / inertias.reshape(-1)
+        matrix, right = weighted @ np.swapaxes(rows, -1, -2), rows @ _column(excess)
         return solve_rows(matrix, right)[..., 0]
 
     def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:

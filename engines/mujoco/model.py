@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
@@ -59,6 +61,13 @@ class Model:
     def hooked(self) -> AbstractContextManager[None]:
         """The callbacks in place while this is entered: every step and every reading needs them."""
         return installed(in_turn(self.hooks.control), in_turn(self.hooks.passive))
+
+    def loads(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2], as the compiled model has them."""
+        compiled = self.compiled
+        places = [compiled.body(f"body {index}").id for index in range(len(self.mechanism.bodies))]
+        mass, inertia = compiled.body_mass[places], compiled.body_inertia[places, 2]
+        return np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
 
     def start(self) -> Any:
         """A fresh mujoco.MjData at the mechanism's start, its derived quantities computed."""

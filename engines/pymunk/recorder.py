@@ -142,15 +142,30 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
     return out
 
 
-def reactions(mechanism: Mechanism, pose: Array, acceleration: Array) -> Array:
+def reactions(
+    mechanism: Mechanism, pose: Array, acceleration: Array, inertias: Array, gravity: tuple[float, float]
+) -> Array:
     """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
     out = np.full((len(pose), mechanism.row_count), np.nan)
     # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
     sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
     if mechanism.row_count and np.any(sane):
         with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane])
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, gravity)
     return out
+
+
+def loads(model: Model) -> tuple[Array, tuple[float, float]]:
+    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] that the engine's objects hold.
+
+    NaN where it needs none, as the motion is prescribed: of a kinematic body, and the inertia of one that can't turn.
+    """
+    inertias = np.full((len(model.bodies), 3), np.nan)
+    for own, body in zip(inertias, model.bodies, strict=True):
+        if body.body_type == pymunk.Body.DYNAMIC:
+            own[:] = body.mass, body.mass, body.moment if np.isfinite(body.moment) else np.nan
+    x, y = model.space.gravity
+    return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # a unit squared may overflow
 
 
 class PymunkRun:
@@ -190,7 +205,10 @@ class PymunkRun:
                 twist[1:] = (recording.before + recording.after[1:]) / 2
             acceleration = accelerations(model, recording, self._dt)
         reaction = np.concatenate(
-            [self._start_reaction()[None], reactions(self._mechanism, recording.pose[1:], acceleration)]
+            [
+                self._start_reaction()[None],
+                reactions(self._mechanism, recording.pose[1:], acceleration, *loads(model)),
+            ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         warnings = tuple(filter(None, (self._warning, recording.stopped)))
@@ -208,5 +226,6 @@ class PymunkRun:
         recording = record(model, self._dt, samples=4, every=1, raw=self._leapfrog)
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
-            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:])
+            held = loads(model)
+            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third

@@ -104,7 +104,9 @@ class ReflectedRun:
         pose, twist = states[..., :3], states[..., 3:]
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        reaction = reactions(self._mechanism, pose, acceleration)
+        mechanism = self._mechanism
+        # The reflection makes its impulses with these masses.
+        reaction = reactions(mechanism, pose, acceleration, mechanism.inertias, mechanism.gravity)
         return Trajectory(t, pose, twist, reaction, stepping, (stopped,) if stopped else ())
 
     def _stepped(self, sense: float, samples: int, every: int) -> tuple[Array, Array, Array, float, str]:

@@ -23,9 +23,11 @@ class OpenChain(Mechanism):
         """One angle a body, whatever the pose."""
         return len(self.bodies), len(self.bodies)
 
-    def reaction(self, pose: NDArray[np.float64], acceleration: NDArray[np.float64]) -> NDArray[np.float64]:
+    def forces(
+        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         """Newton's law from the free end upwards: pin i carries what all bodies below it need (..., rows) [N]."""
-        needed = self.inertias[:, :2] * (np.asarray(acceleration) - self.free_fall)[..., :2]
+        needed = inertias[:, :2] * excess[..., :2]
         carried = np.flip(np.cumsum(np.flip(needed, axis=-2), axis=-2), axis=-2)
         return carried.reshape((*carried.shape[:-2], self.row_count))
 
