@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 
 from engines import Engine
 from reference.scene import Scene
+from reports.baseline import Old
 from reports.cells import FULL, Cell, estimated_cost
+from reports.change import moved
 from reports.gate import Case, checks
 from reports.measure import Measurement, measure
 from reports.outcomes import Outcome
@@ -17,10 +19,6 @@ from reports.prediction import Prediction, kinds, prediction
 from reports.promises import promised
 from reports.quantities import QUANTITIES
 from tests.mistakes import Mistake, Mistaken
-
-# Two rows of one version are the same when no error differs by more than this part of itself and its rounding. The
-# sums of a run are ordered alike in both, so that what a mistake leaves alone is mostly equal to the last digit.
-SAME = 1e-3
 
 
 @dataclass(frozen=True)
@@ -42,32 +40,23 @@ class Trial:
 class Sighting:
     """What noticed a mistake: the check of theory that the wrong model fails and the right one passes, "" without one.
 
-    `every`: the last number of steps a sample that was tried. `changed`: whether at any of them some error is another
-    one than the right model's. `shift`: the largest difference between an error and the right model's (in m, rad, and
-    per s; relative), at the step where it is least: what neither the step nor rounding can explain.
+    `every`: the last number of steps a sample that was tried. `changed`: whether at any of them the gate of change sees
+    another row than the right model's. `shift`: the largest difference between an error and the right model's (in m,
+    rad, and per s; relative), at the step where the right model's largest error, `noise`, is least.
     """
 
     check: str = ""
     every: int = 0
     changed: bool = False
     shift: float = math.inf
+    noise: float = math.inf
 
     def after(self, every: int, right: Measurement, wrong: Measurement) -> Sighting:
         """This and one more step, at which nothing has noticed the mistake yet."""
-        return Sighting("", every, self.changed or differs(right, wrong), min(self.shift, shift(right, wrong)))
-
-
-def differs(right: Measurement, wrong: Measurement) -> bool:
-    """Whether the wrong model's outcome or any of its errors is another one, beyond rounding."""
-    if right.outcome != wrong.outcome:
-        return True
-    for quantity in QUANTITIES:
-        one, other = getattr(right, quantity.name), getattr(wrong, quantity.name)
-        if math.isnan(one) != math.isnan(other):
-            return True
-        if abs(one - other) > SAME * max(one, other) + quantity.rounding:
-            return True
-    return False
+        before = Old(Outcome(right.outcome), {quantity.name: getattr(right, quantity.name) for quantity in QUANTITIES})
+        out = replace(self, every=every, changed=self.changed or moved(wrong, before))
+        noise = max((abs(error) for error in before.errors.values() if not math.isnan(error)), default=0.0)
+        return replace(out, shift=shift(right, wrong), noise=noise) if noise < self.noise else out
 
 
 def shift(right: Measurement, wrong: Measurement) -> float:

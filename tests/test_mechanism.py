@@ -76,6 +76,17 @@ def test_redundant_rows_share_the_reaction_equally():
     np.testing.assert_allclose(twice.reaction(twice.pose, np.zeros((1, 3))), [0, 9.81 / 2, 0, 9.81 / 2], atol=1e-12)
 
 
+def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
+    mechanism = pendulum()
+    resting = np.zeros((1, 3))
+    held = np.array([[3.0, 3.0, np.nan]])  # it has no number for the inertia: the mechanism's counts
+    found = mechanism.reaction(mechanism.pose, resting, held, (0.0, -2.0))
+    own = mechanism.reaction(mechanism.pose, resting)
+    heavy = replace(mechanism, bodies=(replace(mechanism.bodies[0], mass=3.0),), gravity=(0.0, -2.0))
+    np.testing.assert_allclose(found, heavy.reaction(mechanism.pose, resting), atol=1e-14)
+    assert np.abs(found - own).max() > 0.1
+
+
 def test_freedoms_are_counted_by_rank_so_a_repeated_pin_changes_nothing():
     assert four_bar().degrees_of_freedom() == (1, 1)
     assert four_bar(10.0, drive=10.0).degrees_of_freedom() == (0, 0)
