@@ -121,11 +121,6 @@ class Store:
                     found[cell] = row
         return found
 
-    def forget(self, cells: Iterable[Cell]) -> None:
-        """Remove the rows of these cells."""
-        with _sentences(self.path), self._connection:
-            self._connection.executemany("delete from results where key = ?", [(cell.key,) for cell in cells])
-
 
 def _digest(text: str) -> str:
     return hashlib.sha256(text.encode(errors="replace")).hexdigest()[:16]
