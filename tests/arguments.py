@@ -226,10 +226,8 @@ def trials() -> list[Trial]:
     """All of them, in one order."""
     out: list[Trial] = []
     for cls in dict.fromkeys(type(each) for each in INSTANCES):
-        sample, hints = (
-            next(each for each in INSTANCES if type(each) is cls),
-            typing.get_type_hints(cls, None, None, True),
-        )
+        sample = next(each for each in INSTANCES if type(each) is cls)
+        hints = typing.get_type_hints(cls, include_extras=True)
         for field in dataclasses.fields(cls):
             if hints[field.name] is not Any:
                 for value in bad(hints[field.name]):
@@ -250,9 +248,5 @@ def _of_function(function: Callable[..., Any], owner: Any) -> Iterator[Trial]:
             continue
         for value in bad(hints[name]):
             given = {each: good(hints[each]) for each in parameters} | {name: value}
-            call = (
-                (lambda f=function, g=given: f(**g))
-                if owner is None
-                else (lambda f=function, o=owner, g=given: f(o, **g))
-            )
-            yield Trial(function.__qualname__, name, value, call)
+            called = function if owner is None else functools.partial(function, owner)
+            yield Trial(function.__qualname__, name, value, functools.partial(called, **given))
