@@ -30,6 +30,7 @@ States = AnyComplexes  # (..., bodies, 3)
 # A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
 # rounding, far below a mistake.
 START_TOLERANCE = 1e-9
+ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
 # The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
 LARGEST_RANK = 2**28
 
@@ -102,15 +103,21 @@ class Mechanism(Valid):
             return
         gap = np.nan_to_num(np.abs(self.gap(self.pose, 0.0)))
         slip = np.abs(self.slip(self.pose, self.twist))
-        for value, scale, unit, what in (
-            (gap, 1 + float(np.abs(self.pose).max()), "m or rad", "open by"),
-            (slip, 1 + float(np.abs(self.twist).max()) * (1 + self.length_scale), "m/s or rad/s", "moving apart at"),
+        size = self.length_scale
+        place, turn = (float(np.abs(part).max()) for part in (self.pose[:, :2], self.pose[:, 2]))
+        speed = float(np.abs(self.twist[:, :2]).max()) + size * float(np.abs(self.twist[:, 2]).max())
+        # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
+        far = ROUNDINGS * np.finfo(float).eps
+        for value, (length, angle), (unit, angular), what in (
+            (gap, (START_TOLERANCE * size + far * place, START_TOLERANCE + far * turn), ("m", "rad"), "open by"),
+            (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
         ):
-            worst = int(np.argmax(value))
-            if value[worst] > START_TOLERANCE * scale:
+            allowed = np.where(self.turning, angle, length)
+            worst = int(np.argmax(value - allowed))
+            if value[worst] > allowed[worst]:
                 raise InvalidMechanism(
-                    f"mechanism: at t = 0 row {self.row_names[worst]!r} is {what} {value[worst]:.3g} {unit}; "
-                    f"the start must satisfy every joint to {START_TOLERANCE * scale:.1g}"
+                    f"mechanism: at t = 0 row {self.row_names[worst]!r} is {what} {value[worst]:.3g} "
+                    f"{angular if self.turning[worst] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
                 )
 
     @cached_property
@@ -150,6 +157,11 @@ class Mechanism(Valid):
     def row_names(self) -> tuple[str, ...]:
         """One name a row, 'B x' for the x row of joint B; reactions stand in this order."""
         return tuple(f"{joint.name} {label}" for joint in self.joints for label in joint.labels)
+
+    @cached_property
+    def turning(self) -> NDArray[np.bool_]:
+        """Which rows are rotations [rad, rad/s, N m] and not lengths [m, m/s, N] (rows,)."""
+        return np.array([label == "torque" for joint in self.joints for label in joint.labels], dtype=bool)
 
     @cached_property
     def row_count(self) -> int:
@@ -287,8 +299,7 @@ class Mechanism(Valid):
     def _dense_reaction(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        turning = np.array([label == "torque" for joint in self.joints for label in joint.labels], dtype=bool)
-        size = np.where(turning, self.length_scale, 1.0)
+        size = np.where(self.turning, self.length_scale, 1.0)
         return reactions(self.rows(pose), inertias.reshape(-1), _column(excess)[..., 0], size)
 
     @validated

@@ -27,11 +27,6 @@ def root_mean_square(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2))) if values.size else NAN
 
 
-def turning_rows(mechanism: Mechanism) -> NDArray[np.bool_]:
-    """Which rows are rotations (rad, rad/s, N m) and not lengths (rows,)."""
-    return np.array([label == "torque" for joint in mechanism.joints for label in joint.labels], dtype=bool)
-
-
 def usable_samples(trajectory: Trajectory) -> int:
     """How many samples from the start are finite throughout."""
     finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
@@ -40,7 +35,7 @@ def usable_samples(trajectory: Trajectory) -> int:
 
 def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:
     """What needs no truth: `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s], the largest over the samples."""
-    turning = turning_rows(mechanism)
+    turning = mechanism.turning
     gap, speed = joint_gap(mechanism, trajectory), slip(mechanism, trajectory)
     return {"gap": largest(gap[:, ~turning]), "drive_gap": largest(gap[:, turning]), "slip": largest(speed)}
 
@@ -74,7 +69,7 @@ def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, traject
 
 def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float:
     """Largest error over the rows that both know (times, rows), relative to the largest true reaction of its kind."""
-    turning = turning_rows(mechanism)
+    turning = mechanism.turning
     worst = [NAN]
     for rows in (turning, ~turning):
         scale = largest(truth[:, rows])

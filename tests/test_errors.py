@@ -21,7 +21,6 @@ from reports.errors import (
     motion_errors,
     reaction_error,
     root_mean_square,
-    turning_rows,
     usable_samples,
 )
 from tests.toys import Disc
@@ -133,7 +132,7 @@ def test_energy_is_relative_to_the_largest_kinetic_energy_of_the_truth_and_unkno
 
 @pytest.mark.parametrize(("row", "scale"), [(0, 20.0), (1, 20.0), (2, 8.0)])
 def test_a_reaction_is_held_against_the_largest_of_its_kind(row, scale):
-    assert list(turning_rows(MECHANISM)) == [False, False, True]
+    assert list(MECHANISM.turning) == [False, False, True]
     assert wrong(moved(reaction=((1, row), -3.0))) == pytest.approx({"reaction": 3 / scale}, rel=1e-12)
 
 

@@ -163,3 +163,26 @@ def test_what_cannot_be_is_refused_with_a_sentence(make, says):
     with pytest.raises(InvalidMechanism, match=r".") as refusal:
         make()
     assert says in str(refusal.value)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e6, 1e9])
+def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size(scale):
+    def hung(open_by):
+        body = Body("bar", 1.0, scale**2, (scale, 0.0, 0.0))
+        return Mechanism((body,), (Pin("pin", None, "bar", (open_by * scale, 0.0), (-scale, 0.0)),))
+
+    for open_by in (1e-6, 1e-8):
+        with pytest.raises(InvalidMechanism, match="row 'pin x' is open by"):
+            hung(open_by)
+    assert hung(1e-11).row_count == 2
+
+
+@pytest.mark.parametrize("speed", [1e-9, 1.0, 1e9])
+def test_a_start_that_slips_is_judged_by_its_own_speed(speed):
+    def turning(slip):
+        body = Body("bar", 1.0, 1.0, (1.0, 0.0, 0.0), (slip * speed, speed, speed))
+        return Mechanism((body,), (Pin("pin", None, "bar", (0.0, 0.0), (-1.0, 0.0)),))
+
+    with pytest.raises(InvalidMechanism, match="row 'pin x' is moving apart at"):
+        turning(1e-7)
+    assert turning(1e-12).row_count == 2

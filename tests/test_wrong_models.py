@@ -95,7 +95,6 @@ PRESSED = "pins already hold the gears apart: how hard they press is a matter of
 SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
 
 LARGER: dict[tuple[str, str], str] = {
-    ("driven_four_bar", "pymunk extended"): FORCES,
     **{(scene, "pymunk extended"): SWEPT for scene in ("pendulum_100", "n_four_bar_40")},
     **{
         (f"driven_{what}", f"{name} tuned"): FORCES
