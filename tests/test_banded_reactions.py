@@ -50,17 +50,31 @@ def test_a_pin_given_twice_falls_back_to_the_smallest_forces() -> None:
     assert np.abs(3 * shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
 
 
-def test_two_pins_a_micrometre_apart_fall_back_to_the_smallest_forces() -> None:
+def with_a_pin_beside_the_last(distance: float) -> Mechanism:
+    """Ten links, the last on two pins this far apart [m]: their rows differ by as much where the angles do."""
     mechanism = TenLinks().mechanism()
     last = mechanism.joints[-1]
     assert isinstance(last, Pin)
     (x1, y1), (x2, y2) = last.first_point, last.second_point
-    beside = replace(last, name="beside", first_point=(x1, y1 + 1e-6), second_point=(x2, y2 + 1e-6))
-    nearly = replace(mechanism, joints=(*mechanism.joints, beside))
-    # At angles that differ the rows of the two pins do so by 1e-6: the factorisation ends, with pivots of 1e-12, and
-    # forces of a million times their size if nobody looks at the pivots.
-    pose, acceleration = displaced(nearly)
-    assert np.isnan(banded_reaction(nearly, pose, acceleration)).any(axis=1).all()
-    once, shared = mechanism.reaction(pose, acceleration), nearly.reaction(pose, acceleration)
+    beside = replace(last, name="beside", first_point=(x1, y1 + distance), second_point=(x2, y2 + distance))
+    return replace(mechanism, joints=(*mechanism.joints, beside))
+
+
+def test_two_pins_a_micrometre_apart_fall_back_to_the_dense_system_which_keeps_their_digits() -> None:
+    nearly = with_a_pin_beside_the_last(1e-6)
+    pose, _ = displaced(nearly)
+    given = np.random.default_rng(1).normal(size=(3, nearly.row_count))
+    pull = np.einsum("trc,tr->tc", nearly.rows(pose), given).reshape(pose.shape)
+    # The band's factorisation would end, with pivots of 1e-12: the product J M^-1 J^T has the rows' condition squared.
+    assert np.isnan(banded_reaction(nearly, pose, pull / nearly.inertias, nearly.inertias)).any(axis=1).all()
+    # The rows' own condition is 6e7: that many roundings are 1e-8, and the product would leave no digit at all.
+    assert np.abs(nearly.forces(pose, pull / nearly.inertias, nearly.inertias) - given).max() < 1e-6
+
+
+def test_two_pins_closer_than_the_rank_can_tell_share_the_force() -> None:
+    dependent = with_a_pin_beside_the_last(1e-11)
+    pose, acceleration = displaced(dependent)
+    assert np.isnan(banded_reaction(dependent, pose, acceleration, dependent.inertias)).any(axis=1).all()
+    once, shared = TenLinks().mechanism().reaction(pose, acceleration), dependent.reaction(pose, acceleration)
     assert np.abs(shared).max() < 2 * np.abs(once).max()
-    assert np.abs(shared[:, -4:-2] + shared[:, -2:] - once[:, -2:]).max() < 1e-4 * np.abs(once).max()
+    assert np.abs(shared[:, -4:-2] + shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
