@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: report test check bench mutants clean
+.PHONY: report test check bench mutants lower clean
 
 report: .venv/installed          ## run the grid into crosscheck-results, publish it in reports/results and README.md
 	$(BIN)/crosscheck run --full
@@ -23,6 +23,15 @@ bench: .venv/installed-bench     ## what stepping costs beside the bare loops, a
 mutants: .venv/installed         ## about 300 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
 	$(BIN)/python -m tests.mutants $(ONLY)
 
+lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
+	.venv-lower/bin/python -m pytest -m "not crosscheck and not slow"
+
+.venv-lower/installed: pyproject.toml
+	$(PYTHON) -m venv .venv-lower
+	$(PYTHON) tests/lower_bounds.py > .venv-lower/constraints.txt
+	.venv-lower/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-lower/constraints.txt --editable ".[test]"
+	touch $@
+
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test]"
@@ -33,4 +42,4 @@ mutants: .venv/installed         ## about 300 deliberate mistakes, and which the
 	touch $@
 
 clean:
-	rm -rf .venv
+	rm -rf .venv .venv-lower

@@ -11,6 +11,7 @@ import math
 import numbers
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -149,6 +150,7 @@ _UNBOUNDED = {
 }
 
 
+@lru_cache(maxsize=1024)
 def kind_of(annotation: Any) -> Kind:
     """What an annotation allows."""
     origin, arguments = get_origin(annotation), get_args(annotation)

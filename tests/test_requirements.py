@@ -8,6 +8,7 @@ import pytest
 
 from reports import fingerprint, requirements
 from reports.requirements import normalised, with_required
+from tests.lower_bounds import PYPROJECT, lower_bounds
 
 INVENTED = {
     "engine": [
@@ -56,3 +57,11 @@ def test_pymunk_rows_depend_on_the_version_of_cffi_and_mujoco_rows_do_not(monkey
         fingerprint._digest.cache_clear()
     assert after[0] != before[0]
     assert after[1] == before[1]
+
+
+def test_every_dependency_has_a_lower_bound_that_can_be_tried():
+    bounds = lower_bounds(PYPROJECT.read_text(encoding="utf-8"))
+    assert "numpy==2.0" in bounds
+    assert len(bounds) == len(set(bounds)) > 10
+    with pytest.raises(ValueError, match="'loose' has no lower bound"):
+        lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')

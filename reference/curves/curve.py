@@ -114,6 +114,8 @@ class ByArc(Curve):
 
 def along(arc: ArrayLike) -> Array:
     """Arcs or angles as an array of floats, refused if they are no numbers; NaN stays NaN, a search may pass there."""
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # at every step of a search
+        return arc
     return take("curve", "the place", arc, Numbers)
 
 

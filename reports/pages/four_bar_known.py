@@ -43,7 +43,7 @@ ORDERS: Promises = {
     "mujoco extended, free coordinates": Promise(4),
     **{f"lagrange {engine.variant}": ideal(engine) for engine in ENGINES if isinstance(engine, Lagrange)},
     **from_rest(["free_four_bar"]),
-    **prescribed("driven_four_bar"),
+    **prescribed("driven_four_bar", INTEGRATORS),
     # The faster the motion, the more of RK4's own error stands before the spring's.
     ("spinning_four_bar", "lagrange rk4 baumgarte"): Promise(3, rate=2, gap=2, slip=1, energy=2, reaction=0),
     **{
