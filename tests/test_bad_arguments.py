@@ -22,7 +22,7 @@ from reference.mechanism import Body
 from reference.rolling.scenes import RollingDisc
 from reference.scenes import SCENES
 from reference.skate.parking import park
-from reference.validation import InvalidMechanism, Valid, validated
+from reference.validation import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated
 from reports.cells import Cell
 from tests.arguments import Trial, dataclasses_of_the_suite, functions_of_the_suite, trials
 from tests.mechanisms import four_bar
@@ -78,6 +78,30 @@ def test_two_thousand_arguments_that_can_not_be_meant_are_refused():
 @pytest.mark.slow
 def test_every_argument_that_can_not_be_meant_is_refused():
     assert told(trials()) == []
+
+
+@pytest.mark.parametrize(
+    ("annotation", "valid", "beyond"),
+    [(Fraction, (0, 1), (-1e-9, 1 + 1e-9)), (Count, (1, 2**31 - 1), (0, 2**31)), (NonNegative, (0.0,), (-1e-9,))],
+)
+def test_a_bound_itself_is_valid_and_what_lies_beyond_it_is_not(annotation, valid, beyond):
+    for value in valid:
+        assert take("test", "value", value, annotation) == value
+    for value in beyond:
+        with pytest.raises(InvalidMechanism, match="test: value is"):
+            take("test", "value", value, annotation)
+
+
+@validated
+def halves(mass: Positive, /, count: Count = 1, *, share: Fraction = 0.5) -> float:
+    return mass * share / count
+
+
+def test_arguments_given_by_name_are_checked_as_those_given_by_place():
+    assert halves(2.0, count=2, share=1) == 1.0
+    for call in (lambda: halves(-1.0), lambda: halves(1.0, count=0), lambda: halves(1.0, share=math.nan)):
+        with pytest.raises(InvalidMechanism, match=r"halves: \w+ is"):
+            call()
 
 
 def test_a_class_without_checks_is_caught():

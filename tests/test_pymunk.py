@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pymunk
@@ -378,3 +381,14 @@ def test_the_bare_loop_of_another_engine_is_refused():
     other = Extrapolated(Lagrange("rk4", "none"), "extended", (1, 2), (4,))
     with pytest.raises(ValueError, match="it must be pymunk"):
         bare_loop(other, FREE, 1e-3, 10)
+
+
+def test_no_space_is_left_for_the_end_of_the_interpreter():
+    """Freeing one there may crash the process after it has said all, and its exit status is another."""
+    code = """
+import gc, pymunk, engines.registry
+gc.collect()
+print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymunk.Body))])
+"""
+    told = subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[1], capture_output=True, text=True)
+    assert (told.returncode, told.stdout, told.stderr) == (0, "[]\n", "")
