@@ -21,11 +21,11 @@ from reports.nudged import Nudged, nudge, nudged_cells
 from reports.order_check import order
 from reports.outcomes import Outcome
 from reports.prediction import Prediction
-from reports.promises import EXACT, Promise
+from reports.promises import EXACT, Promise, promised
 from reports.quantities import QUANTITIES
 from reports.tables import as_csv
 from reports.theory import ROOM, ROOM_OWN, theory
-from reports.walk import Verdict
+from reports.walk import Verdict, walk
 from tests.toys import Disc, Toy
 
 SCENE = Disc()
@@ -82,6 +82,17 @@ def test_softness_costs_in_proportion_to_compliance_over_stiffness():
     assert JUDGE.give("angle", replace(soft, compliance=0.005)) == pytest.approx(5e-4, rel=1e-12)
     assert JUDGE.give("angle", replace(soft, stiffness=25000.0)) == pytest.approx(1e-4, rel=1e-12)
     assert JUDGE.give("angle", None) == 0
+
+
+def test_a_promise_for_one_quantity_is_for_that_alone_and_that_of_a_scene_goes_first():
+    promise, own = Promise(4, rate=2, gap=EXACT, reaction=0), Promise(1)
+    named = ("angle", "position", "rate", "velocity", "gap", "slip", "energy", "reaction")
+    assert [promise.of(quantity) for quantity in named] == [4, 4, 2, 2, EXACT, 4, 4, 0]
+    promises = {"toy default": promise, ("disc", "toy default"): own}
+    assert promised(promises, "disc", "toy default") is own
+    assert promised(promises, "bar", "toy default") is promise
+    assert of(theory(JUDGE, promise, None, row(rate=1e-6)), "rate").passed
+    assert not of(theory(JUDGE, Promise(4), None, row(rate=1e-6)), "rate").passed
 
 
 def test_no_bound_is_above_what_the_outcome_refuses():
@@ -197,6 +208,23 @@ def test_with_other_versions_three_times_as_large_fails_and_twice_does_not():
     assert all(check.passed for check in drift(row(angle=2e-5), old(angle=1e-5)))
     assert not of(drift(row(angle=4e-5), old(angle=1e-5)), "angle").passed
     assert of(drift(row(angle=5e-12), old(angle=1e-13)), "angle").passed, "rounding"
+
+
+def test_a_walk_holds_each_row_against_the_baselines_row_of_the_same_cell():
+    case = Case(SCENE, Toy("one", factor=1e-4), Promise(2))
+    measured = [measure(cell, repeat=False) for cell in case.cells()]
+    same = {identity(each): Old(each.outcome, {name: getattr(each, name) for name in NAMES}) for each in measured}
+    coarsest = identity(measured[0])
+    changed = {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": 1e-12})}
+    lacking = {key: value for key, value in same.items() if key != coarsest}
+    found = [walk([case], Baseline(cells), workers=1)[case] for cells in (same, changed, lacking)]
+    assert [len(verdict.change_complaints) for verdict in found] == [0, 1, 0]
+    assert "it was 1e-12" in found[1].change_complaints[0]
+    assert [verdict.new for verdict in found] == [0, 0, 1]
+    # Of other versions a number may differ, and not be more than three times as large.
+    for versions, complaints_told in (("", 1), ("Python 2.7", 0)):
+        near = {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": 0.9e-8})}
+        assert len(walk([case], Baseline(near, versions), workers=1)[case].change_complaints) == complaints_told
 
 
 def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():

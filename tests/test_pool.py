@@ -103,6 +103,7 @@ def test_a_cell_killed_from_outside_twice_is_told_and_not_stored(tmp_path):
         with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost, the others are stored.*SIGKILL"):
             run_into(store, cells, done=rows.append)
         assert missing(cells, store) == (cells[0],)
+        assert list(store.get(cells)) == [cells[1]]
     assert {row.variant: row.outcome for row in rows} == {"kill": Outcome.LOST, "default": Outcome.FINISHED}
 
 
