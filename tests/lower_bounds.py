@@ -1,4 +1,4 @@
-"""Print the oldest versions that pyproject.toml allows, as constraints for pip: `make lower` installs and tests them."""
+"""Print the oldest versions that pyproject.toml allows, as constraints for pip: `make lower` tests them."""
 
 from __future__ import annotations
 

@@ -70,6 +70,9 @@ class Base:
 class Plugin(Base):
     settings: dict = field(default_factory=dict, hash=False)
 
+    def build(self, mechanism, dt):
+        raise NotImplementedError
+
 def helper():
     from theirs import nested
 """,
@@ -267,7 +270,10 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     # What only prints or draws can't change a row.
     assert {name for name in files if name.startswith("reports/")} == {
         f"reports/{name}"
-        for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool", "timing")
+        for name in (
+            *("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool", "timing"),
+            *("ending", "requirements", "supervisor", "worker", "worker_process"),
+        )
     }
 
 
@@ -351,12 +357,13 @@ def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, 
     monkeypatch.setattr(
         importlib.metadata, "packages_distributions", lambda: {"installed_engine": ["Installed-Engine"]}
     )
-    version = {"Installed-Engine": "1.0"}
+    version = {"installed-engine": "1.0"}
+    monkeypatch.setattr(importlib.metadata, "requires", lambda name: [])
     monkeypatch.setattr(importlib.metadata, "version", lambda name: version.get(name, "1"))
     forget()
     assert not changed(folder / "installed_engine.py", module.Plugin())
     before = fingerprint(module.Plugin())
-    version["Installed-Engine"] = "1.1"
+    version["installed-engine"] = "1.1"
     forget()
     assert fingerprint(module.Plugin()) != before
 

@@ -238,8 +238,8 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
 
 def test_the_row_of_a_step_is_the_nearest_by_ratio():
     rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
-    assert nearest_step(rows, 2.9e-3).step == 1e-3
-    assert nearest_step(rows, 3.3e-3).step == 1e-2
+    near = {step: nearest_step(rows, step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
+    assert [row and row.step for row in near.values()] == [1e-3, 1e-2, None, None]
     assert nearest_step([], 1e-3) is None
 
 

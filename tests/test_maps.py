@@ -106,7 +106,7 @@ def test_no_two_failures_look_and_read_alike():
         **dict.fromkeys((Outcome.PLATEAU, Outcome.SATURATED, Outcome.BRANCH_FLIP), LIGHT.middling),
         **dict.fromkeys((Outcome.TORN, Outcome.DIVERGED, Outcome.RESET), LIGHT.bad),
         **dict.fromkeys((Outcome.UNSUPPORTED, Outcome.REFUSED), LIGHT.grid),
-        **dict.fromkeys((Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED), LIGHT.worse),
+        **dict.fromkeys((Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED, Outcome.LOST), LIGHT.worse),
     }
 
 

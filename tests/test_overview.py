@@ -17,6 +17,7 @@ from reports.pages.told import told
 from reports.rendering import parameters, render_all, render_index, render_page, render_readme
 from reports.sweep import Verdict
 from reports.tables import number
+from reports.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 
@@ -124,23 +125,22 @@ def test_a_pages_material_gives_the_rows_of_the_sweep_and_no_experiments_among_t
 
 
 def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
-    extra = {"some": [Cell(DISC, Toy("tuned"), 10), Cell(DISC, Toy("never run"), 1)]}
-    words = told(Material(CELLS), (DISC, OTHER), extra)
+    words = told(Material(CELLS), (DISC, OTHER))
     best = words["best"]("disc", "mujoco", "default")
     assert (best.scene, best.variant, best.angle) == ("disc", "default", pytest.approx(1.1e-6))
     assert words["best"]("other_disc", "mujoco", "tuned").angle == pytest.approx(1.3e-8)
-    assert words["best"]("disc", "pymunk", "tuned") is None
+    assert words["best"]("disc", "pymunk", "tuned") is UNMEASURED
     at = words["at"]("disc", "mujoco", "tuned", 10)
     assert (at.scene, at.variant, at.every) == ("disc", "tuned", 10)
-    assert words["at"]("disc", "mujoco", "tuned", 7) is None
+    assert words["at"]("disc", "mujoco", "tuned", 7) is UNMEASURED
     sweep = words["sweep"]("other_disc", "mujoco", "tuned")
     assert (sweep.scene, sweep.variant, sweep.quantity.name) == ("other_disc", "tuned", "angle")
     assert (sweep.best, sweep.verdict) == (pytest.approx(1.3e-8), Verdict.FALLS)
     assert words["sweep"]("disc", "mujoco", "tuned", "gap").quantity.name == "gap"
-    assert words["sweep"]("disc", "pymunk", "tuned") is None
-    assert [r.every for r in words["rows"]("some")] == [10]
+    assert words["sweep"]("disc", "pymunk", "tuned") is UNMEASURED
+    assert words["ended"]("disc", "mujoco", "tuned") == ["finished"]
     only = told(Material(CELLS), (OTHER,))
-    assert only["best"]("disc", "mujoco", "default") is None
+    assert only["best"]("disc", "mujoco", "default") is UNMEASURED
 
 
 def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():

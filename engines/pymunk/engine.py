@@ -18,10 +18,18 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, Fraction, Name, Positive, Valid, validated
 
-_space = pymunk.Space()
-_pivot = PivotJoint(_space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0))
-SHIPPED_ITERATIONS = _space.iterations  # 10
-SHIPPED_ERROR_BIAS = _pivot.error_bias  # 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second
+
+def _shipped() -> tuple[int, float]:
+    """A space's iterations and a joint's error_bias as pymunk sets them.
+
+    The objects end with this function: a space that is still there when Python ends can crash the process.
+    """
+    space = pymunk.Space()
+    return space.iterations, PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0)).error_bias
+
+
+# 10, and 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second.
+SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
 
 

@@ -17,9 +17,14 @@ from reference.kinds import from_to
 from reference.rolling.roll import Roll
 from reference.validation import Fraction, NonNegative, Valid
 
-_space = pymunk.Space()
-SHIPPED_SLOP = _space.collision_slop  # 0.1
-SHIPPED_BIAS = _space.collision_bias  # 0.9 ** 60
+
+def _shipped() -> tuple[float, float]:
+    """As pymunk sets them; the space ends with this function, see `engines.pymunk.engine`."""
+    space = pymunk.Space()
+    return space.collision_slop, space.collision_bias
+
+
+SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # 0.1, 0.9 ** 60
 REACH = 1e3  # m, half the length of flat ground
 
 
