@@ -25,7 +25,7 @@ EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
 OTHERS: dict[Engine, float] = {Lagrange("rk4", "projection"): 1e-4, pymunk.TUNED: 1e-2, mujoco.TUNED: 1e-2}
 # No run of a wrong model is estimated to step longer than this [s]; the coarsest step is always tried. The control,
 # which is interpreted, needs more.
-LIMIT, CONTROL_LIMIT = 0.15, 0.7
+LIMIT, CONTROL_LIMIT = 0.15, 1.3
 
 # What changes an error by less than this part of the mistake changes nothing: forces are differences of velocities over
 # a step, which leaves about 1e-7 of rounding in them where the mistake is 1e-4.
@@ -96,17 +96,12 @@ SWEPT = "its sweeps do not converge on so many joints, so that its own error is 
 
 LARGER: dict[tuple[str, str], str] = {
     **{(scene, "pymunk extended"): SWEPT for scene in ("pendulum_100", "n_four_bar_40")},
-    **{
-        (f"driven_{what}", f"{name} tuned"): FORCES
-        for what in ("four_bar", "slider_crank")
-        for name in ("pymunk", "mujoco")
-    },
+    **{("driven_slider_crank", f"{name} tuned"): FORCES for name in ("pymunk", "mujoco")},
     ("pinned_body_free", "pymunk tuned"): FORCES,
     **{(scene, f"{name} tuned"): COARSE for scene in ("car_and_trailer", "cart") for name in ("pymunk", "mujoco")},
-    ("sleigh_backwards", "mujoco tuned"): COARSE,
     ("free_slider_crank", "pymunk tuned"): COARSE,
     **{("elliptic_gears", f"{name} tuned"): PRESSED for name in ("pymunk", "mujoco")},
-    **{(f"rolling_{what}", "pymunk tuned"): POLYGON for what in ("ellipse", "incline")},
+    **{(f"rolling_{what}", "pymunk tuned"): POLYGON for what in ("ellipse", "cam", "incline")},
     **{(scene, "pymunk tuned"): SWEPT for scene in ("pendulum_100", "n_four_bar_10", "n_four_bar_40")},
 }
 
@@ -219,7 +214,11 @@ def test_a_number_that_is_wrong_in_an_engine_alone_is_noticed(findings: Findings
 @pytest.mark.slow
 @pytest.mark.parametrize("trial", named(EVERYTHING))
 def test_every_number_that_is_wrong_in_an_engine_alone_is_noticed(all_findings: Findings, trial: Trial) -> None:
-    assert bool(unseen(trial, all_findings)) == ((trial.scene.name, trial.method) in LARGER)
+    left = unseen(trial, all_findings)
+    if (trial.scene.name, trial.method) in LARGER:
+        assert left, "every mistake is noticed: take it out of LARGER"
+    else:
+        assert not left
 
 
 def test_every_reason_names_a_real_mistake_and_method() -> None:
