@@ -53,6 +53,10 @@ SLIDER = (
     "the slider can't turn, so where the slot holds it changes no motion; and reactions are read from accelerations, "
     "at the place where the mechanism has the slot"
 )
+NO_TORQUE = (
+    "the slider can't turn, so where the slot holds it changes no motion, only the torque that keeps it level; that is "
+    "zero here, and the one torque there is, so that its error has no scale and is not measured"
+)
 PRESCRIBED = "pymunk moves this body as prescribed and has no number for its mass"
 
 # (scene, mistake) -> the symmetry by which nothing changes.
@@ -83,6 +87,7 @@ UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
         for kind in ("driven", "free")
         for engine in ("pymunk", "mujoco")
     },
+    ("free_slider_crank", "lagrange", "point guide second_point x"): NO_TORQUE,
 }
 
 # (scene, method) -> why some mistakes of this size stay below what theory allows the method. The gate of change notices
@@ -225,7 +230,7 @@ def test_every_reason_names_a_real_mistake_and_method() -> None:
     possible = {(scene.name, str(mistake)) for scene in SCENES for mistake in all_mistakes(scene)}
     assert set(UNNOTICEABLE) <= possible
     assert {(scene, mistake) for scene, _, mistake in UNNOTICEABLE_IN} <= possible
-    assert {engine for _, engine, _ in UNNOTICEABLE_IN} <= {engine.name for engine in EXTENDED}
+    assert {engine for _, engine, _ in UNNOTICEABLE_IN} <= {trial.engine.name for trial in EVERYTHING}
     assert set(LARGER) <= {(trial.scene.name, trial.method) for trial in EVERYTHING}
 
 
