@@ -20,7 +20,7 @@ check: .venv/installed-develop   ## style, types, layers
 bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the reference beside its peers
 	$(BIN)/crosscheck bench
 
-mutants: .venv/installed         ## about 300 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
+mutants: .venv/installed         ## about 350 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
 	$(BIN)/python -m tests.mutants $(ONLY)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
