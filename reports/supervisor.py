@@ -10,9 +10,9 @@ is whole.
 * A worker that ends while it starts costs no item anything; after several in a row `WorkersLost` is raised.
 * An item whose worker ended is tried once more, in a worker that has run nothing else before. What happens there is
   its answer: if native code ends that process too, it is the item's own doing, and no damage that another item left.
-* An item that uses up its CPU time is ended by a timer of the system in its worker. One that sleeps is ended by this
-  process, after much more wall time, of which only what this process was awake for is counted: neither a loaded
-  machine nor a stopped terminal decides about a result.
+* An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
+  not tell, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
+  process was awake for is counted: neither a loaded machine nor a stopped terminal decides about a result.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from typing import Any
 
 from reports.ending import Broken
 from reports.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.worker import READY, SPENT, describe, timed_out
+from reports.worker import READY, SPENT, cpu_time, describe, timed_out
 from reports.worker_process import Job, Worker, interrupts_held, last_words, start_worker
 
 TICK = 0.2  # s between two looks at the clock
+IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
 START_LIMIT = 120.0  # s of wall time until a worker says that it is there
 MOST_FAILED_STARTS = 5  # one after the other
 PAUSE = 0.1  # s after a failed start, and as much more after each further one
@@ -168,6 +169,7 @@ class Crew:
             yield job.item, Loss(Outcome.FAILED, f"can't be sent to a worker: {describe(error)}"), ""
             return
         worker.job, worker.used, worker.awake = job, True, 0.0
+        worker.cpu = cpu_time(worker.process.pid or 0)
         with contextlib.suppress(OSError):  # its end is heard next
             worker.connection.send_bytes(data)
 
@@ -214,6 +216,10 @@ class Crew:
         if not worker.ready and worker.awake > START_LIMIT:
             self._dismiss(worker)
             self._start_failed(f"not ready after {START_LIMIT:g} s")
+        elif worker.job is not None and worker.used_cpu() > self._limit + IMPORTS:
+            job = worker.job
+            self._dismiss(worker)
+            yield job.item, Loss(Outcome.TIMED_OUT, timed_out(self._limit)), ""
         elif worker.job is not None and worker.awake > self._wall:
             job = worker.job
             self._dismiss(worker)

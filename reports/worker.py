@@ -5,6 +5,7 @@ Only the standard library is imported here, so that a worker that has to start f
 
 from __future__ import annotations
 
+import ctypes
 import multiprocessing
 import os
 import pickle
@@ -13,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,25 @@ from reports.outcomes import Loss, Outcome
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
 LONGEST = 500  # characters of a sentence
-# How a worker ends whose job has used up its CPU time: by the timer's signal, or with 128 + SIGXCPU, as shells have it.
-SPENT = -signal.SIGPROF if hasattr(signal, "setitimer") else 152
-LOOK = 0.2  # s between two looks at the CPU time, where the system has no timer for it
+SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
+PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+LOOK = 0.2  # s between two looks at its own CPU time
+
+
+def cpu_time(process: int) -> float | None:
+    """CPU seconds of a process, all threads together; None where the system does not tell those of another process.
+
+    On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. A timer for the CPU time
+    (ITIMER_PROF, RLIMIT_CPU) would end a process by itself, but while one is set the process's own clock, by which
+    stepping is timed, moves in jumps of 4 ms only.
+    """
+    try:
+        return time.clock_gettime((~process << 3) | 2)
+    except (AttributeError, OSError, OverflowError):
+        return None
+
+
+WATCHED = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
 
 
 class Clock:
@@ -43,6 +60,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     ends it; after twice as many it ends itself, should the parent be gone.
     """
     _ignore_interrupts()
+    _end_with_the_parent()
     _redirect(Path(folder))
     clock = Clock()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
@@ -67,6 +85,21 @@ def _ignore_interrupts() -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
+def _end_with_the_parent() -> None:
+    """Ask Linux to end this process with the one that started it, the fork server.
+
+    Native code that holds the interpreter keeps the thread that looks after the parent from running. The fork server
+    ends with the command, once its workers have closed the pipe that tells it that somebody still needs it.
+    """
+    with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
+        ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+        from multiprocessing import forkserver
+
+        server = vars(forkserver._forkserver)
+        os.close(server["_forkserver_alive_fd"])
+        server["_forkserver_alive_fd"] = None
+
+
 def _redirect(folder: Path) -> None:
     """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
     os.chdir(folder)
@@ -77,12 +110,12 @@ def _redirect(folder: Path) -> None:
 
 
 def _watch(clock: Clock) -> None:
-    """In a thread: end the process when its parent is gone, or at the end of the CPU time where no timer does it."""
+    """In a thread: end the process when its parent is gone, or when its CPU time is used up and nobody else sees it."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():
-        parent.join(None if hasattr(signal, "setitimer") else LOOK)
-        if time.process_time() > clock.end:
+        parent.join(None if WATCHED else LOOK)
+        if not WATCHED and time.process_time() > clock.end:
             os._exit(SPENT)
     os._exit(1)
 
@@ -109,12 +142,10 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
 
 @contextmanager
 def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
-    """Timers of the system end the process even inside native code that never returns to the interpreter."""
+    """A timer of the system ends the process even inside native code that never returns to the interpreter."""
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_PROF, max(limit, 1e-6))  # CPU time of all threads; zero would mean none
         signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # the parent is gone, or it would have ended this by now
     try:
         yield

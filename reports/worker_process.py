@@ -13,7 +13,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from reports.worker import work
+from reports.worker import cpu_time, work
 
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 
@@ -35,6 +35,12 @@ class Worker:
     used: bool = False
     job: Job | None = None
     awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
+    cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
+
+    def used_cpu(self) -> float:
+        """CPU seconds that its job has used so far; zero where the system does not tell."""
+        now = cpu_time(self.process.pid or 0)
+        return 0.0 if now is None or self.cpu is None else now - self.cpu
 
     def exit_code(self) -> int | None:
         """Of a worker whose connection has ended; None if nobody knows how the process ended."""

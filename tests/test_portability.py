@@ -19,6 +19,7 @@ import multiprocessing
 import os
 import signal
 import sys
+import time
 from pathlib import Path
 
 # What Windows has of signals, see the documentation of the module; with SIGKILL multiprocessing ends processes here.
@@ -30,6 +31,7 @@ for name in ("setitimer", "getitimer", "alarm", "pthread_sigmask", "pthread_kill
     delattr(signal, name)
 for name in ("fork", "forkpty", "sched_getaffinity", "getuid", "setsid"):
     delattr(os, name)
+del time.clock_gettime
 sys.modules["resource"] = sys.modules["fcntl"] = None
 multiprocessing.get_all_start_methods = lambda: ["spawn"]
 
