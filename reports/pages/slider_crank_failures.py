@@ -131,7 +131,7 @@ MAPS: tuple[StabilityMap, ...] = (
         remark=(
             "At the largest offset the rod stands upright once a turn and the two assemblies meet. Near it the slider "
             "is fast and the forces are large for a moment. MuJoCo's soft loop as shipped lets the rod through to the "
-            "other assembly, at every step; pymunk's as shipped does so at the large steps only. Sweeps that close "
+            "other assembly, at every step; pymunk's as shipped does so at all but the smallest. Sweeps that close "
             "all of the gap tear the mechanism, in more cases the smaller the step. MuJoCo tuned and extended get "
             "through everywhere."
         ),
