@@ -117,10 +117,10 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "Overwriting the crank's state after every step is the common trick. The solver still believes that the "
             "loop's forces accelerate the crank, so it takes wrong forces for the loop. With the loop as shipped the "
-            "error does not fall with the step; with the tuned loop, whose spring is tied to the step, it falls, from "
-            "a torn loop at the largest step, but stays far larger than with a crank that nothing can accelerate. A servo lags by torque over gain, at "
-            "every step. A kinematic body, or an armature that nothing can accelerate, is what a prescribed rate "
-            "means."
+            "error does not fall with the step. With the tuned loop, whose spring is tied to the step, it falls, from "
+            "a torn loop at the largest step, but stays far larger than with a crank that nothing can accelerate. A "
+            "servo lags by torque over gain, at every step. A kinematic body, or an armature that nothing can "
+            "accelerate, is what a prescribed rate means."
         ),
     ),
     Failure(

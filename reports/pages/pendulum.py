@@ -48,7 +48,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Pendulums of 1, 2, 10 and 100 links",
-    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that impulses must find by sweeping.",
+    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that pymunk finds by iteration.",
     scenes=SCENES_HERE,
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,

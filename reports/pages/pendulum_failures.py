@@ -135,11 +135,11 @@ FAILURES: tuple[Failure, ...] = (
             "Each joint's impulse moves the light link and undoes its neighbour's; a sweep removes only about "
             "1 / (mass ratio) of the error, so not even a thousand sweeps agree, and as many sweeps as shipped that "
             "close all of the gap are worse than as shipped. pymunk still finishes from 1e-3 s on, but for a thousand "
-            "sweeps that close all of the gap. In free coordinates MuJoCo's PGS, a sweep too, tears at these steps in "
-            "the extended variant, because that divides the regularisation by 1e8, far beyond what solimp admits, and "
-            "stops after 100 sweeps; with the stiffness that is documented and 10000 sweeps it finishes. MuJoCo's "
-            "Newton solver, which factorises, needs a step that follows the quiver, and so does the tree, whose mass "
-            "matrix has the ratio in it and no row. "
+            "sweeps that close all of the gap. In free coordinates MuJoCo's PGS, a sweep too, tears or starts anew at "
+            "each step in the extended variant, because that divides the regularisation by 1e8, far beyond what "
+            "solimp admits, and stops after 100 sweeps; at 1e-3 s with the stiffness that is documented and 10000 "
+            "sweeps it finishes. MuJoCo's Newton solver, which factorises, needs a step that follows the quiver, and "
+            "so does the tree, whose mass matrix has the ratio in it and no row. "
             "With weak chains users are told to raise the iterations or to take reduced coordinates "
             "([PhysX#308](https://github.com/NVIDIAGameWorks/PhysX/issues/308))."
         ),
@@ -171,10 +171,10 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10)),
         observations=divergence,
         remark=(
-            "An error of 1e-12 times the growth is what the best can reach. At 12 s the methods of first order and "
-            "pymunk tuned are lost at both steps, while those of higher order are still right to three digits or "
-            "more at 1e-3 s: their smaller error leaves them more time. Whether a simulation of a chaotic motion is "
-            "right can be asked only up to a time, and that time is part of the scene."
+            "An error of 1e-12 times the growth is what the best can reach. At 12 s the methods of first order, "
+            "pymunk tuned among them, are lost at both steps, while those of higher order are still right to three "
+            "digits or more at 1e-3 s: their smaller error leaves them more time. Whether a simulation of a chaotic "
+            "motion is right can be asked only up to a time, and that time is part of the scene."
         ),
     ),
     Failure(
