@@ -190,7 +190,7 @@ FAILURES: tuple[Failure, ...] = (
             "follow all of them or explode, though the motion does not show them. Impulses forget the fast modes at "
             "the end of a step: joints open, by up to three links' length, but the numbers stay finite and "
             "the energy near what it was. MuJoCo's Euler in the tree starts anew at 0.1 s, and stays finite but wrong "
-            "at 0.05 s; its RK4 starts anew at both, and exact multipliers under Euler end in infinity. None of them "
+            "at 0.05 s; its RK4 starts anew at both, and exact multipliers under Euler end in infinity. No method "
             "is right; at 0.02 s all of them can be compared again."
         ),
     ),
