@@ -8,7 +8,7 @@ from typing import Any
 
 from engines import mujoco
 from engines.registry import VARIANTS
-from reference.pendulum.link import BarPendulum
+from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes import SCENES
 from reports.page import FEATURED, Material, Page
@@ -42,7 +42,9 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    return told(material, SCENES_HERE)
+    """Rows by method, and how often the point pendulum swings to and fro."""
+    point = PointPendulum()
+    return {**told(material, SCENES_HERE), "periods": round(point.duration / point.pendulum.period)}
 
 
 PAGE = Page(

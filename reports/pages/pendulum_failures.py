@@ -111,7 +111,7 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=PHASE,
         remark=(
-            "The library's first benchmark, a test of phase alone. The inertia of one hinge is constant, and for "
+            "Benchmark A01 of the IFToMM library, a test of phase alone. The inertia of one hinge is constant, and for "
             "that alone MuJoCo's semi-implicit Euler is symplectic: its energy only wavers, so at large steps its "
             "phase is better than that of RK4, which loses a little energy in every swing; at small steps order 4 "
             "wins. A chain of two links or more has no such protection: MuJoCo's own example of a pendulum that "
