@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from engines import mujoco, pymunk
 from engines.registry import ENGINES
 from reference.four_bar.scenes import DrivenFourBar
 from reference.scenes import SCENES
@@ -48,8 +49,14 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows and sweeps by method, for sentences."""
-    return told(material, SCENES_HERE)
+    """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
+    soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
+    return {
+        **told(material, SCENES_HERE),
+        "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
+        "stiff_share": 1 / hard[0] - 1,
+        "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
+    }
 
 
 PAGE = Page(

@@ -54,7 +54,10 @@ ORDERS: Promises = {
 
 SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"
 EULER = "by design: with steps of 1e-3 s a first-order method loses a motion of this speed within the horizon"
-FIRST = "upstream: the force of the first sample alone is off by 7 %, whatever the step; why is not established"
+FIRST = (
+    "ours: the force of the first sample alone is off by 7 %, whatever the step; the documentation calls this "
+    "integrator's acceleration the step's difference of velocities, but whether that explains it is not established"
+)
 DRIFT = "by design: nothing closes the gap that a first-order method opens"
 FIVE = "by design: a spring of five steps gives way as the square of five"
 

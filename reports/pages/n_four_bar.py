@@ -62,7 +62,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="N four-bars side by side",
-    lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: where a method goes on is its own.",
+    lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: there an engine may go on wrongly.",
     scenes=SCENES_HERE,
     engines=VARIANTS,
     failures=FAILURES,

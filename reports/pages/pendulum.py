@@ -8,7 +8,7 @@ from typing import Any
 
 from engines import mujoco
 from engines.registry import VARIANTS
-from reference.pendulum.link import BarPendulum
+from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes import SCENES
 from reports.page import FEATURED, Material, Page
@@ -42,13 +42,15 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    return told(material, SCENES_HERE)
+    """Rows by method, and how often the point pendulum swings to and fro."""
+    point = PointPendulum()
+    return {**told(material, SCENES_HERE), "periods": round(point.duration / point.pendulum.period)}
 
 
 PAGE = Page(
     name=NAME,
     title="Pendulums of 1, 2, 10 and 100 links",
-    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that impulses must find by sweeping.",
+    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that pymunk finds by iteration.",
     scenes=SCENES_HERE,
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,

@@ -51,7 +51,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="A person on one foot and on two",
-    lesson="Five segments and no muscle: an open chain on one foot, a loop through the ground on two, and no standing.",
+    lesson="Five segments and no muscle: an open chain on one foot, a loop on two; unheld, the knee buckles.",
     scenes=SCENES_HERE,
     engines=VARIANTS,
     failures=FAILURES,

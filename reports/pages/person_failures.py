@@ -76,7 +76,7 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(OneFoot(), (pymunk.DEFAULT, *map(sweeps, (5, 10, 30, 100))), (1, 10)),
         remark=(
             "What a chain needs depends on its masses as well as on its length: five sweeps would do for a few equal "
-            "links; here ten are not enough, and the smaller step is the worse one."
+            "links; here ten are not enough, and with five or ten the smaller step is the worse one."
         ),
     ),
     Failure(

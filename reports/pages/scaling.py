@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
+from math import ceil, log, pi, sqrt
 from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
+from engines.pymunk.contraction import LEFT, MOST
 from reference.pendulum.long import LongPendulum
 from reports.cells import Cell
 from reports.growth import Series, cost_exponent, error_exponent, series_of
@@ -60,9 +62,16 @@ LARGEST: dict[Engine, int] = {
 SHORT_OF_BREATH: tuple[Engine, ...] = (SWEPT, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE, SPARSE, BandedChain())
 
+# Equal links: a sweep leaves 1 - pi^2/(4 N^2) of the slowest mode, and the sweeps of a step shall leave LEFT of it.
+SWEEPS_OVER_SQUARE = -4 * log(LEFT) / pi**2
+CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
+
 LAWS = {
     "pymunk default": "10 sweeps over N joints in every step, whatever N is: O(N), and unconverged beyond some links",
-    "pymunk tuned": "0.3 N^2 sweeps over N joints: O(N^3) up to 31 links; then the sweeps are capped at 300: O(N)",
+    "pymunk tuned": (
+        f"{number(SWEEPS_OVER_SQUARE)} N^2 sweeps over N joints: O(N^3); from {CAPPED} links on the sweeps are capped "
+        f"at {MOST}: O(N)"
+    ),
     "pymunk extended": "the same, 23 steps for one",
     "mujoco default": "reduced coordinates: a dense N x N mass matrix; O(N^2) to fill, O(N^3) to factorise",
     "mujoco tuned": "the same four times a step",

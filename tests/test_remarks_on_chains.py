@@ -1,0 +1,132 @@
+"""What remarks under experiments on chains say ("falls", "stays", "tears"), held against the committed rows."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from reports.measure import Measurement
+from reports.outcomes import Outcome
+from reports.page import Failure
+from reports.pages import four_bar_failures, n_four_bar_failures, pendulum_failures, slider_crank_failures
+from tests.committed_rows import committed_rows
+
+BROKEN = (Outcome.TORN, Outcome.RESET)
+
+
+def methods(failures: tuple[Failure, ...], title: str) -> dict[str, list[Measurement]]:
+    """The rows of each method in an experiment, largest step first."""
+    (failure,) = [failure for failure in failures if failure.title == title]
+    found: dict[str, list[Measurement]] = {}
+    for row in sorted(committed_rows(failure.cells).values(), key=lambda row: -row.step):
+        found.setdefault(f"{row.engine} {row.variant}", []).append(row)
+    return found
+
+
+def falls(rows: list[Measurement], factor: float = 5.0) -> bool:
+    return len(rows) > 1 and all(fine.angle < coarse.angle / factor for coarse, fine in pairwise(rows))
+
+
+def stays(rows: list[Measurement]) -> bool:
+    return len(rows) > 1 and all(0.8 < fine.angle / coarse.angle < 1.25 for coarse, fine in pairwise(rows))
+
+
+def outcomes(rows: list[Measurement]) -> list[Outcome]:
+    return [Outcome(row.outcome) for row in rows]
+
+
+def comparable(rows: list[Measurement]) -> list[bool]:
+    return [outcome.comparable for outcome in outcomes(rows)]
+
+
+def test_only_pymunk_tuned_gets_worse_with_every_step_at_a_change_point() -> None:
+    found = methods(four_bar_failures.FAILURES, "A parallelogram through its change points")
+    assert falls(found["pymunk default"])
+    assert stays(found["mujoco default"])
+    assert all(comparable(found["lagrange rk4 projection"]))
+    assert not any(comparable(found["pymunk extended"]))
+    for name in ("mujoco tuned", "mujoco extended"):
+        assert outcomes(found[name]).count(Outcome.RESET) == 1
+    worse = [
+        name
+        for name, rows in found.items()
+        if all(fine.angle > 2 * coarse.angle for coarse, fine in pairwise(rows)) and name != "lagrange rk4 projection"
+    ]
+    assert worse == ["pymunk tuned"]
+
+
+def test_an_overwritten_crank_stays_wrong_on_the_loop_as_shipped_and_a_servo_lags() -> None:
+    found = methods(four_bar_failures.FAILURES, "Five ways to drive a crank")
+    assert stays(found["mujoco default, overwritten crank"][1:])
+    assert stays(found["mujoco tuned, servo"])
+    assert falls(found["mujoco tuned"])
+    if rows := found.get("mujoco tuned, overwritten crank"):  # the newest of these cells
+        assert outcomes(rows)[0] == Outcome.TORN
+        assert falls(rows)
+        assert all(row.angle > 100 * other.angle for row, other in zip(rows, found["mujoco tuned"], strict=True))
+
+
+def test_about_half_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop() -> None:
+    rows = [row for own in methods(four_bar_failures.FAILURES, "Steps far too large").values() for row in own]
+    assert 0.4 < outcomes(rows).count(Outcome.TORN) / len(rows) < 0.6
+
+
+def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_small_steps_alone() -> None:
+    found = methods(n_four_bar_failures.FAILURES, "Forces that have no limit")
+    assert comparable(found["pymunk tuned"]) == [True, False, False]
+    assert falls(found["pymunk default"])
+    assert falls(found["mujoco tuned"])
+    assert stays(found["mujoco default"])
+    assert max(row.angle for row in found["mujoco extended"]) < 1e-6
+    assert not falls(found["mujoco extended"], 1.0)
+    assert outcomes(found["pymunk extended"]) == [Outcome.TORN] * 3
+
+
+def test_pymunks_point_pendulum_keeps_its_energy_with_the_gap_closed_but_never_its_phase() -> None:
+    found = methods(pendulum_failures.FAILURES, "Two thousand seconds of a point pendulum")
+    assert min(row.energy for row in found["pymunk default"]) > 0.9
+    assert found["pymunk tuned"][-1].energy < 0.05
+    assert not any(comparable(found["pymunk default"] + found["pymunk tuned"]))
+    euler, fourth = found["mujoco default"], found["mujoco tuned"]
+    assert euler[0].angle < fourth[0].angle
+    assert euler[-1].angle > fourth[-1].angle
+
+
+def test_sweeps_on_a_heavy_tip() -> None:
+    found = methods(pendulum_failures.FAILURES, "A light chain with a heavy tip")
+    closing = found["pymunk 10 sweeps, all of the gap"]
+    assert all(row.angle > shipped.angle for row, shipped in zip(closing, found["pymunk default"], strict=True))
+    for name in ("pymunk default", "pymunk tuned", "pymunk extended", "pymunk 10 sweeps, all of the gap"):
+        assert comparable(found[name]) == [False, True, True]
+    assert comparable(found["pymunk 1000 sweeps, all of the gap"]) == [False, True, False]
+    assert all(outcome in BROKEN for outcome in outcomes(found["mujoco extended, free, PGS"]))
+    if rows := found.get(f"mujoco {pendulum_failures.PATIENT.variant}"):  # the newest of these cells
+        assert comparable(rows) == [True]
+    for name in ("mujoco tuned", "mujoco extended, free, sparse Newton"):
+        assert comparable(found[name]) == [False, True, True]
+
+
+def test_beyond_the_horizon_only_methods_of_higher_order_are_right_and_only_at_the_small_step() -> None:
+    found = methods(pendulum_failures.FAILURES, "Beyond the horizon of the double pendulum")
+    for name in ("pymunk default", "pymunk tuned", "mujoco default"):
+        assert not any(comparable(found[name]))
+    for name in ("mujoco tuned", "pymunk extended", "mujoco extended", "lagrange rk4 projection"):
+        assert found[name][-1].angle < 1e-3
+
+
+def test_a_hundred_links_at_large_steps() -> None:
+    found = methods(pendulum_failures.FAILURES, "A hundred links at large steps")
+    assert outcomes(found["mujoco default"])[:2] == [Outcome.RESET, Outcome.SATURATED]
+    assert outcomes(found["mujoco tuned"])[:2] == [Outcome.RESET] * 2
+    assert outcomes(found["lagrange euler projection"])[:2] == [Outcome.DIVERGED] * 2
+    for name in ("pymunk default", "pymunk tuned"):
+        assert outcomes(found[name])[:2] == [Outcome.TORN] * 2
+        assert max(row.energy for row in found[name]) < 0.05
+    assert 2.5 < max(row.gap for row in found["pymunk default"] + found["pymunk tuned"]) < 3.5  # [m], as are links
+    assert all(comparable(rows)[-1] for rows in found.values())
+
+
+def test_a_groove_at_a_rods_end_is_wrong_at_every_step_and_of_first_order_with_the_gap_closed() -> None:
+    found = methods(slider_crank_failures.FAILURES, "The rod's end in a groove")
+    shipped, closed = (found[f"pymunk {name}, GrooveJoint at the rod's end"] for name in ("default", "tuned"))
+    assert stays(shipped)
+    assert all(8 < coarse.angle / fine.angle < 13 for coarse, fine in pairwise(closed))
