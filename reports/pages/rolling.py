@@ -75,7 +75,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Rolling of bodies that are not round",
-    lesson="The contact runs along both curves. That motion adds to accelerations, and engines' contacts leave it out.",
+    lesson="The contact runs along both curves. That motion adds to accelerations, and MuJoCo's contacts leave it out.",
     scenes=SCENES_HERE,
     engines=ENGINES_HERE,
     failures=FAILURES,

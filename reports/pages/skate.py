@@ -156,7 +156,7 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
         growth = " -> ".join(map(str, freedoms_by_brackets(mechanism)))
         kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
         body.append([name, str(mechanism.row_count), f"({configuration}, {velocity})", growth, kind])
-    header = ["scene", "rows", "(configuration, velocity) by rank", "by brackets", "by Frobenius"]
+    header = ["scene", "rows", "(configuration, velocity) by rank", "reachable, by brackets", "by Frobenius"]
     return tables.markdown(header, body, left=5)
 
 
@@ -186,6 +186,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "least": least,
         "finest": finest,
         "sleigh": SLEIGH,
+        "end": SLEIGH.motion([SLEIGH.duration]).pose[0, 0],
         "commutator": commutator,
     }
 
