@@ -80,4 +80,5 @@ def test_mujocos_default_blade_does_not_creep_at_rest_and_its_tuned_row_does():
 
 def test_the_naive_zeroing_is_the_same_construction_as_pymunks_default():
     zeroed = next(engine for engine in skate_failures.NAIVE if "centre" in engine.variant)
+    assert isinstance(zeroed, pymunk.Pymunk)
     assert pymunk.DEFAULT.skate == zeroed.skate == "centre"
