@@ -75,7 +75,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Rolling of bodies that are not round",
-    lesson="The contact runs along both curves, and its own motion is the part of an acceleration that engines forget.",
+    lesson="The contact runs along both curves. That motion adds to accelerations, and MuJoCo's contacts leave it out.",
     scenes=SCENES_HERE,
     engines=ENGINES_HERE,
     failures=FAILURES,

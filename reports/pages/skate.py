@@ -1,4 +1,4 @@
-"""The skate's page: every construction that people use for one, on the sleigh, and what else a skate teaches."""
+"""The skate's page: every construction of one that we found, on the sleigh, and what else a skate teaches."""
 
 from __future__ import annotations
 
@@ -147,26 +147,25 @@ def constructions(rows: Sequence[Measurement]) -> str:
 
 
 @cache
-def counted(scenes: tuple[Scene, ...]) -> str:
-    """Freedoms of scenes by rank and by brackets, as a table."""
+def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> str:
+    """Freedoms of scenes by rank and by brackets, as a table; `names` stand for the scenes' own."""
     body = []
-    for scene in scenes:
+    for name, scene in zip(names or tuple(scene.name for scene in scenes), scenes, strict=True):
         mechanism = scene.mechanism()
         configuration, velocity = mechanism.degrees_of_freedom()
         growth = " -> ".join(map(str, freedoms_by_brackets(mechanism)))
         kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
-        body.append([scene.name, str(mechanism.row_count), f"({configuration}, {velocity})", growth, kind])
-    header = ["scene", "rows", "(configuration, velocity) by rank", "by brackets", "by Frobenius"]
+        body.append([name, str(mechanism.row_count), f"({configuration}, {velocity})", growth, kind])
+    header = ["scene", "rows", "(configuration, velocity) by rank", "reachable, by brackets", "by Frobenius"]
     return tables.markdown(header, body, left=5)
 
 
 def words(material: Material) -> Mapping[str, Any]:
     """`constructions` and `counted` as tables. Of the sleigh, UNMEASURED where there is none: `at(method, step)`, the
-    row at about that step; `least(engine, variant)`, the row with the least position error; `stays(method)`, the
-    plateau in position.
+    row at about that step; `least(engine, variant)`, the row with the least position error; `finest(method)`, the row
+    at the smallest step that has a position error.
     """
     rows = material.sweep((SLEIGH,))
-    verdicts = {sweep.method: sweep for sweep in by_method(sweeps(rows), "position").values()}
 
     def at(name: str, step: float = COMPARED) -> Any:
         own = (row for row in rows if row.method == name and np.isfinite(row.position))
@@ -175,8 +174,9 @@ def words(material: Material) -> Mapping[str, Any]:
     def least(engine: str, variant: str) -> Any:
         return best_of(rows, engine, variant, "position") or UNMEASURED
 
-    def stays(name: str) -> float:
-        return verdicts[name].plateau if name in verdicts else UNMEASURED
+    def finest(name: str) -> Any:
+        own = (row for row in rows if row.method == name and np.isfinite(row.position))
+        return min(own, key=lambda row: row.step, default=UNMEASURED)
 
     commutator = commutator_displacement(0.1, 0.1)
     return {
@@ -184,8 +184,9 @@ def words(material: Material) -> Mapping[str, Any]:
         "counted": counted(SCENES_HERE),
         "at": at,
         "least": least,
-        "stays": stays,
+        "finest": finest,
         "sleigh": SLEIGH,
+        "end": SLEIGH.motion([SLEIGH.duration]).pose[0, 0],
         "commutator": commutator,
     }
 
@@ -193,7 +194,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="The skate",
-    lesson="One row on velocity that no position knows: what stands for it in engines that have no such joint.",
+    lesson="It forbids velocities but no position: what stands for it in engines that have no such joint.",
     scenes=SCENES_HERE,
     engines=(*VARIANTS, *CONSTRUCTIONS),
     failures=FAILURES,

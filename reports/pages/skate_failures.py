@@ -175,9 +175,9 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)),
         columns=MOTION,
         remark=(
-            "Slip alone proves nothing. Zeroing the centre's velocity is right only for a blade under the centre of "
-            "mass; zeroing the blade's point by shifting the whole velocity adds energy from nowhere. The third method "
-            "does the same with an impulse at the blade, and costs one line more."
+            "No slip does not prove a right motion. Zeroing the centre's velocity is right only for a blade under the "
+            "centre of mass; zeroing the blade's point by shifting the whole velocity adds energy from nowhere. The "
+            "third method does the same with an impulse at the blade, and costs one line more."
         ),
     ),
     Failure(
@@ -190,8 +190,9 @@ FAILURES: tuple[Failure, ...] = (
         observations=backwards,
         remark=(
             "An engine whose row is a little late has a growth rate that is a little low, and turns round a little "
-            "late. The naive methods do not turn round at all: they make a stable vehicle of an unstable one, which is "
-            "how a trailer that would jack-knife passes a simulation."
+            "late; MuJoCo's tendon at the predicted pose (`mujoco tuned`) is a little early instead. The naive "
+            "zeroing, which is `pymunk default` too, does not turn round at all: it makes a stable vehicle of an "
+            "unstable one, so that the simulation hides the instability."
         ),
     ),
     Failure(
@@ -202,8 +203,8 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "Rounding of 1e-17 rad/s grows to 1 rad/s in about "
             f"{np.log(1e17) / SleighBackwards().growth_rate():.0f} s. "
-            "A method that ends elsewhere is not wrong: the question has no stable answer. One that stays has no "
-            "rounding in the row at this heading, or no instability."
+            "A method that ends elsewhere is not wrong: the question has no stable answer. One that goes straight on "
+            "has no rounding in the row at this heading, or, as the naive zeroing, no instability."
         ),
     ),
     Failure(
@@ -245,8 +246,10 @@ FAILURES: tuple[Failure, ...] = (
         ),
         observations=slipping,
         remark=(
-            "So a run with an ideal skate tells whether the assumption holds, by its reaction. An engine's friction "
-            "tells it too, but only where it has no plateau of its own to hide it."
+            "So the reaction in a run with an ideal skate tells whether a real blade would hold. An engine's friction "
+            "with that limit tells it too, if it does not creep by itself as much as it slips. Both "
+            "engines here slip one to two tenths of a second after the exact force passes the limit, since the slip "
+            "has to grow before it is counted."
         ),
     ),
     Failure(
@@ -254,7 +257,13 @@ FAILURES: tuple[Failure, ...] = (
         expected="An ideal skate at zero speed holds as much as it must. Nothing turns it: it rests for ever.",
         cells=_cells(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "reaction"),
-        remark="A row that is at all soft creeps: its force needs a slip to exist. Friction that sticks does not.",
+        remark=(
+            "A soft row creeps: its force needs a slip to exist. MuJoCo's friction is soft too and creeps, as its "
+            "documentation says (Modeling, 'Slow slippage'). It is not seen in `mujoco default` because of this "
+            "blade's coefficients, 1e-5 along and 10 across, as in the maintainers' example for skating: MuJoCo scales "
+            "the softness of the row across by the square of their ratio, 1e-12. With equal coefficients it creeps. "
+            "The naive zeroing (`pymunk default`) is right here, where nothing turns."
+        ),
     ),
     Failure(
         title="Turning on a slope",
@@ -283,7 +292,7 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(HeldBySkates(), ENGINES_ALONE, (1, 10)),
         columns=("position", "angle", "slip", "reaction"),
         remark=(
-            "Nothing constrains its place, only its velocity: every slip that a method leaves adds up, and no method "
+            "Nothing constrains its place, only its velocity: every slip that a method leaves adds up, and no engine "
             "can notice."
         ),
     ),
@@ -309,8 +318,8 @@ MAPS: tuple[StabilityMap, ...] = (
             for samples, every in MAP_STEPS
         ),
         remark=(
-            "Positive: ahead of the skate. A method that holds the row does not care for the offset; the naive zeroing "
-            "is right where the centre of mass is on the skate, and nowhere else."
+            "Positive: ahead of the skate. For a method that holds the row the offset matters little; the naive "
+            "zeroing (`pymunk default`) is right where the centre of mass is on the skate, and nowhere else."
         ),
     ),
 )

@@ -63,13 +63,14 @@ def words(material: Material) -> Mapping[str, Any]:
         return best_of(own, engine, variant, "position") or UNMEASURED
 
     shown = (*SCENES_HERE, CarAndTrailer(redundant=True), Cart(redundant=True))
-    return {"counted": counted(shown), "least": least}
+    doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
+    return {"counted": counted(shown, (*(scene.name for scene in SCENES_HERE), *doubled)), "least": least}
 
 
 PAGE = Page(
     name=NAME,
     title="Ideal wheels",
-    lesson="Cars, trailers and carts: pins and skates together, coasting with what the wheels leave.",
+    lesson="Cars, trailers and carts: pins and skates together, coasting in the ways that the wheels still allow.",
     scenes=SCENES_HERE,
     engines=VARIANTS,
     failures=FAILURES,
