@@ -186,9 +186,7 @@ def findings() -> Findings:
 @pytest.fixture(scope="session")
 def all_findings(request: pytest.FixtureRequest) -> Findings:
     if "slow" not in request.config.getoption("markexpr"):
-        pytest.skip(
-            "every mistake in every variant takes a quarter of an hour: pytest -m slow tests/test_wrong_models.py"
-        )
+        pytest.skip("every mistake in every variant takes ten minutes: pytest -m slow tests/test_wrong_models.py")
     return found(EVERYTHING)
 
 
