@@ -2,14 +2,17 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: report test check bench mutants lower clean
+.PHONY: report test slow check bench mutants lower clean
 
 report: .venv/installed          ## run the grid into crosscheck-results, publish it in reports/results and README.md
 	$(BIN)/crosscheck run --full
 	$(BIN)/crosscheck report --publish
 
-test: .venv/installed            ## every test, the crosscheck grid included
-	$(BIN)/python -m pytest
+test: .venv/installed            ## the tests, the crosscheck grid included, without those marked slow
+	$(BIN)/python -m pytest -m "not slow"
+
+slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
+	$(BIN)/python -m pytest -m slow
 
 check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/ruff check .
