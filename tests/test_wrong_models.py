@@ -16,7 +16,8 @@ from reference.mechanism import Mechanism
 from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.pool import Loss, supervise
+from reports.outcomes import Loss
+from reports.supervisor import supervise, usable_cores
 from tests.mistakes import KINDS, Mistake, Mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
 
@@ -170,10 +171,10 @@ def found(trials: Iterable[Trial]) -> Findings:
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
     # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
-    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0)
+    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=usable_cores())
     return {
         (trial.scene.name, trial.method): result if isinstance(result, Loss) else result[index]
-        for own, result in told
+        for own, result, _ in told
         for index, trial in enumerate(own)
     }
 
