@@ -61,7 +61,10 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     """
     _ignore_interrupts()
     _end_with_the_parent()
-    _redirect(Path(folder))
+    try:
+        _redirect(Path(folder))
+    except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
+        os._exit(1)
     clock = Clock()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
     connection.send_bytes(READY)
