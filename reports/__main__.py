@@ -17,7 +17,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         from contextlib import suppress
 
-        from reports.interruption import ending_at_once, from_now_on_ignored
+        from reports.cli.interruption import ending_at_once, from_now_on_ignored
 
         with ending_at_once():  # commands that have something to say of Ctrl-C keep it for themselves
             if program:
@@ -36,10 +36,10 @@ def _ended(arguments: list[str]) -> int:
     """Run a command; its exit status. What is wrong is told on stderr."""
     from contextlib import suppress
 
-    from reports.ending import REFUSED, UNREAD, Ending
+    from reports.grid.ending import REFUSED, UNREAD, Ending
 
     try:
-        from reports.commands import invoke
+        from reports.cli.commands import invoke
 
         return invoke(arguments)
     except BrokenPipeError:

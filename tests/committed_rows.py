@@ -9,10 +9,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from reports.cells import Cell
-from reports.measure import Measurement, blank
-from reports.outcomes import Outcome
-from reports.tables import digest
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement, blank
+from reports.grid.outcomes import Outcome
+from reports.text.tables import digest
 
 RESULTS = Path(__file__).parents[1] / "reports" / "results"
 KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module

@@ -17,7 +17,7 @@ from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
 from reference.joints import Drive, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
-from reports.judge import projected
+from reports.gate.judge import projected
 
 Array = NDArray[np.float64]
 Some = TypeVar("Some")

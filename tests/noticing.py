@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 
 from engines import Engine
 from reference.scene import Scene
-from reports.baseline import Old
-from reports.cells import FULL, Cell, estimated_cost
-from reports.change import moved
-from reports.gate import Case, checks
-from reports.measure import Measurement, measure
-from reports.outcomes import Outcome
-from reports.pages import PAGES
-from reports.prediction import Prediction, kinds, prediction
-from reports.promises import promised
-from reports.quantities import QUANTITIES
+from reports.gate.baseline import Old
+from reports.gate.change import moved
+from reports.gate.prediction import Prediction, kinds, prediction
+from reports.gate.promises import promised
+from reports.gate.verdicts import Case, checks
+from reports.grid.cells import FULL, Cell, estimated_cost
+from reports.grid.measure import Measurement, measure
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import QUANTITIES
+from reports.pages.catalogue import PAGES
 from tests.mistakes import Mistake, Mistaken
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reference.trajectory import Trajectory
-from reports.worker import LARGEST
+from reports.grid.worker import LARGEST
 from tests.toys import Toy
 
 

@@ -37,7 +37,7 @@ from reference.skate.path import SkatePath
 from reference.slider_crank.limits import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
-from reports.cells import Cell
+from reports.grid.cells import Cell
 from tests.mechanisms import four_bar
 
 SCENES_OF_LIMITS = (

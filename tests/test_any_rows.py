@@ -14,16 +14,24 @@ from functools import cache
 import pytest
 
 from engines import Unsupported
-from reports import observing, referees, rolling_charts, rolling_drawings, theme
-from reports.cells import Cell
-from reports.choice import page_cells
-from reports.measure import Measurement, blank
-from reports.outcomes import Outcome
-from reports.page import Material, Page
-from reports.pages import PAGES, rolling, scaling, skate_failures, wheels_failures
-from reports.pages.rolling_failures import polygon_cells, softness_cells
-from reports.rendering import environment, render_index, render_page, render_readme
-from reports.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
+from reports.charts import theme
+from reports.cli.selection import page_cells
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement, blank
+from reports.grid.outcomes import Outcome
+from reports.pages import observing
+from reports.pages.catalogue import PAGES
+from reports.pages.errata import errata_engines as referees
+from reports.pages.page import Material, Page
+from reports.pages.rolling import charts as rolling_charts
+from reports.pages.rolling import drawings as rolling_drawings
+from reports.pages.rolling import page as rolling
+from reports.pages.rolling.experiments import polygon_cells, softness_cells
+from reports.pages.scaling import page as scaling
+from reports.pages.skate import experiments as skate_failures
+from reports.pages.wheels import experiments as wheels_failures
+from reports.text.rendering import environment, render_index, render_page, render_readme
+from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
 
 SUBSETS = 16  # of every page

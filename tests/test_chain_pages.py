@@ -19,16 +19,19 @@ from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
-from reports.cells import QUICK_LIMIT, Cell, estimated_cost, sweep_cells
-from reports.measure import measure
-from reports.outcomes import Outcome
-from reports.page import Material
-from reports.pages import n_four_bar, pendulum, person, slider_crank
-from reports.pages.pendulum_failures import hardened
-from reports.pages.slider_crank_failures import GROOVE
-from reports.rendering import render_page
-from reports.stroboscope import Strip, outline, stroboscope
-from reports.theme import svg
+from reports.charts.stroboscope import Strip, outline, stroboscope
+from reports.charts.theme import svg
+from reports.grid.cells import QUICK_LIMIT, Cell, estimated_cost, sweep_cells
+from reports.grid.measure import measure
+from reports.grid.outcomes import Outcome
+from reports.pages.n_four_bar import page as n_four_bar
+from reports.pages.page import Material
+from reports.pages.pendulum import page as pendulum
+from reports.pages.pendulum.experiments import hardened
+from reports.pages.person import page as person
+from reports.pages.slider_crank import page as slider_crank
+from reports.pages.slider_crank.experiments import GROOVE
+from reports.text.rendering import render_page
 
 PAGES = (pendulum.PAGE, slider_crank.PAGE, n_four_bar.PAGE, person.PAGE)
 LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, assembly=-1), SliderAtDeadCentre(angle=1e-2))

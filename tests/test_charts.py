@@ -11,12 +11,13 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from reports import charts, rolling_charts
-from reports.growth import Point, Series, cost_exponent
-from reports.outcomes import Outcome
-from reports.quantities import quantity
-from reports.scaling_chart import _spread, scaling_chart
-from reports.theme import DARK, LIGHT
+from reports.charts import work_precision as charts
+from reports.charts.theme import DARK, LIGHT
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import quantity
+from reports.grid.scaling_fit import Point, Series, cost_exponent
+from reports.pages.rolling import charts as rolling_charts
+from reports.pages.scaling.chart import _spread, scaling_chart
 from tests.rows import falling, row_of
 
 ENGINES = ("pymunk", "mujoco", "lagrange", "other")

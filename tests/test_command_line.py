@@ -14,10 +14,12 @@ from pathlib import Path
 import pytest
 
 from reports import __main__ as program
-from reports import commands, files, interruption, report_command
-from reports.ending import FINE, INTERRUPTED, REFUSED, UNREAD, Broken
-from reports.files import write_whole
-from reports.store import Store
+from reports.cli import commands, interruption
+from reports.cli import report as report_command
+from reports.grid import files
+from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, Broken
+from reports.grid.files import write_whole
+from reports.grid.store import Store
 
 ROOT = Path(__file__).resolve().parent.parent
 ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
@@ -97,19 +99,20 @@ def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
 
 def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
-    from reports import pages, rendering
-    from reports.cells import Cell
+    from reports.grid.cells import Cell
+    from reports.pages import catalogue
+    from reports.text import rendering
     from tests.test_reports import PAGE
     from tests.toys import Disc, Toy
 
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
-    monkeypatch.setattr(pages, "PAGES", (PAGE,))
+    monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
     monkeypatch.setattr(report_command, "page_cells", lambda page: (cell,))
     monkeypatch.setattr(rendering, "render_all", lambda material, command: {"index.md": f"made by {command}"})
     monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
-        from reports.measure import measure
+        from reports.grid.measure import measure
 
         store.put(measure(cell, repeat=False))
     assert call("report") == FINE
@@ -300,7 +303,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever the tests' 
 
 def hook(event, arguments):
     global asked
-    if event == "import" and not arguments[0].startswith("encodings") and "reports.interruption" in sys.modules:
+    if event == "import" and not arguments[0].startswith("encodings") and "reports.cli.interruption" in sys.modules:
         asked += 1
         if asked == count:
             signal.raise_signal(signal.SIGINT)

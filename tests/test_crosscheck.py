@@ -1,20 +1,20 @@
 """Every scene of every page in every method: below what theory promises, and equal to the baseline's numbers.
 
-The cells are of the report's grid. No number of a scene and no bound stands here: `reports.theory` says where a bound
-comes from, `reports.change` what a baseline's number is worth.
+The cells are of the report's grid. No number of a scene and no bound stands here: `reports.gate.theory` says where a
+bound comes from, `reports.gate.change` what a baseline's number is worth.
 """
 
 from __future__ import annotations
 
 import pytest
 
-from reports.baseline import Baseline
-from reports.checks import CHECKS
-from reports.gate import Case, cases
-from reports.outcomes import Outcome
-from reports.pages import PAGES
-from reports.pytest_plugin import KNOWN
-from reports.walk import Verdict
+from reports.gate.baseline import Baseline
+from reports.gate.checks import CHECKS
+from reports.gate.pytest_plugin import KNOWN
+from reports.gate.verdicts import Case, cases
+from reports.gate.walk import Verdict
+from reports.grid.outcomes import Outcome
+from reports.pages.catalogue import PAGES
 
 GRID = cases(PAGES)
 each_case = pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in GRID])

@@ -14,11 +14,11 @@ from reference.errata.catalogue import ERRATA, WORD_SLIPS
 from reference.errata.erratum import Values
 from reference.errata.rolling import rolling_acceleration
 from reports import __main__ as command_line
-from reports import referees
-from reports.page import Material
-from reports.pages.errata import PAGE, SNIPPETS, digits, table
-from reports.referees import CONFIRMED, REFEREES, Ruling, Window, rulings
-from reports.rendering import TEMPLATES, render_page
+from reports.pages.errata import errata_engines as referees
+from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, Ruling, Window, rulings
+from reports.pages.errata.page import PAGE, SNIPPETS, digits, table
+from reports.pages.page import Material
+from reports.text.rendering import TEMPLATES, render_page
 
 IDS = [str(erratum.number) for erratum in ERRATA]
 

@@ -15,11 +15,11 @@ import pytest
 from engines import lagrange, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from reference.four_bar.scenes import FreeFourBar
-from reports import fingerprint as fingerprint_module
-from reports.cells import Cell
-from reports.fingerprint import fingerprint, modules_behind
-from reports.measure import blank
-from reports.store import Store
+from reports.grid import fingerprint as fingerprint_module
+from reports.grid.cells import Cell
+from reports.grid.fingerprint import fingerprint, modules_behind
+from reports.grid.measure import blank
+from reports.grid.store import Store
 from tests.toys import Disc, FailingToy, Toy
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -271,8 +271,12 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     assert {name for name in files if name.startswith("reports/")} == {
         f"reports/{name}"
         for name in (
-            *("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool", "timing"),
-            *("ending", "requirements", "supervisor", "worker", "worker_process"),
+            "__init__",
+            *(f"grid/{name}" for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool")),
+            *(
+                f"grid/{name}"
+                for name in ("timing", "ending", "requirements", "supervisor", "worker", "worker_process")
+            ),
         )
     }
 
@@ -287,9 +291,9 @@ def test_the_file_of_a_wrapped_engine_counts():
 @pytest.mark.parametrize(
     ("name", "scene", "engine"),
     [
-        ("reports/measure.py", Disc(), Toy()),
-        ("reports/errors.py", Disc(), Toy()),
-        ("reports/pool.py", Disc(), Toy()),
+        ("reports/grid/measure.py", Disc(), Toy()),
+        ("reports/grid/errors.py", Disc(), Toy()),
+        ("reports/grid/pool.py", Disc(), Toy()),
         ("reference/joints.py", Disc(), Toy()),
         ("tests/toys.py", Disc(), Toy()),
         ("engines/mujoco/model.py", Disc(), mujoco.TUNED),
@@ -309,7 +313,9 @@ def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name, s
         assert store.get([Cell(scene, engine, 1)])
 
 
-@pytest.mark.parametrize("name", ["reports/tables.py", "reports/charts.py", "engines/mujoco/model.py", "tests/rows.py"])
+@pytest.mark.parametrize(
+    "name", ["reports/text/tables.py", "reports/charts/work_precision.py", "engines/mujoco/model.py", "tests/rows.py"]
+)
 def test_a_change_elsewhere_leaves_a_stored_cell_alone(tmp_path, touch, name):
     assert (ROOT / name).is_file()
     with Store(tmp_path / "cells.sqlite") as store:

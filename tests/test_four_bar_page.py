@@ -6,10 +6,10 @@ import pytest
 
 from engines import mujoco, pymunk
 from reference.four_bar import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
-from reports.cells import Cell
-from reports.measure import Measurement, measure
-from reports.outcomes import Outcome
-from reports.pages import four_bar_failures as failures
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement, measure
+from reports.grid.outcomes import Outcome
+from reports.pages.four_bar import experiments as failures
 
 BROKEN = {Outcome.TORN, Outcome.RESET, Outcome.DIVERGED, Outcome.BRANCH_FLIP, Outcome.SATURATED}
 

@@ -10,22 +10,22 @@ from pathlib import Path
 import pytest
 
 from engines import Softness
-from reports.baseline import BadBaseline, Baseline, Old, identity, read_baseline
-from reports.cells import Cell
-from reports.change import change, drift
-from reports.checks import Check, Deviation, complaints, nearest
-from reports.gate import Case, checks
-from reports.gate_report import lines, report
-from reports.measure import Measurement, blank, measure
-from reports.nudged import Nudged, nudge, nudged_cells
-from reports.order_check import order
-from reports.outcomes import Outcome
-from reports.prediction import Prediction
-from reports.promises import EXACT, Promise, promised
-from reports.quantities import QUANTITIES
-from reports.tables import as_csv
-from reports.theory import ROOM, ROOM_OWN, theory
-from reports.walk import Verdict, walk
+from reports.gate.baseline import BadBaseline, Baseline, Old, identity, read_baseline
+from reports.gate.change import change, drift
+from reports.gate.checks import Check, Deviation, complaints, nearest
+from reports.gate.nudged import Nudged, nudge, nudged_cells
+from reports.gate.order_check import order
+from reports.gate.prediction import Prediction
+from reports.gate.promises import EXACT, Promise, promised
+from reports.gate.table import lines, report
+from reports.gate.theory import ROOM, ROOM_OWN, theory
+from reports.gate.verdicts import Case, checks
+from reports.gate.walk import Verdict, walk
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement, blank, measure
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import QUANTITIES
+from reports.text.tables import as_csv
 from tests.toys import Disc, Toy
 
 SCENE = Disc()
@@ -314,8 +314,8 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
 
 SUITE = """
 import pytest
-from reports.gate import Case
-from reports.promises import Promise
+from reports.gate.verdicts import Case
+from reports.gate.promises import Promise
 from tests.toys import Disc, Toy
 
 CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
@@ -332,7 +332,7 @@ def suite(pytester):
     """A grid of three toys in a folder of its own."""
     root = Path(__file__).parents[1]
     pytester.makeini(f"[pytest]\npythonpath = {root}\n")
-    pytester.makeconftest('pytest_plugins = ["reports.pytest_plugin"]')
+    pytester.makeconftest('pytest_plugins = ["reports.gate.pytest_plugin"]')
     pytester.makepyfile(SUITE)
     written(pytester.path / "errors.csv", row())
     return pytester

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 from reference.centrodes import Centrodes
-from reports import timing
-from reports.cells import COST_LIMIT, FULL, QUICK, SWEEP_COST, Cell, estimated_cost, step_cost, sweep_cells
-from reports.choice import BadInput, steps_per_sample
-from reports.growth import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
-from reports.outcomes import Outcome
-from reports.pages.scaling import cost_table, crossing
-from reports.pages.skate import constructions, nearest_step
-from reports.quantities import quantity
-from reports.round_trip import returned
-from reports.timing import repeated_stepping
+from reports.cli.selection import BadInput, steps_per_sample
+from reports.grid import timing
+from reports.grid.cells import COST_LIMIT, FULL, QUICK, SWEEP_COST, Cell, estimated_cost, step_cost, sweep_cells
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import quantity
+from reports.grid.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
+from reports.grid.timing import repeated_stepping
+from reports.pages.centrodes.centrode_check import returned
+from reports.pages.scaling.page import cost_table, crossing
+from reports.pages.skate.page import constructions, nearest_step
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 

@@ -11,7 +11,7 @@ from engines import Softness
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.scenes import LinkPendulum
-from reports.judge import QUANTITY_NAMES, errors, integrate
+from reports.gate.judge import QUANTITY_NAMES, errors, integrate
 from tests.toys import Disc
 
 SWINGING = LinkPendulum(duration=0.3, horizon=0.3)

@@ -12,9 +12,9 @@ from engines import Size
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory
-from reports.cells import Cell
-from reports.measure import BLOWN, SATURATED, TORN, Measurement, blank, classify, compare, measure, sizes
-from reports.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
+from reports.grid.cells import Cell
+from reports.grid.measure import BLOWN, SATURATED, TORN, Measurement, blank, classify, compare, measure, sizes
+from reports.grid.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
 from tests.rows import row, row_of
 from tests.test_errors import SCENE, Pair
 from tests.toys import Disc, FailingToy, ImpossibleDisc, Toy

@@ -9,15 +9,15 @@ from typing import ClassVar
 
 import pytest
 
-from reports.cells import Cell
-from reports.outcomes import Outcome
-from reports.overview import BEGIN, END, overview, with_overview
-from reports.page import Failure, Material, Observation, Page
-from reports.pages.told import told
-from reports.rendering import parameters, render_all, render_index, render_page, render_readme
-from reports.sweep import Verdict
-from reports.tables import number
-from reports.unmeasured import UNMEASURED
+from reports.grid.cells import Cell
+from reports.grid.convergence import Verdict
+from reports.grid.outcomes import Outcome
+from reports.pages.page import Failure, Material, Observation, Page
+from reports.text.lookups import told
+from reports.text.overview import BEGIN, END, overview, with_overview
+from reports.text.rendering import parameters, render_all, render_index, render_page, render_readme
+from reports.text.tables import number
+from reports.text.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 

@@ -15,11 +15,13 @@ from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingOnCircle
-from reports import drawings, rolling_charts, rolling_drawings
-from reports.centrode_drawings import draw_centrodes, draw_rate
-from reports.paths import Blades, Note, Panel, Path, paths
-from reports.stroboscope import PALEST, Strip, outline, path, stroboscope
-from reports.theme import LIGHT
+from reports.charts import drawings
+from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
+from reports.charts.stroboscope import PALEST, Strip, outline, path, stroboscope
+from reports.charts.theme import LIGHT
+from reports.pages.centrodes.drawings import draw_centrodes, draw_rate
+from reports.pages.rolling import charts as rolling_charts
+from reports.pages.rolling import drawings as rolling_drawings
 from tests.mechanisms import four_bar, pendulum
 from tests.toys import Disc
 

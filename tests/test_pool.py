@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 
 from reports.__main__ import main
-from reports.cells import Cell
-from reports.measure import measure
-from reports.outcomes import Outcome, describe_exit
-from reports.pool import run_cells, worker_count
-from reports.running import missing, run_into, trajectories
-from reports.store import Store
-from reports.supervisor import WorkersLost, usable_cores
+from reports.grid.cells import Cell
+from reports.grid.measure import measure
+from reports.grid.outcomes import Outcome, describe_exit
+from reports.grid.pool import run_cells, worker_count
+from reports.grid.running import missing, run_into, trajectories
+from reports.grid.store import Store
+from reports.grid.supervisor import WorkersLost, usable_cores
 from tests.rough_toys import RoughToy
 from tests.toys import FAILURES, Disc, FailingToy, ImpossibleDisc, Toy
 
@@ -111,7 +111,7 @@ def test_lost_workers_are_one_line_and_status_1_at_the_command_line(monkeypatch,
     def lost(*_: object, **__: object) -> int:
         raise WorkersLost("5 worker processes in a row ended while they started: why")
 
-    monkeypatch.setattr("reports.running.run_into", lost)
+    monkeypatch.setattr("reports.grid.running.run_into", lost)
     with pytest.raises(SystemExit) as end:
         main(["run", "free_four_bar", "--every", "1", "--results", str(tmp_path)])
     assert end.value.code == 1
@@ -137,9 +137,9 @@ SCRIPT = """
 import signal
 import sys
 from pathlib import Path
-from reports.cells import Cell
-from reports.running import run_into
-from reports.store import Store
+from reports.grid.cells import Cell
+from reports.grid.running import run_into
+from reports.grid.store import Store
 from tests.toys import Disc, FailingToy, Toy
 
 if __name__ == "__main__":

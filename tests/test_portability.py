@@ -35,9 +35,9 @@ del time.clock_gettime
 sys.modules["resource"] = sys.modules["fcntl"] = None
 multiprocessing.get_all_start_methods = lambda: ["spawn"]
 
-from reports.cells import Cell
-from reports.running import run_into
-from reports.store import Store
+from reports.grid.cells import Cell
+from reports.grid.running import run_into
+from reports.grid.store import Store
 from tests.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy
 

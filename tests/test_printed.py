@@ -9,9 +9,9 @@ from importlib import metadata
 
 from rich.console import Console
 
-from reports.machine import machine, versions
-from reports.rendering import foot
-from reports.terminal import print_table
+from reports.cli.terminal import print_table
+from reports.text.provenance import machine, versions
+from reports.text.rendering import foot
 
 
 def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from reports.ending import STATUSES
-from reports.overview import BEGIN, END, with_overview
+from reports.grid.ending import STATUSES
+from reports.text.overview import BEGIN, END, with_overview
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from reports.measure import Measurement
-from reports.outcomes import Outcome
-from reports.page import Failure
-from reports.pages import four_bar_failures, n_four_bar_failures, pendulum_failures, slider_crank_failures
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
+from reports.pages.four_bar import experiments as four_bar_failures
+from reports.pages.n_four_bar import experiments as n_four_bar_failures
+from reports.pages.page import Failure
+from reports.pages.pendulum import experiments as pendulum_failures
+from reports.pages.slider_crank import experiments as slider_crank_failures
 from tests.committed_rows import committed_rows
 
 BROKEN = (Outcome.TORN, Outcome.RESET)

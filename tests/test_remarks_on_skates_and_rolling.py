@@ -8,11 +8,12 @@ from engines import mujoco, pymunk
 from reference.rolling.limits import DiscInHole
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
-from reports.cells import Cell
-from reports.measure import measure
-from reports.outcomes import Outcome
-from reports.pages import rolling_failures, skate_failures
-from reports.pages.rolling_failures import CONSTRAINTS, polygon_cells, softness_cells
+from reports.grid.cells import Cell
+from reports.grid.measure import measure
+from reports.grid.outcomes import Outcome
+from reports.pages.rolling import experiments as rolling_failures
+from reports.pages.rolling.experiments import CONSTRAINTS, polygon_cells, softness_cells
+from reports.pages.skate import experiments as skate_failures
 from tests.committed_rows import committed_rows
 
 

@@ -14,15 +14,15 @@ import pytest
 from jinja2 import UndefinedError
 
 from reports import __main__ as command_line
-from reports import charts
-from reports.cells import QUICK, Cell, sweep_cells
-from reports.choice import BadInput, choose_cells, choose_engines, choose_scenes, nearest, steps_per_sample
-from reports.measure import TIMINGS, measure
-from reports.outcomes import Outcome
-from reports.page import Failure, Material, Observation, Page, StabilityMap
-from reports.rendering import environment, render_all
-from reports.sweep import judged
-from reports.theme import DARK, LIGHT, svg
+from reports.charts import work_precision as charts
+from reports.charts.theme import DARK, LIGHT, svg
+from reports.cli.selection import BadInput, choose_cells, choose_engines, choose_scenes, nearest, steps_per_sample
+from reports.grid.cells import QUICK, Cell, sweep_cells
+from reports.grid.convergence import judged
+from reports.grid.measure import TIMINGS, measure
+from reports.grid.outcomes import Outcome
+from reports.pages.page import Failure, Material, Observation, Page, StabilityMap
+from reports.text.rendering import environment, render_all
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))

@@ -6,8 +6,8 @@ from importlib import metadata
 
 import pytest
 
-from reports import fingerprint, requirements
-from reports.requirements import normalised, with_required
+from reports.grid import fingerprint, requirements
+from reports.grid.requirements import normalised, with_required
 from tests.lower_bounds import PYPROJECT, lower_bounds
 
 INVENTED = {

@@ -16,15 +16,15 @@ from engines.pymunk import rolls as pymunk_rolls
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.limits import DiscInHole, SquareOnCatenaries
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
-from reports.cells import Cell
-from reports.measure import measure, stopped_where_it_ends
-from reports.outcomes import Outcome
-from reports.page import Material
-from reports.pages import centrodes as centrodes_page
-from reports.pages import rolling as rolling_page
-from reports.pages.rolling_failures import FAILURES, absent_contact, parting
-from reports.rendering import render_page
-from reports.running import trajectory_of
+from reports.grid.cells import Cell
+from reports.grid.measure import measure, stopped_where_it_ends
+from reports.grid.outcomes import Outcome
+from reports.grid.running import trajectory_of
+from reports.pages.centrodes import page as centrodes_page
+from reports.pages.page import Material
+from reports.pages.rolling import page as rolling_page
+from reports.pages.rolling.experiments import FAILURES, absent_contact, parting
+from reports.text.rendering import render_page
 
 
 def row(scene, engine, every, samples=None):

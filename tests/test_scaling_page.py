@@ -14,15 +14,15 @@ from reference.four_bar.scenes import FreeFourBar
 from reference.pendulum.long import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
-from reports.cells import estimated_cost
-from reports.choice import QUICK_CELL, choose_cells
-from reports.growth import series_of
-from reports.measure import measure
-from reports.page import Material
-from reports.pages.scaling import CELLS, COSTLY, PAGE, SMALL, STEP
-from reports.reference_method import BandedChain
-from reports.rendering import render_page
-from reports.scaling_chart import scaling_chart
+from reports.cli.selection import QUICK_CELL, choose_cells
+from reports.grid.cells import estimated_cost
+from reports.grid.measure import measure
+from reports.grid.scaling_fit import series_of
+from reports.pages.page import Material
+from reports.pages.scaling.chart import scaling_chart
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
+from reports.pages.scaling.reference_method import BandedChain
+from reports.text.rendering import render_page
 
 TINY = tuple(cell for cell in CELLS if cell.scene.links <= 3)
 

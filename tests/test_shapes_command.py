@@ -16,8 +16,8 @@ import pytest
 
 from reference.centrodes import from_poses
 from reports import __main__ as command_line
-from reports.rendering import TEMPLATES
-from reports.round_trip import returned
+from reports.pages.centrodes.centrode_check import returned
+from reports.text.rendering import TEMPLATES
 
 HEADER = "t,x,y,angle"
 
@@ -182,7 +182,7 @@ def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tm
 
 
 def test_the_pages_example_runs_as_it_stands(tmp_path, monkeypatch, capfd):
-    page = (TEMPLATES / "centrodes.md").read_text()
+    page = (TEMPLATES / "centrodes" / "page.md").read_text()
     [script] = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     [shell] = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)
     (tmp_path / "coupler.py").write_text(script)

@@ -16,15 +16,20 @@ from reference.scenes import SCENES
 from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.validation import InvalidMechanism
-from reports.cells import Cell
-from reports.choice import choose_cells, known_engines
-from reports.measure import measure
-from reports.pages import skate, skate_failures, skate_pictures, wheels, wheels_failures, wheels_pictures
-from reports.paths import Blades, Panel, paths
-from reports.paths import Path as Line
-from reports.theme import svg
+from reports.charts.plane_panels import Blades, Panel, paths
+from reports.charts.plane_panels import Path as Line
+from reports.charts.theme import svg
+from reports.cli.selection import choose_cells, known_engines
+from reports.grid.cells import Cell
+from reports.grid.measure import measure
+from reports.pages.skate import experiments as skate_failures
+from reports.pages.skate import page as skate
+from reports.pages.skate import pictures as skate_pictures
+from reports.pages.wheels import experiments as wheels_failures
+from reports.pages.wheels import page as wheels
+from reports.pages.wheels import pictures as wheels_pictures
 
-TEMPLATE = Path(reports.pages.__file__).parent / "skate.md"
+TEMPLATE = Path(reports.pages.__file__).parent / "skate" / "page.md"
 BLOCKS = re.findall(r"```python\n(.*?)```", TEMPLATE.read_text(encoding="utf-8"), re.DOTALL)
 
 # What each block's method promises at its step of 1e-3 s: of first order the step, of second its square, of fourth its

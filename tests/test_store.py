@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports import store as store_module
-from reports.cells import Cell
-from reports.ending import FileTrouble
-from reports.measure import blank
-from reports.outcomes import Outcome
-from reports.store import COLUMNS, Store
+from reports.grid import store as store_module
+from reports.grid.cells import Cell
+from reports.grid.ending import FileTrouble
+from reports.grid.measure import blank
+from reports.grid.outcomes import Outcome
+from reports.grid.store import COLUMNS, Store
 from tests.toys import Disc, Toy
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -336,9 +336,9 @@ def test_a_results_folder_that_is_a_file_or_lies_below_one_is_a_sentence(tmp_pat
 FULL_DISK = """
 import resource, sys
 from pathlib import Path
-from reports.ending import FileTrouble
-from reports.files import write_whole
-from reports.store import Store
+from reports.grid.ending import FileTrouble
+from reports.grid.files import write_whole
+from reports.grid.store import Store
 from tests.test_store import CELLS, row
 
 folder = Path(sys.argv[1])

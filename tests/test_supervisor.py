@@ -16,11 +16,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from reports import supervisor, worker_process
-from reports.cells import Cell
-from reports.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.pool import run_cells
-from reports.supervisor import WorkersLost, supervise
+from reports.grid import supervisor, worker_process
+from reports.grid.cells import Cell
+from reports.grid.outcomes import Loss, Outcome, describe_exit, from_outside
+from reports.grid.pool import run_cells
+from reports.grid.supervisor import WorkersLost, supervise
 from tests.rough_toys import ACTIONS, RoughToy, act, dies, spoiled
 from tests.toys import Disc, Toy
 
@@ -311,8 +311,8 @@ def test_among_kills_every_row_is_there_once_and_right(monkeypatch, seed, kills)
 SCRIPT = """
 import sys
 import threading
-from reports.cells import Cell
-from reports.pool import run_cells
+from reports.grid.cells import Cell
+from reports.grid.pool import run_cells
 from tests.rough_toys import RoughToy
 from tests.toys import Disc
 
@@ -344,8 +344,8 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
 INTERRUPTED = """
 import sys
 import time
-from reports.pool import TIME_LIMIT
-from reports.supervisor import supervise
+from reports.grid.pool import TIME_LIMIT
+from reports.grid.supervisor import supervise
 
 if __name__ == "__main__":
     try:

@@ -9,11 +9,11 @@ from dataclasses import fields
 
 import pytest
 
-from reports import tables
-from reports.measure import TIMINGS, Measurement
-from reports.outcomes import Outcome
-from reports.quantities import QUANTITIES, quantity
-from reports.sweep import Sweep, Verdict, sweeps
+from reports.grid.convergence import Sweep, Verdict, sweeps
+from reports.grid.measure import TIMINGS, Measurement
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import QUANTITIES, quantity
+from reports.text import tables
 from tests.rows import falling, row, row_of, table
 
 NAN = math.nan

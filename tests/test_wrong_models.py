@@ -16,8 +16,8 @@ from reference.mechanism import Mechanism
 from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.outcomes import Loss
-from reports.supervisor import supervise, usable_cores
+from reports.grid.outcomes import Loss
+from reports.grid.supervisor import supervise, usable_cores
 from tests.mistakes import KINDS, Mistake, Mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.promises import EXACT, Promise, Promises
+from reports.gate.promises import EXACT, Promise, Promises
 
 # Impulses at the ends of steps, read as they stand: everything of first order.
 STEPPED = Promise(1, differences=1)

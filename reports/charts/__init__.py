@@ -1,0 +1,1 @@
+"""Rows and poses to pictures; nothing here knows a page."""

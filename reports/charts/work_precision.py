@@ -1,0 +1,200 @@
+"""Rows to charts: work and precision, error against step. Pure functions that give a figure.
+
+Engine is colour and marker shape; variant is line style and marker filling, so that a chart survives without colours.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.grid.convergence import groups
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import quantity
+
+MARKERS = {"pymunk": "o", "mujoco": "s", "lagrange": "^"}
+LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
+FILLS = ("empty", "left", "full", "bottom", "top", "right", "empty", "full")
+# An engine's three variants look the same in every chart, whichever of them are shown.
+VARIANTS = ("default", "tuned", "extended")
+COLUMNS = 2
+LONG_NAME = 30  # letters: beyond, four names don't fit side by side
+
+Featured = Callable[[Measurement], bool]
+
+
+def colour(engine: str, theme: Theme) -> str:
+    return getattr(theme, engine) if engine in MARKERS else theme.fourth
+
+
+def look(engine: str, variant: str, variants: Sequence[str], theme: Theme) -> dict[str, Any]:
+    """Line and marker of one method among the variants of its engine that are shown."""
+    named = [other for other in variants if other not in VARIANTS]
+    first = 0 if len(named) == len(variants) else len(VARIANTS)
+    index = VARIANTS.index(variant) if variant in VARIANTS else first + named.index(variant)
+    paint, fill = colour(engine, theme), FILLS[index % len(FILLS)]
+    return {
+        "color": paint,
+        "linestyle": LINES[index % len(LINES)],
+        "marker": MARKERS.get(engine, "D"),
+        "fillstyle": "full" if fill == "empty" else fill,
+        "markerfacecolor": theme.paper if fill == "empty" else paint,
+        "markerfacecoloralt": theme.paper,
+        "markeredgecolor": paint,
+        "markersize": 5.5,
+        "linewidth": 1.5,
+    }
+
+
+def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Of (cost, error) pairs those that no other beats in both, by rising cost."""
+    front: list[tuple[float, float]] = []
+    for cost, error in sorted(points):
+        if not front or error < front[-1][1]:
+            front.append((cost, error))
+    return front
+
+
+def _shown_variants(rows: Sequence[Measurement]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for row in rows:
+        variants = found.setdefault(row.engine, [])
+        if row.variant not in variants:
+            variants.append(row.variant)
+    return found
+
+
+def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
+    """The rows of sweeps whose error has a place on a logarithmic axis."""
+    return [
+        row
+        for row in rows
+        if row.purpose == "sweep" and Outcome(row.outcome).comparable and 0 < getattr(row, field) < math.inf
+    ]
+
+
+def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure, list[Axes]]:
+    columns = min(COLUMNS, len(scenes)) or 1
+    count = -(-len(scenes) // columns) or 1
+    figure = new_figure(height * count + 0.9, theme)
+    axes = figure.subplots(count, columns, squeeze=False, sharey=True).ravel()
+    for spare in axes[len(scenes) :]:
+        spare.set_visible(False)
+    for panel, scene in zip(axes, scenes, strict=False):
+        panel.set_title(scene.replace("_", " "), loc="left", fontweight="bold", color=theme.ink)
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        style_axes(panel, theme)
+    return figure, list(axes[: len(scenes)])
+
+
+def _finish(panel: Axes) -> None:
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.set_major_locator(LogLocator(base=10, numticks=9))
+        axis.set_minor_formatter(NullFormatter())
+    panel.minorticks_off()
+
+
+def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
+    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
+    columns = 4 if longest <= LONG_NAME else 3
+    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, handlelength=3.2)
+    for text in legend.get_texts():
+        text.set_color(theme.ink)
+
+
+def _handles(variants: dict[str, list[str]], theme: Theme) -> list[Line2D]:
+    return [
+        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, shown, theme))
+        for engine, shown in variants.items()
+        for variant in shown
+    ]
+
+
+def work_precision(
+    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
+) -> Figure:
+    """Error against CPU time, one panel a scene, one series a method; the front that nothing beats is underlaid.
+
+    The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
+    """
+    rows = [row for row in drawable(rows, field) if row.cpu > 0]
+    scenes = list(dict.fromkeys(row.scene for row in rows))
+    shown = [row for row in rows if featured(row)]
+    variants = _shown_variants(shown)
+    with settings():
+        figure, panels = _panels(scenes, theme, 3.6)
+        for panel, scene in zip(panels, scenes, strict=True):
+            here = [row for row in rows if row.scene == scene]
+            front = pareto((1e3 * row.cpu, getattr(row, field)) for row in here)
+            panel.plot(*zip(*front, strict=True), color=theme.grid, linewidth=7, drawstyle="steps-post", zorder=1)
+            others = [(1e3 * row.cpu, getattr(row, field)) for row in here if not featured(row)]
+            if others:
+                panel.plot(*zip(*others, strict=True), ".", color=theme.quiet, markersize=3, zorder=2)
+            for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
+                series = [(1e3 * row.cpu, getattr(row, field)) for row in members]
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants[engine], theme))
+            panel.set_xlabel("CPU time per simulated second [ms]")
+            if panels.index(panel) % COLUMNS == 0:
+                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+            _finish(panel)
+        handles = _handles(variants, theme)
+        handles.append(Line2D([], [], color=theme.grid, linewidth=8, label="nothing is better and cheaper"))
+        if len(shown) < len(rows):
+            handles.append(Line2D([], [], color=theme.quiet, marker=".", linestyle="none", label="other methods"))
+        _legend(figure, handles, theme)
+    return figure
+
+
+def error_against_step(
+    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
+) -> Figure:
+    """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
+    rows = [row for row in drawable(rows, field) if featured(row)]
+    scenes = list(dict.fromkeys(row.scene for row in rows))
+    variants = _shown_variants(rows)
+    with settings():
+        figure, panels = _panels(scenes, theme, 3.6)
+        for panel, scene in zip(panels, scenes, strict=True):
+            here = [row for row in rows if row.scene == scene]
+            for (_, engine, variant), members in groups(here).items():
+                series = [(row.step, getattr(row, field)) for row in members]
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants[engine], theme))
+            panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
+            _guides(panel, [row.step for row in here], quantity(field).rounding, theme)
+            panel.set_xlabel("step [s]")
+            if panels.index(panel) % COLUMNS == 0:
+                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+            _finish(panel)
+        for panel in panels:
+            panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
+        handles = _handles(variants, theme)
+        handles.append(Line2D([], [], color=theme.grid, linewidth=8, alpha=0.6, label="rounding"))
+        _legend(figure, handles, theme)
+    return figure
+
+
+def _guides(panel: Axes, steps: Sequence[float], rounding: float, theme: Theme) -> None:
+    """A fan of slopes where data seldom is: small errors at large steps, just above rounding."""
+    right = 0.8 * max(steps)
+    left, low = right / max(4.0, (max(steps) / min(steps)) ** 0.35), 3 * rounding
+    for slope in (1, 2, 4):
+        end = low * (right / left) ** slope
+        panel.plot([left, right], [low, end], color=theme.quiet, linewidth=0.8, zorder=2)
+        panel.annotate(
+            str(slope),
+            (right, end),
+            xytext=(3, 0),
+            textcoords="offset points",
+            color=theme.quiet,
+            fontsize=8,
+            va="center",
+        )

@@ -1,0 +1,70 @@
+"""`crosscheck errata`: the chapter's printed slips, each with its three values and the verdict, on the terminal."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from reports.grid.ending import BadInput
+
+HEADER = ("no.", "where", "printed, and its value", "right, and its value", "derivative", "verdict")
+WIDTH = 150  # into a file or a pipe
+
+
+def errata(
+    number: Annotated[list[int] | None, typer.Argument(help="Only these numbers of the list of errata.")] = None,
+    engines: Annotated[bool, typer.Option("--engines", help="What engines say of it too (some seconds).")] = False,
+) -> None:
+    """The chapter's printed slips: each formula's value as printed and as it must be, and what decides."""
+    from reference.errata.catalogue import ERRATA, WORD_SLIPS
+    from reports.cli.terminal import Terminal, print_table
+
+    known = sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
+    for one in number or ():
+        if one not in known:
+            raise BadInput(f"no slip has the number {one}; there are {', '.join(map(str, known))}")
+    wide = Terminal(WIDTH)
+    rows = [row for row in rows_of_slips() if not number or int(row[0]) in number]
+    print_table(wide, "Printed slips of the chapter", HEADER, rows, len(HEADER))
+    wide.print(
+        "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
+    )
+    if engines:
+        from reports.pages.errata.errata_engines import rulings
+        from reports.text.tables import number as short
+
+        lost: list[str] = []
+        said = [
+            (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
+            for r in rulings(lost=lost)
+            if r.number in (number or known)
+        ]
+        wide.print()
+        header = ("no.", "engine", "its motion", "printed misses by", "right misses by")
+        print_table(wide, "Engines as referees", header, said, 3)
+        for sentence in lost:
+            wide.print(sentence, markup=False)
+
+
+def rows_of_slips() -> list[tuple[str, ...]]:
+    """A row a slip under HEADER, by number; those in words have no values."""
+    from reference.errata.catalogue import ERRATA, WORD_SLIPS
+    from reports.pages.errata.page import digits
+    from reports.text.tables import number
+
+    found: dict[int, tuple[str, ...]] = {}
+    for erratum in ERRATA:
+        values = erratum.values()
+        eyes = "dimensions show it" if erratum.dimensions else "only numbers show it"
+        found[erratum.number] = (
+            str(erratum.number),
+            erratum.where,
+            f"{erratum.printed}\n= {digits(values.printed)}",
+            f"{erratum.right}\n= {digits(values.right)}",
+            f"{digits(values.decides)}\n{erratum.unit}",
+            f"off by {number(values.miss)}, right by {number(values.agreement)}; {eyes}",
+        )
+    for slip in WORD_SLIPS:
+        found[slip.number] = (str(slip.number), slip.where, slip.printed, slip.right, "-", f"words: {slip.reason}")
+    return [found[key] for key in sorted(found)]

@@ -1,0 +1,84 @@
+"""`crosscheck report`: pages and charts from what is stored, in the folder of the results or published."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reports.cli.interruption import kept
+from reports.cli.selection import page_cells
+from reports.cli.terminal import Terminal
+from reports.grid.ending import BadInput
+from reports.grid.files import write_whole
+from reports.grid.store import Store
+
+FOLDER = Path(
+    "crosscheck-results"
+)  # below the current one, in the checkout too: no command writes to what is published
+STORE = "cells.sqlite"
+CHECKOUT = Path(__file__).parents[2]
+
+Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]
+
+
+def with_folder(command: str, results: Path) -> str:
+    """A command as it is to be typed for this folder of results."""
+    return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"
+
+
+def report(
+    results: Folder = FOLDER,
+    publish: Annotated[
+        bool, typer.Option("--publish", help="Write to the checkout's reports/results and README.md instead.")
+    ] = False,
+) -> None:
+    """Write pages, charts, errors.csv and timings.csv from what is stored."""
+    if publish:
+        refuse_outside_a_checkout()
+    nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
+    if not (results / STORE).exists():
+        raise nothing
+    from reports.grid.running import missing, trajectories
+    from reports.pages.catalogue import PAGES
+    from reports.pages.page import Material
+    from reports.text.rendering import render_all, render_readme
+
+    with Store.read(results / STORE) as store:
+        wanted = {page: page_cells(page) for page in PAGES}
+        whole = tuple({cell: None for cells in wanted.values() for cell in cells})
+        material = {page: Material(store.get(cells), trajectories) for page, cells in wanted.items()}
+        left = len(missing(whole, store))
+    command = with_folder("crosscheck run --full", results)
+    grid = f"{left} of {len(whole)} cells of the full grid are not stored: {command}"
+    if not any(given.rows for given in material.values()):
+        raise nothing
+    if publish and left:
+        raise BadInput(f"nothing is published, {grid}")
+    folder = published() if publish else results
+    files = render_all(material, "make report" if publish else "crosscheck report")
+    texts = {folder / name: text for name, text in files.items()}
+    if publish:
+        readme = CHECKOUT / "README.md"
+        texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
+    with kept() as check:  # between two files is no place to stop
+        write_whole(texts, "the pages that were there stay as they were")
+        check()
+    terminal = Terminal(140)
+    terminal.say(f"{len(files)} files written to {folder}, index.md is the first to read")
+    if left:
+        terminal.say(grid)
+
+
+def published() -> Path:
+    """Where the published results stand in a checkout."""
+    return CHECKOUT / "reports" / "results"
+
+
+def refuse_outside_a_checkout() -> None:
+    """Raises BadInput unless the package lies in a checkout: an installed copy has no README to write."""
+    for path in (CHECKOUT / "README.md", published() / "index.md"):
+        if not path.is_file():
+            raise BadInput(f"--publish is for a checkout of the project; there is no {path}")

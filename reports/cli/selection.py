@@ -1,0 +1,133 @@
+"""From the words of a command line to scenes, engines and cells; what can't be is refused with the nearest that can."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Sequence
+
+from engines import Engine
+from reference.scene import Scene
+from reports.grid.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
+from reports.grid.ending import BadInput
+from reports.pages.page import Page
+
+# A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
+QUICK_CELL = 0.1
+
+
+def nearest(kind: str, word: str, known: Iterable[str]) -> BadInput:
+    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not."""
+    names = {name.lower(): name for name in known}
+    low = word.lower()
+    near = difflib.get_close_matches(low, names, 1, 0.4)
+    if not near:
+        near = [name for name in names if low and (low in name or name in low)][:1]
+    hint = f"did you mean {names[near[0]]!r}?" if near else f"there are {', '.join(names.values())}"
+    return BadInput(f"unknown {kind} {word!r}: {hint}")
+
+
+def choose_scenes(words: Sequence[str], scenes: Sequence[Scene]) -> tuple[Scene, ...]:
+    """The scenes of these names, or of the pages of these names; all of them for no word. Raises BadInput."""
+    if not words:
+        return tuple(scenes)
+    for word in words:
+        if not any(word in (scene.name, scene.page) for scene in scenes):
+            raise nearest("scene", word, [*(s.name for s in scenes), *(s.page for s in scenes)])
+    return tuple(scene for scene in scenes if scene.name in words or scene.page in words)
+
+
+def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
+    """The engines of this name and variant; None takes all. Raises BadInput."""
+    chosen = tuple(engines)
+    if engine is not None:
+        chosen = tuple(e for e in chosen if e.name == engine)
+        if not chosen:
+            raise nearest("engine", engine, (e.name for e in engines))
+    if variant is not None:
+        found = tuple(e for e in chosen if e.variant == variant)
+        if not found:
+            raise nearest("variant" if engine is None else f"variant of {engine}", variant, (e.variant for e in chosen))
+        chosen = found
+    return chosen
+
+
+def steps_per_sample(scene: Scene, step: float) -> int:
+    """How many steps [s] fit between two samples of a scene. Raises BadInput unless it is a whole number."""
+    if not (math.isfinite(step) and step > 0):
+        raise BadInput(f"step is {step!r} s; it must be a finite time greater than zero")
+    ratio = scene.spacing / step
+    every = max(1, round(ratio))
+    # 1e-9: a step typed with ten digits or more is meant to divide.
+    if abs(ratio - every) > 1e-9 * ratio:
+        raise BadInput(
+            f"step {step:g} s does not divide the {scene.spacing:.10g} s between samples of {scene.name}; "
+            f"{every} steps a sample would be --step {scene.spacing / every:.12g}, or --every {every}"
+        )
+    return every
+
+
+def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
+    """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
+    from engines.registry import ENGINES
+
+    everywhere = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
+    return tuple(dict.fromkeys([*ENGINES, *everywhere]))
+
+
+def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
+    """Of these engines those that the scene's page compares; the variants of every scene where no page teaches it."""
+    from engines.registry import VARIANTS
+
+    compared = next((page.engines_of(scene) for page in pages if page.name == scene.page), VARIANTS)
+    return tuple(engine for engine in engines if engine in compared)
+
+
+def choose_cells(
+    scenes: Sequence[Scene],
+    engines: Sequence[Engine],
+    pages: Sequence[Page],
+    full: bool,
+    every: Sequence[int] = (),
+    steps: Sequence[float] = (),
+) -> tuple[Cell, ...]:
+    """The cells of a run: the grid, with the failures of the pages that teach these scenes, and their maps if full.
+
+    A quick run leaves out what would take longer than QUICK_CELL. `every` or `steps` replace the grid by these steps
+    alone. Raises BadInput for steps that can't be.
+    """
+    for count in every:
+        if count < 1:
+            raise BadInput(f"--every is {count}; it must be a whole number greater than zero")
+    if every or steps:
+        chosen: dict[Cell, None] = {}
+        for scene in scenes:
+            for count in dict.fromkeys([*every, *(steps_per_sample(scene, step) for step in steps)]):
+                chosen.update((Cell(scene, engine, count), None) for engine in grid_engines(scene, engines, pages))
+        return tuple(chosen)
+    cells: list[Cell] = []
+    for scene in scenes:
+        cells += sweep_cells((scene,), grid_engines(scene, engines, pages), FULL if full else QUICK)
+    taught = {scene.page for scene in scenes}
+    for page in pages:
+        # A page without scenes of its own belongs to those that its cells are about.
+        about = {page.name} if page.scenes else {cell.scene.page for cell in page.extra_cells()}
+        if about & taught:
+            cells += [
+                cell
+                for cell in page.extra_cells()
+                if any(cell.engine == engine for engine in engines) and (full or cell.purpose not in ("map", "large"))
+            ]
+    chosen_once = dict.fromkeys(cells)
+    return tuple(chosen_once if full else (cell for cell in chosen_once if _quick(cell)))
+
+
+def _quick(cell: Cell) -> bool:
+    """Whether a quick run has the time for a cell; the coarsest step of a scene's grid is always there."""
+    return estimated_cost(cell) <= QUICK_CELL or (cell.purpose == "sweep" and cell.every == QUICK[0])
+
+
+def page_cells(page: Page) -> tuple[Cell, ...]:
+    """Every cell that a page could show."""
+    grid = (cell for scene in page.scenes for cell in sweep_cells((scene,), page.engines_of(scene), FULL))
+    return tuple(dict.fromkeys([*grid, *page.extra_cells()]))

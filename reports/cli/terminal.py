@@ -1,0 +1,90 @@
+"""What the command line prints: rich tables and the progress of a run."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from reports.grid.cells import Cell
+from reports.grid.ending import FileTrouble
+
+
+class Terminal(Console):
+    """Standard output: as wide as the terminal; a table into a file or a pipe keeps its width, whatever the terminal's.
+
+    `print` raises BrokenPipeError where nobody reads it any more, and FileTrouble where it can't be written.
+    """
+
+    def __init__(self, width: int) -> None:
+        super().__init__(width=None if sys.stdout.isatty() else width)
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        with written():
+            super().print(*objects, **options)
+
+    def say(self, sentence: str) -> None:
+        """A sentence as it is: names of files may have brackets in them."""
+        self.print(sentence, markup=False, highlight=False, soft_wrap=True)
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
+@contextmanager
+def written() -> Iterator[None]:
+    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if nobody reads it."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as reason:
+        raise FileTrouble(f"the output can't be written: {reason.strerror or reason}") from None
+
+
+def print_table(console: Console, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
+    """A table whose first `left` columns are words, the others numbers.
+
+    All of it is plain text: a unit in brackets, as in "step [s]", is no markup.
+    """
+    table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
+    for index, name in enumerate(header):
+        table.add_column(Text(name), justify="left" if index < left else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    console.print(table)
+
+
+@contextmanager
+def progress(
+    console: Console, total: int, check: Callable[[], None]
+) -> Iterator[tuple[Callable[[object], None], Callable[[list[Cell]], None]]]:
+    """(done, watch): call done with each row, and watch with the cells that are running; both `check` for Ctrl-C."""
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[running]}", style="dim"),
+        console=console,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("cells", total=total, running="starting")
+
+        def watch(cells: list[Cell]) -> None:
+            bar.update(task, running=" | ".join(cell.label for cell in cells))
+            check()
+
+        def done(row: object) -> None:
+            bar.advance(task)
+            check()
+
+        yield done, watch

@@ -1,0 +1,137 @@
+"""The judge: a mechanism with exact multipliers, or with joints that give way in a known manner, by textbook methods.
+
+It knows no engine and shares no code with any, `engines.lagrange` included, since it is to judge that too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
+
+from engines import Softness
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.grid.errors import constraint_errors, motion_errors
+from reports.grid.quantities import QUANTITIES
+
+Array = NDArray[np.float64]
+QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
+
+
+(_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
+
+# The least share of its own inverse inertia that a soft row is given for its compliance.
+REDUNDANT = 0.1
+
+TABLEAUS: dict[int, tuple[Array, Array]] = {
+    2: (np.array([[0, 0], [0.5, 0]]), np.array([0.0, 1.0])),
+    4: (np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6),
+}
+NODES = {2: np.array([0, 0.5]), 4: np.array([0, 0.5, 0.5, 1])}
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """The solution of a symmetric system, the smallest one where rows depend on each other."""
+    factor, solution, failed = _positive(matrix, right, lower=True)
+    # Cholesky's pivots show dependence: their ratio squared is at least the matrix' condition.
+    pivots = np.diag(factor)
+    if not failed and pivots.min() ** 2 > RANK_TOLERANCE * pivots.max() ** 2:
+        return solution
+    if not np.all(np.isfinite(matrix)):
+        return np.full_like(right, np.nan)
+    return np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right
+
+
+def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
+    """What each soft row feels while the rigid ones hold: the diagonal of the Schur complement (rows,)."""
+    out = np.diag(matrix).copy()
+    if not gives.all():
+        rigid, soft = np.flatnonzero(~gives), np.flatnonzero(gives)
+        coupled = matrix[np.ix_(rigid, soft)]
+        answer = np.linalg.lstsq(matrix[np.ix_(rigid, rigid)], coupled, rcond=RANK_TOLERANCE)[0]
+        out[soft] -= np.einsum("ij,ij->j", coupled, answer)
+    # Of a row that others hold already nothing would be left; engines take an estimate that knows no others.
+    return np.maximum(out, REDUNDANT * np.diag(matrix))
+
+
+def multipliers(
+    mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None
+) -> tuple[Array, Array]:
+    """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones; drives are never soft."""
+    if not mechanism.row_count:
+        return mechanism.free_fall, np.zeros(0)
+    rows = mechanism.rows(pose)
+    weighted = rows / mechanism.inertias.reshape(-1)
+    matrix = weighted @ rows.T
+    right = mechanism.bias(pose, twist) - rows @ mechanism.free_fall.reshape(-1)
+    if soft is not None:
+        gives = np.array(soft.rows) & ~np.isnan(mechanism.rate) & (mechanism.rate == 0)
+        if not soft.complete:
+            right = np.where(gives, -rows @ mechanism.free_fall.reshape(-1), right)
+        gap = np.nan_to_num(mechanism.gap(pose, t))
+        right = right - gives * (soft.damping * mechanism.slip(pose, twist) + soft.stiffness * gap)
+        matrix = matrix + soft.compliance * np.diag(gives * own_inertia(matrix, gives))
+    reaction = solved(matrix, right)
+    return mechanism.free_fall + (weighted.T @ reaction).reshape(-1, 3), reaction
+
+
+def projected(mechanism: Mechanism, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
+    """The pose after one Newton step onto the joints, and the twist that they allow there: nearest by mass."""
+    which = mechanism.holonomic
+    for quantity in ("gap", "slip"):
+        rows = mechanism.rows(pose)
+        kept = rows[which] if quantity == "gap" else rows
+        wrong = mechanism.gap(pose, t)[which] if quantity == "gap" else mechanism.slip(pose, twist)
+        if not len(kept):
+            continue
+        weighted = kept / mechanism.inertias.reshape(-1)
+        back = (weighted.T @ solved(weighted @ kept.T, wrong)).reshape(-1, 3)
+        pose, twist = (pose - back, twist) if quantity == "gap" else (pose, twist - back)
+    return pose, twist
+
+
+def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False) -> Trajectory:
+    """The scene's motion by Runge and Kutta's method of this order, `every` steps a sample."""
+    mechanism = scene.mechanism()
+    (stages, weights), nodes = TABLEAUS[order], NODES[order]
+    samples = max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
+    dt = scene.spacing / every
+    poses = np.full((samples + 1, *mechanism.pose.shape), np.nan)
+    twists, reactions = np.full_like(poses, np.nan), np.full((samples + 1, mechanism.row_count), np.nan)
+    pose, twist = mechanism.pose, mechanism.twist
+    velocity = np.empty((len(weights), *pose.shape))
+    acceleration = np.empty_like(velocity)
+    for step in range(samples * every + 1):
+        t = step * dt
+        for i, node in enumerate(nodes):
+            velocity[i] = twist + dt * np.tensordot(stages[i, :i], acceleration[:i], 1)
+            at = pose + dt * np.tensordot(stages[i, :i], velocity[:i], 1)
+            acceleration[i], reaction = multipliers(mechanism, at, velocity[i], t + node * dt, soft)
+            if i == 0 and step % every == 0:
+                poses[step // every], twists[step // every], reactions[step // every] = pose, twist, reaction
+        pose = pose + dt * np.tensordot(weights, velocity, 1)
+        twist = twist + dt * np.tensordot(weights, acceleration, 1)
+        if project:
+            pose, twist = projected(mechanism, pose, twist, t + dt)
+    return Trajectory(np.arange(samples + 1, dtype=np.float64) * scene.spacing, poses, twists, reactions)
+
+
+def errors(
+    scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False
+) -> Mapping[str, float]:
+    """Largest errors of the judge's own run, by the name of the quantity; infinite ones where it failed."""
+    mechanism = scene.mechanism()
+    try:
+        with np.errstate(all="ignore"):
+            found = integrate(scene, order, every, soft, project)
+            truth = scene.motion(found.t)
+            told = constraint_errors(mechanism, found) | motion_errors(scene, mechanism, truth, found)
+    except (ValueError, np.linalg.LinAlgError):
+        return dict.fromkeys(QUANTITY_NAMES, math.inf)
+    return {name: told[name] for name in QUANTITY_NAMES}

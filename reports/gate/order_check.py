@@ -1,0 +1,43 @@
+"""The promised order against the one that a sweep over steps shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from reports.gate.checks import Check
+from reports.gate.promises import EXACT, Promise
+from reports.grid.convergence import ENOUGH, Verdict, fit
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import quantity
+
+# An observed order may lie this much below the promised one: at a tenth of a radian the next power is a tenth of the
+# leading one, half a decade on a thirtieth, and 10^0.5 in steps turns that into 0.1; the sign of it is unknown. A last
+# point a few times above rounding takes about as much again.
+BELOW = 0.4
+# And this much above it: a promise that is one too low is noticed.
+ABOVE = 0.95
+# Errors above this [rad] are not proportional to what causes them, so no order is read from them.
+PROPORTIONAL = 0.1
+
+
+def order(promise: Promise, rows: Sequence[Measurement]) -> tuple[Check, ...]:
+    """The check of one method's rows, if they can tell: three points that are above rounding and small enough.
+
+    measured: how far the observed order is from the promised one, in multiples of what it may be. An error that levels
+    off, grows or jumps about has the order 0.
+    """
+    if promise.order == EXACT:
+        return ()
+    usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]
+    verdict, found, points, _, plateau = fit(
+        [row.step for row in usable], [row.angle for row in usable], quantity("angle").rounding
+    )
+    above = [row for row in usable if row.angle > quantity("angle").rounding]
+    if len(above) < ENOUGH:
+        return ()
+    stays = verdict in (Verdict.PLATEAU, Verdict.LEVELS, Verdict.GROWS, Verdict.ERRATIC)
+    observed = 0.0 if stays or points < 2 else found
+    short = promise.order - observed
+    told = f", {verdict}" + (f" at {plateau:.2g} rad" if verdict is Verdict.PLATEAU else f", order {observed:.2f}")
+    return (Check("order", "angle", short / BELOW if short > 0 else -short / ABOVE, 1.0, sentence=told),)

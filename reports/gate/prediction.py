@@ -1,0 +1,211 @@
+"""What order and softness cost in a scene: predicted by the judge, from the scene's mechanism and its truth alone.
+
+An error A (h / tau)^p has two unknowns, an amplitude A and a time scale tau. Ideal methods of order 2 and of order 4
+give both, and with them what any order costs at any step in this scene: the motion's own rates, however fast, and how
+it carries an early error on are in them. The same for joints that give way: their errors are proportional to how soft
+they are, so one softness tells of all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from engines import Engine, Softness
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reports.gate.judge import QUANTITY_NAMES, errors
+from reports.gate.promises import EXACT
+from reports.grid.errors import largest
+from reports.grid.measure import SATURATED, TORN
+
+# Which rows are soft, and whether they have the term of velocities: what the judge has to run once.
+Kind = tuple[tuple[bool, ...], bool]
+
+# Joints are compared at these, MuJoCo's as shipped but for a smaller compliance, and results scaled: what gives way is
+# proportional to the compliance and to the inverse stiffness, or to the time 1 / damping by which slip lags.
+STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
+
+# The judge's own steps a sample: the coarsest at which its second-order run is within REACH [rad] of the truth.
+REFINEMENTS = (1, 3)
+REACH = 0.1
+# The judge's own runs end here: a scene of thousands of periods is judged by the methods' own coarser steps alone.
+MOST_STEPS = 20_000
+# Samples of the truth between which its derivatives are taken.
+DIFFERENCES = 1000
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
+    the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
+    themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
+    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE.
+    """
+
+    step: float
+    second: Mapping[str, float]
+    fourth: Mapping[str, float]
+    length: float
+    speed: float
+    acceleration: float
+    changing: tuple[float, float]
+    soft: Mapping[Kind, Mapping[str, float]]
+
+    def error(self, quantity: str, order: float, step: float) -> float:
+        """A (step / tau)^order, A and tau from the two ideal methods; infinite where those failed, NaN if unknown.
+
+        A pose that is wrong by this much is wrong in its velocities too, by as much as the motion takes it on; and what
+        is wrong in its velocities may show as a slip.
+        """
+        own = self._power(quantity, order, step)
+        pace = self.speed / self.length
+        match quantity:
+            case "rate":
+                return max(own, pace * self._power("angle", order, step))
+            case "velocity":
+                return max(own, pace * self._power("position", order, step))
+            case "slip":
+                return max(own, self._power("velocity", order, step))
+        return own
+
+    def _power(self, quantity: str, order: float, step: float) -> float:
+        second, fourth = self.second[quantity], self.fourth[quantity]
+        if order == EXACT:
+            return 0.0
+        if not (math.isfinite(second) and math.isfinite(fourth)):
+            return math.nan if math.isnan(second) else math.inf
+        if second == 0 or fourth == 0:
+            return 0.0
+        # At the judge's step the error falls by (step / tau)^2 from order 2 to order 4: by its root for each order.
+        return second * (fourth / second) ** ((order - 2) / 2) * (step / self.step) ** order
+
+    def give(self, quantity: str, softness: Softness | None) -> float:
+        """What this softness costs, in proportion to what the judge's own does."""
+        if softness is None:
+            return 0.0
+        stiff = STIFFNESS / softness.stiffness
+        found = 0.0
+        if softness.compliance > 0:
+            found += self.soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
+            # However stiff the spring, this share of a force is not felt by what gives it.
+            found += softness.compliance if quantity == "reaction" else 0.0
+        if not softness.complete:
+            lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
+            found += self.soft[softness.rows, False][quantity] * lag
+        return found
+
+    def closing(self, quantity: str, gap: float, softness: Softness | None) -> float:
+        """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
+        if softness is None or not softness.complete or math.isnan(gap):
+            return 0.0
+        speed, pull = gap * softness.damping, gap * softness.stiffness
+        costs = {
+            "slip": speed,
+            "velocity": speed,
+            "rate": speed / self.length,
+            "energy": 2 * speed / self.speed,
+            "reaction": pull / self.acceleration,
+        }
+        return costs.get(quantity, 0.0)
+
+    def differenced(self, order: float, step: float) -> float:
+        """The relative error of a reaction that is read as a change of velocity over a step: what it changes in it."""
+        return self.changing[order > 1] * step ** min(order, 2)
+
+    def refused(self, quantity: str) -> float:
+        """The error above which a run is no longer comparable, whatever the order promises."""
+        scales = {"angle": SATURATED, "gap": TORN * self.length, "position": SATURATED * self.length}
+        return scales.get(quantity, math.inf)
+
+
+def _worse(one: Mapping[str, float], other: Mapping[str, float]) -> Mapping[str, float]:
+    """By quantity the larger of two errors that are finite, infinite without any; NaN where neither is known."""
+    out = {}
+    for name in QUANTITY_NAMES:
+        known = [value for value in (one[name], other[name]) if not math.isnan(value)]
+        out[name] = max((v for v in known if math.isfinite(v)), default=math.inf) if known else math.nan
+    return out
+
+
+def declared(engine: Engine, mechanism: Mechanism, step: float) -> Softness | None:
+    """What an engine says of how its joints give way; None where it says nothing or they don't."""
+    tell = getattr(engine, "softness", None)
+    return None if tell is None else tell(mechanism, step)
+
+
+def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[Kind]:
+    """What the judge has to know of softness to judge these engines in a scene."""
+    mechanism, found = scene.mechanism(), set()
+    for engine in engines:
+        softness = declared(engine, mechanism, scene.spacing)
+        if softness is not None:
+            found |= {(softness.rows, True)} if softness.compliance > 0 else set()
+            found |= set() if softness.complete else {(softness.rows, False)}
+    return frozenset(found)
+
+
+@cache
+def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
+    """The scene's prediction, worked out once a process: a second or two, more for a hundred bodies.
+
+    Joints are left alone and projected: where the motion is prescribed a projection leaves nothing of the error, and at
+    singular positions rows left alone drift off. The worse of the two is taken.
+    """
+    second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
+    every = REFINEMENTS[0]
+    for every in REFINEMENTS:
+        second, fourth = (_judged(scene, order, every) for order in (2, 4))
+        if second["angle"] <= REACH:
+            break
+    return Prediction(
+        scene.spacing / every,
+        second,
+        fourth,
+        scene.mechanism().length_scale,
+        *_motion(scene),
+        {kind: softened(scene, *kind) for kind in soft},
+    )
+
+
+def _motion(scene: Scene) -> tuple[float, float, tuple[float, float]]:
+    """Speed, acceleration and the change of reactions of the truth; see Prediction."""
+    mechanism = scene.mechanism()
+    until = min(scene.horizon, scene.comparable_until)
+    dt = until / DIFFERENCES
+    truth = scene.motion(np.arange(DIFFERENCES + 1) * dt)
+    length = mechanism.length_scale
+    twist, reaction = truth.twist, truth.reaction
+    speed = max(largest(np.hypot(twist[..., 0], twist[..., 1])), length * largest(twist[..., 2]))
+    change = np.diff(twist, axis=0) / dt
+    acceleration = max(largest(np.hypot(change[..., 0], change[..., 1])), math.hypot(*mechanism.gravity))
+    scale = largest(reaction)
+    first, second = largest(np.diff(reaction, axis=0)) / dt, largest(np.diff(reaction, 2, axis=0)) / dt**2
+    changing = (first / scale, second / scale) if scale > 0 else (0.0, 0.0)
+    return speed, acceleration, changing
+
+
+def softened(scene: Scene, rows: tuple[bool, ...], complete: bool) -> Mapping[str, float]:
+    """Errors by quantity of joints that give way as the judge's own do: by compliance, or, incomplete, by their lag."""
+    every = max(1, math.ceil(scene.spacing * DAMPING / 2))
+    found: Mapping[str, float] = dict.fromkeys(QUANTITY_NAMES, math.inf)
+    if scene.samples * every > MOST_STEPS:
+        return found
+    # Where this much softness loses the motion, a thousandth of it is tried, and a thousandth of that.
+    for less in (1.0, 1e3, 1e6):
+        soft = Softness(STIFFNESS, DAMPING, COMPLIANCE / less, rows, complete)
+        found = {name: value * less for name, value in errors(scene, 4, every, soft).items()}
+        if not complete or found["angle"] / less <= SATURATED:
+            break
+    return found
+
+
+def _judged(scene: Scene, order: int, every: int) -> Mapping[str, float]:
+    """The worse of both treatments of the joints, without one that lost the motion (an error above half a radian)."""
+    found = [errors(scene, order, every, project=project) for project in (False, True)]
+    kept = [told for told in found if told["angle"] <= SATURATED] or found
+    return _worse(kept[0], kept[-1])

@@ -1,0 +1,97 @@
+"""The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --crosscheck-report`, and the table at its end.
+
+A conftest takes it with `pytest_plugins = ["reports.gate.pytest_plugin"]`. Only the cells of selected tests are run.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports.gate.baseline import BadBaseline, Baseline, read_baseline
+from reports.gate.table import HEADER, changes, lines, plain, report
+from reports.gate.verdicts import Case
+from reports.gate.walk import Verdict, walk
+
+BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"
+VERDICTS = pytest.StashKey[dict[Case, Verdict]]()
+KNOWN = pytest.StashKey[Baseline]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("crosscheck", "engines against the analytic truth")
+    group.addoption("--scene", action="append", default=[], help="only this scene (repeatable)")
+    group.addoption("--engine", action="append", default=[], help='only this engine, or "engine variant" (repeatable)')
+    group.addoption("--baseline", type=Path, default=BASELINE, help="errors.csv of an earlier run to compare with")
+    group.addoption("--crosscheck-report", type=Path, metavar="FILE.md", help="write what was found as Markdown")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Bad files are one line, before anything is run."""
+    try:
+        config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
+    except BadBaseline as error:
+        raise pytest.UsageError(str(error)) from None
+    target = _option(config, "--crosscheck-report")
+    if target is not None and not target.resolve().parent.is_dir():
+        raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
+
+
+def _option(config: pytest.Config, name: str) -> Any:
+    """The value of an option of this file."""
+    return config.getoption(name)
+
+
+def case_of(item: pytest.Item) -> Case | None:
+    """The case that a test is about; None for any other test."""
+    found = getattr(item, "callspec", None)
+    value = found.params.get("case") if found is not None else None
+    return value if isinstance(value, Case) else None
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
+    scenes, engines = _option(config, "--scene"), _option(config, "--engine")
+    if not (scenes or engines):
+        return
+    kept = [item for item in items if _wanted(case_of(item), scenes, engines)]
+    if not kept:
+        known = sorted({case.scene.name for case in map(case_of, items) if case is not None})
+        raise pytest.UsageError(f"no case of --scene {scenes} --engine {engines}; scenes are {', '.join(known)}")
+    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+    items[:] = kept
+
+
+def _wanted(case: Case | None, scenes: list[str], engines: list[str]) -> bool:
+    """Whether a test is kept: those that are about no case are not, once some are asked for."""
+    if case is None:
+        return False
+    return (not scenes or case.scene.name in scenes) and (
+        not engines or case.engine.name in engines or case.method in engines
+    )
+
+
+@pytest.fixture(scope="session")
+def verdicts(request: pytest.FixtureRequest) -> dict[Case, Verdict]:
+    """What came of every case that is selected in this session; theirs alone are run."""
+    chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
+    found = walk(chosen, request.config.stash[KNOWN])
+    request.config.stash[VERDICTS] = found
+    return found
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    found = config.stash.get(VERDICTS, None)
+    if not found:
+        return
+    baseline = config.stash[KNOWN]
+    terminalreporter.section("crosscheck")
+    for line in (*plain(HEADER, lines(found.values())), *changes(found.values(), baseline)):
+        terminalreporter.line(line)
+    target = _option(config, "--crosscheck-report")
+    if target is not None:
+        target.write_text(report(found.values(), baseline), encoding="utf-8", newline="\n")
+        terminalreporter.line(f"written to {target}")

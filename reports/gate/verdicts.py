@@ -1,0 +1,78 @@
+"""The grid as a gate: every scene in every method, what is promised of it, and what its rows are checked against."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from engines import Engine
+from reference.scene import Scene
+from reports.gate.checks import Check, Deviation
+from reports.gate.order_check import order
+from reports.gate.prediction import Prediction, declared, kinds, prediction
+from reports.gate.promises import Promise, promised
+from reports.gate.theory import theory
+from reports.grid.cells import QUICK, Cell, sweep_cells
+from reports.grid.measure import Measurement
+from reports.pages.page import Page
+
+# The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
+# fast motion shows only below its time scale.
+STEPS = (*QUICK, 3 * QUICK[-1])
+COST_LIMIT = 0.5
+
+
+@dataclass(frozen=True)
+class Case:
+    """One scene in one method: what is promised, and which checks (by name) are known to be missed."""
+
+    scene: Scene
+    engine: Engine
+    promise: Promise
+    known: tuple[tuple[str, Deviation], ...] = ()
+
+    @property
+    def method(self) -> str:
+        return f"{self.engine.name} {self.engine.variant}"
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name}-{self.method}"
+
+    def cells(self) -> tuple[Cell, ...]:
+        """What is run of it, coarse steps first."""
+        return sweep_cells((self.scene,), (self.engine,), STEPS, COST_LIMIT)
+
+
+def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
+    """The grid. Raises KeyError for a method without a promise."""
+    return tuple(
+        _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
+    )
+
+
+def _case(page: Page, scene: Scene, engine: Engine) -> Case:
+    method = f"{engine.name} {engine.variant}"
+    known = {check: value for (name, own, check), value in page.known.items() if (name, own) == (scene.name, method)}
+    return Case(scene, engine, promised(page.orders, scene.name, method), tuple(known.items()))
+
+
+def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
+    """Scene -> the kinds of softness that these cases ask the judge for."""
+    by_scene: dict[Scene, list[Engine]] = {}
+    for case in chosen:
+        by_scene.setdefault(case.scene, []).append(case.engine)
+    return {scene: kinds(scene, engines) for scene, engines in by_scene.items()}
+
+
+def checks(case: Case, rows: Sequence[Measurement], judge: Prediction | None = None) -> tuple[Check, ...]:
+    """Theory at the finest step and the order over all, of a case's rows from coarse to fine; none if unsupported.
+
+    `judge`: the scene's prediction, worked out here unless it is given.
+    """
+    if judge is None:
+        judge = prediction(case.scene, kinds(case.scene, [case.engine]))
+    finest = rows[-1]
+    softness = declared(case.engine, case.scene.mechanism(), finest.step)
+    found = theory(judge, case.promise, softness, finest, rows[:-1])
+    return (*found, *order(case.promise, rows)) if found else ()

@@ -1,0 +1,93 @@
+"""Walking the grid for a gate: the selected cases' cells in the pool, the judge beside them, and what came of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from reference.scene import Scene
+from reports.gate.baseline import Baseline, identity
+from reports.gate.change import change, drift, moved
+from reports.gate.checks import Check, complaints, nearest
+from reports.gate.nudged import nudged_cells
+from reports.gate.prediction import Kind, Prediction, prediction
+from reports.gate.verdicts import Case, checks, predictions
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement
+from reports.grid.pool import Loss, run_cells, supervise
+
+# The judge's largest scenes take this long [s] on a busy machine.
+JUDGE_LIMIT = 600.0
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a case's rows were checked against: theory and order, the baseline's numbers, and cells it has not."""
+
+    case: Case
+    rows: tuple[Measurement, ...]
+    theory: tuple[Check, ...]
+    change: tuple[Check, ...] = ()
+    new: int = 0  # rows that the baseline lacks
+
+    @property
+    def theory_complaints(self) -> tuple[str, ...]:
+        """Sentences, none if all is as promised or known."""
+        return complaints(self.theory, dict(self.case.known))
+
+    @property
+    def change_complaints(self) -> tuple[str, ...]:
+        return tuple(str(check) for check in self.change if not check.passed)
+
+    @property
+    def worst(self) -> Check | None:
+        """The check of theory nearest to its bound; None where the engine can't build the scene."""
+        return nearest(self.theory) if self.theory else None
+
+
+def _predicted(item: tuple[Scene, frozenset[Kind]]) -> Prediction:
+    return prediction(*item)
+
+
+def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None) -> dict[Case, Verdict]:
+    """Run what these cases need, in as many processes as there are processors, and check it.
+
+    Raises RuntimeError when the judge itself fails.
+    """
+    chosen, workers = tuple(chosen), workers or os.cpu_count() or 1
+    found: dict[Scene, Prediction] = {}
+    for (scene, _), result, _ in supervise(_predicted, predictions(chosen).items(), JUDGE_LIMIT, workers):
+        if isinstance(result, Loss):
+            raise RuntimeError(f"the judge has no prediction for {scene.name}: {result.sentence}")
+        found[scene] = result
+    cells = {case: case.cells() for case in chosen}
+    rows = _measured((cell for own in cells.values() for cell in own), workers)
+    old = baseline.cells
+    doubtful = [
+        cell
+        for own in cells.values()
+        for cell in own
+        if baseline.same_versions and (key := identity(rows[cell])) in old and moved(rows[cell], old[key])
+    ]
+    nudged = _measured((other for cell in doubtful for other in nudged_cells(cell)), workers)
+    out: dict[Case, Verdict] = {}
+    for case, own in cells.items():
+        measured = tuple(rows[cell] for cell in own)
+        changed: list[Check] = []
+        for cell, row in zip(own, measured, strict=True):
+            before = old.get(identity(row))
+            if before is not None and baseline.same_versions:
+                others = [nudged[other] for other in nudged_cells(cell) if other in nudged]
+                changed += change(row, before, others)
+            elif before is not None:
+                changed += drift(row, before)
+        new = sum(identity(row) not in old for row in measured)
+        out[case] = Verdict(case, measured, checks(case, measured, found[case.scene]), tuple(changed), new)
+    return out
+
+
+def _measured(cells: Iterable[Cell], workers: int) -> Mapping[Cell, Measurement]:
+    by_key = {cell.key: cell for cell in cells}
+    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=False)}
+    return {cell: rows[key] for key, cell in by_key.items()}

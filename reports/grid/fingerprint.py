@@ -1,0 +1,183 @@
+"""What a result depends on: the source files and package versions behind a scene, an engine and the measuring.
+
+Stored results are reused only while these are unchanged. Files are followed through their imports, so a change in one
+engine's file makes the cells of that engine stale and no others. What is installed counts by its version; every other
+file counts by its bytes: ours, an engine's of somebody else in a checkout of his own, a test's.
+"""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import hashlib
+import platform
+import re
+import sys
+from collections.abc import Mapping
+from functools import cache
+from importlib import metadata
+from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES
+from importlib.util import resolve_name
+from pathlib import Path
+from typing import Any
+
+from reports.grid.requirements import with_required
+
+ROOT = Path(__file__).resolve().parents[2]
+OURS = ("reference", "engines", "reports")
+# What every row is made by: errors and outcomes, and the supervision that tells an abort from a time limit.
+MEASURING = ("reports.grid.measure", "reports.grid.pool")
+SUFFIXES = (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)
+PATH = re.compile(r"[\w-][\w./-]{0,200}")
+INSTALLED = {"site-packages", "dist-packages"}  # names of the folders in which a version stands for the files
+
+
+def _source(module: str) -> Path | None:
+    """The file whose bytes a module is, loaded or not; None for an attribute and for what is installed or built in."""
+    top = module.split(".")[0]
+    if top in OURS:
+        return _place(module)[0]
+    if top in sys.stdlib_module_names or _installed(_place(top)[0]):
+        return None
+    loaded = getattr(sys.modules.get(module), "__file__", None)
+    path = Path(loaded) if loaded is not None else _place(module)[0]
+    return None if _installed(path) else path
+
+
+def _installed(path: Path | None) -> bool:
+    return path is not None and not INSTALLED.isdisjoint(path.parts)
+
+
+@cache
+def _place(module: str) -> tuple[Path | None, tuple[Path, ...]]:
+    """(a module's file, if it has one; the folders in which its submodules are), found without importing it."""
+    parent, _, name = module.rpartition(".")
+    folders = _place(parent)[1] if parent else (ROOT,) if name in OURS else tuple(map(Path, sys.path))
+    for folder in folders:
+        for stem, inside in ((folder / name / "__init__", (folder / name,)), (folder / name, ())):
+            for suffix in SUFFIXES:
+                file = stem.with_name(stem.name + suffix)
+                if file.is_file():
+                    return file, inside
+    return None, tuple(folder / name for folder in folders if (folder / name).is_dir())
+
+
+@cache
+def _named_in(text: bytes, package: str) -> tuple[frozenset[str], frozenset[str]]:
+    """(every module that a source's imports could mean, at any depth of nesting; its strings that look like files).
+
+    `package` is what relative imports start from.
+    """
+    names: set[str] = set()
+    strings: set[str] = set()
+    for node in ast.walk(ast.parse(text)):
+        match node:
+            case ast.Import(names=aliases):
+                names.update(alias.name for alias in aliases)
+            case ast.ImportFrom(module=module, names=aliases, level=level):
+                origin = _absolute("." * level + (module or ""), package)
+                names.add(origin)
+                names.update(f"{origin}.{alias.name}" for alias in aliases)
+            case (
+                ast.Call(func=ast.Name(id="import_module" | "__import__"), args=[ast.Constant(value=str(name)), *_])
+                | ast.Call(func=ast.Attribute(attr="import_module"), args=[ast.Constant(value=str(name)), *_])
+            ):
+                names.add(_absolute(name, package))
+            case ast.Constant(value=str(word)) if PATH.fullmatch(word):
+                strings.add(word)
+    return frozenset(names), frozenset(strings)
+
+
+def _absolute(name: str, package: str) -> str:
+    """A module's whole name, of a relative import too; without its dots where they lead out of all packages."""
+    try:
+        return resolve_name(name, package)
+    except ImportError:
+        return name.lstrip(".")
+
+
+def _data(folder: Path, strings: frozenset[str]) -> set[Path]:
+    """The files beside a source that its strings name, and those in a folder beside it that they name too."""
+    files = [name for name in strings if Path(name).suffix not in ("", ".py")]
+    folders = [folder, *(folder / name for name in strings if files and (folder / name).is_dir())]
+    return {place / name for place in folders for name in files if (place / name).is_file()}
+
+
+@cache
+def _closure(module: str) -> tuple[frozenset[tuple[str, Path]], frozenset[str]]:
+    """(files by the names of their modules, other packages' top-level names) behind a module, itself included.
+
+    Importing a module runs the packages that it is in first, so they are behind it too.
+    """
+    files: set[tuple[str, Path]] = set()
+    packages: set[str] = set()
+    seen: set[str] = set()
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        if not name or name in seen:
+            continue
+        seen.add(name)
+        parent = name.rpartition(".")[0]
+        waiting.append(parent)
+        path = _source(name)
+        if path is None:
+            packages.add(name.split(".")[0])
+            continue
+        files.add((name, path))
+        if path.suffix == ".py":
+            imported, strings = _named_in(path.read_bytes(), name if path.name == "__init__.py" else parent)
+            waiting.extend(imported)
+            files.update((f"{name}: {file.relative_to(path.parent)}", file) for file in _data(path.parent, strings))
+    followed = {name.split(".")[0] for name, _ in files}
+    return frozenset(files), frozenset(packages - followed - set(sys.stdlib_module_names))
+
+
+def modules_behind(*values: Any) -> set[str]:
+    """The modules of these values' classes, of functions and classes among them, and of all that they hold.
+
+    What a dataclass holds stands in its fields: an engine that wraps another, a setting that is an object.
+    """
+    found: set[str] = set()
+    waiting = list(values)
+    while waiting:
+        value = waiting.pop()
+        classes = value.__mro__ if isinstance(value, type) else type(value).__mro__
+        found.update(base.__module__ for base in classes)
+        if callable(value) and isinstance(getattr(value, "__module__", None), str):
+            found.add(value.__module__)
+        if isinstance(value, Mapping):
+            waiting.extend((*value.keys(), *value.values()))
+        elif isinstance(value, (tuple, list, set, frozenset)):
+            waiting.extend(value)
+        elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+            waiting.extend(getattr(value, field.name) for field in dataclasses.fields(value))
+    return found
+
+
+@cache
+def _distributions() -> dict[str, list[str]]:
+    return dict(metadata.packages_distributions())
+
+
+@cache
+def _digest(modules: frozenset[str]) -> str:
+    files: set[tuple[str, Path]] = set()
+    packages: set[str] = set()
+    for module in modules:
+        own_files, own_packages = _closure(module)
+        files |= own_files
+        packages |= own_packages
+    digest = hashlib.sha256(f"Python=={platform.python_version()}\0".encode())
+    # By name, not by place: a checkout in another folder has the same results.
+    for name, path in sorted(files):
+        digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+    distributions = {name for package in packages for name in _distributions().get(package, ())}
+    for distribution in sorted(with_required(distributions)):
+        digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
+    return digest.hexdigest()
+
+
+def fingerprint(*values: Any) -> str:
+    """A digest of the sources and package versions behind these scenes and engines, and behind the measuring."""
+    return _digest(frozenset({*modules_behind(*values), *MEASURING}))

@@ -1,0 +1,248 @@
+"""Results kept as they arrive, in one SQLite file: a run that was killed goes on where it stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import sqlite3
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager, suppress
+from dataclasses import fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from reports.grid.cells import Cell
+from reports.grid.ending import FileTrouble
+from reports.grid.files import folder_for
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
+
+SCHEMA = 1  # the file's `user_version`; 0 in a new one, and in those of the first versions, which have the same table
+COLUMNS = ("key", "row")
+BESIDE = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
+WAIT = 30.0  # s for another process that is writing
+ELSEWHERE = "give another folder with --results"
+
+# SQLite's own codes (the low byte), with what to do.
+REMEDIES = {
+    sqlite3.SQLITE_BUSY: "another process is using it; wait for its end, or " + ELSEWHERE,
+    sqlite3.SQLITE_LOCKED: "another process is using it; wait for its end, or " + ELSEWHERE,
+    sqlite3.SQLITE_FULL: "what it holds is kept; make room on the disk, then run again",
+    sqlite3.SQLITE_IOERR: "what it holds is kept; see whether the disk is full or failing, then run again",
+    sqlite3.SQLITE_READONLY: "it can't be written; " + ELSEWHERE,
+    sqlite3.SQLITE_CANTOPEN: "it must be a file that can be read and written; " + ELSEWHERE,
+    sqlite3.SQLITE_PERM: "it must be a file that can be read and written; " + ELSEWHERE,
+}
+DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+TYPES = {field.name: {"str": str, "int": int, "float": (int, float)}[str(field.type)] for field in fields(Measurement)}
+
+
+class Damaged(Exception):
+    """What shows that a store is damaged."""
+
+
+class Store:
+    """Measurements by the key of their cell. A context manager; every `put` is on disk when it returns.
+
+    A damaged file is put aside, with what lies beside it, and its readable rows are taken over into a new one; `notice`
+    says so (empty otherwise). Raises FileTrouble, here and in every method, where the file can't be used.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.notice = ""
+        folder_for(path.parent, ELSEWHERE)
+        with _sentences(path):
+            try:
+                self._connection = _connected(path)
+            except Damaged as why:
+                aside = _put_aside(path)
+                self._connection = _connected(path)
+                rows = _readable_rows(aside)
+                with self._connection:
+                    self._connection.executemany("insert or replace into results values (?, ?)", rows)
+                self.notice = (
+                    f"{path} is damaged ({why}): it is now {aside.name}, {len(rows)} of its rows could be read and are "
+                    "kept, the others run again"
+                )
+
+    @classmethod
+    @contextmanager
+    def read(cls, path: Path) -> Iterator[Store]:
+        """A store that is only read, where there is one: from a copy, so that nothing is written beside it.
+
+        Raises FileTrouble where there is none or it can't be read.
+        """
+        with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
+            copy = Path(folder) / "copy.sqlite"
+            store = cls.__new__(cls)
+            store.path, store.notice = path, ""
+            with _sentences(path):
+                if path.is_dir():
+                    raise FileTrouble(f"{path} is a folder, and should be a file; {ELSEWHERE}")
+                _copy(path, copy)
+                try:
+                    store._connection = _connected(copy)
+                except Damaged as why:
+                    raise FileTrouble(f"{path} is damaged ({why}): crosscheck run puts it aside and goes on") from None
+            with store:
+                yield store
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        # Closing moves rows into the main file; should the disk be full, they stay beside it, where they are found.
+        with suppress(sqlite3.Error):
+            self._connection.close()
+
+    def put(self, row: Measurement) -> None:
+        """Store a row, replacing an older one of the same cell."""
+        text = _text_of(row)
+        with _sentences(self.path), self._connection:
+            self._connection.execute("insert or replace into results values (?, ?)", (row.key, text))
+
+    def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
+        """The stored rows of these cells.
+
+        Cells that were never run, whose sources changed since, or whose row can't be read are left out.
+        """
+        found: dict[Cell, Measurement] = {}
+        with _sentences(self.path):
+            for cell in cells:
+                answer = self._connection.execute("select row from results where key = ?", (cell.key,)).fetchone()
+                row = _row_of(cell.key, answer[0]) if answer else None
+                if row is not None:
+                    found[cell] = row
+        return found
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode(errors="replace")).hexdigest()[:16]
+
+
+def _text_of(row: Measurement) -> str:
+    """The row as it is stored: a digest, so that a row out of a damaged file can be trusted, and JSON."""
+    text = json.dumps(row.as_dict())
+    return f"{_digest(text)} {text}"
+
+
+def _row_of(key: str, stored: Any) -> Measurement | None:
+    """The row of this key; None unless it is whole and has the fields that rows have now."""
+    digest, _, text = str(stored).partition(" ")
+    if digest != _digest(text):
+        return None
+    try:
+        values = json.loads(text)
+        whole = (
+            values["key"] == key
+            and values.keys() == TYPES.keys()
+            and all(isinstance(value, TYPES[name]) for name, value in values.items())
+        )
+        return Measurement(**{**values, "outcome": Outcome(values["outcome"])}) if whole else None
+    except (ValueError, TypeError, KeyError):
+        return None
+
+
+@contextmanager
+def _sentences(path: Path) -> Iterator[None]:
+    """What goes wrong with this file inside comes out as a FileTrouble with what to do."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        remedy = REMEDIES.get(code, ELSEWHERE)
+        if code in DAMAGE:
+            remedy = "crosscheck run puts it aside and goes on"
+        raise FileTrouble(f"{path}: {error}: {remedy}") from None
+    except OSError as error:
+        raise FileTrouble(f"{path}: {error.strerror or error}: {ELSEWHERE}") from None
+
+
+def _connected(path: Path) -> sqlite3.Connection:
+    """A connection to a store, made if there is none. Raises Damaged, FileTrouble and what SQLite raises."""
+    beside = path.with_name(path.name + "-wal")
+    if path.is_file() and not path.stat().st_size and beside.is_file() and beside.stat().st_size:
+        raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete them
+    connection = sqlite3.connect(path, timeout=WAIT)
+    connection.text_factory = _decoded
+    try:
+        version = connection.execute("pragma user_version").fetchone()[0]
+        tables = {name for (name,) in connection.execute("select name from sqlite_master where type = 'table'")}
+        columns = tuple(line[1] for line in connection.execute("pragma table_info(results)"))
+        if version > SCHEMA:
+            raise FileTrouble(
+                f"{path} was written by a newer version of this program (schema {version}, known here: {SCHEMA}); "
+                f"update it, or {ELSEWHERE}"
+            )
+        if tables and (tables != {"results"} or columns != COLUMNS):
+            raise FileTrouble(f"{path} is an SQLite file of another program, with other tables; {ELSEWHERE}")
+        wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
+        if wrong != "ok":
+            raise Damaged(" ".join(wrong.split()))
+        if version < SCHEMA or not tables:
+            connection.execute("pragma journal_mode=wal")
+            connection.execute("create table if not exists results (key text primary key, row text not null)")
+            connection.execute(f"pragma user_version={SCHEMA}")
+    except BaseException as error:
+        connection.close()
+        if isinstance(error, sqlite3.DatabaseError) and getattr(error, "sqlite_errorcode", 0) & 0xFF in DAMAGE:
+            raise Damaged(str(error)) from None
+        raise
+    return connection
+
+
+def _decoded(raw: bytes) -> str:
+    """A text of the file. One that is damaged must not raise: its digest tells that it is."""
+    return raw.decode(errors="replace")
+
+
+def _copy(path: Path, copy: Path) -> None:
+    """Copy a store and the rows beside it, as they were at one moment. Raises FileTrouble, and OSError."""
+    for _ in range(100):
+        before = path.stat()
+        shutil.copyfile(path, copy)
+        # Rows are only ever added to what lies beside, so the part that is complete counts; when they move into the
+        # main file while it is being copied, its time or size changes.
+        with suppress(FileNotFoundError):
+            shutil.copyfile(f"{path}-wal", f"{copy}-wal")
+        after = path.stat()
+        if (before.st_mtime_ns, before.st_size) == (after.st_mtime_ns, after.st_size):
+            return
+    raise FileTrouble(f"{path} changes all the time; read it when the run that writes it has ended")
+
+
+def _put_aside(path: Path) -> Path:
+    """Give a file, and what lies beside it, a name that is free; the new name."""
+    number = 1
+    while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *BESIDE)):
+        number += 1
+    aside = path.with_name(f"{path.name}.damaged-{number}")
+    # The main file last: were it gone first and this ended by a kill, SQLite would delete the rows that lie beside.
+    for end in (*BESIDE, ""):
+        with suppress(FileNotFoundError):
+            path.with_name(path.name + end).rename(f"{aside}{end}")
+    return aside
+
+
+def _readable_rows(aside: Path) -> list[tuple[str, str]]:
+    """(key, text) of every whole row that SQLite still finds in a damaged file, which is left as it is."""
+    found: dict[str, str] = {}
+    with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
+        copy = Path(folder) / "copy.sqlite"
+        _copy(aside, copy)
+        with closing(sqlite3.connect(copy)) as connection:
+            connection.text_factory = _decoded
+            connection.execute("pragma writable_schema=on")  # else a file that is too short is not read at all
+            # From both ends, since reading stops where the damage is.
+            for order in ("", " desc"):
+                with suppress(sqlite3.Error):
+                    for key, text in connection.execute(f"select key, row from results order by rowid{order}"):
+                        if _row_of(key, text) is not None:
+                            found[key] = text
+    return list(found.items())

@@ -1,0 +1,103 @@
+"""A worker as its parent sees it: a process, the connection to it, the job that it was given."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from typing import Any
+
+from reports.grid.worker import cpu_time, work
+
+PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
+
+
+@dataclass
+class Job:
+    """An item to be worked on; `earlier`: how its first worker ended, empty if it was not tried before."""
+
+    item: Any
+    earlier: str = ""
+    earlier_outside: bool = False
+
+
+@dataclass
+class Worker:
+    process: BaseProcess
+    connection: Connection
+    ready: bool = False
+    used: bool = False
+    job: Job | None = None
+    awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
+    cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
+
+    def used_cpu(self) -> float:
+        """CPU seconds that its job has used so far; zero where the system does not tell."""
+        now = cpu_time(self.process.pid or 0)
+        return 0.0 if now is None or self.cpu is None else now - self.cpu
+
+    def exit_code(self) -> int | None:
+        """Of a worker whose connection has ended; None if nobody knows how the process ended."""
+        self.process.join(PATIENCE)
+        return self.process.exitcode
+
+    def stop(self) -> None:
+        """End the process, whatever it does."""
+        self.process.kill()
+        self.process.join(PATIENCE)
+        self.connection.close()
+        if self.process.exitcode is not None:
+            self.process.close()
+
+
+def start_worker(context: Any, folder: Path, limit: float, wall: float) -> Worker:
+    """Start a process that runs `work`. Raises OSError or EOFError if none can be started."""
+    ours, theirs = context.Pipe()
+    process = context.Process(target=work, args=(theirs, str(folder), limit, wall), daemon=True)
+    # About a resource tracker killed in this moment.
+    with theirs, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            process.start()
+        except BaseException:
+            ours.close()
+            raise
+    return Worker(process, ours)
+
+
+@contextlib.contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
+
+    Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it.
+    # Starting one ends the holding of Ctrl-C, so it comes first.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def last_words(folder: Path, pid: int | None) -> str:
+    """The line in which native code said why it aborts, if it did."""
+    with contextlib.suppress(OSError):
+        text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        telling = [line for line in lines if "abort" in line.lower() or "error" in line.lower()]
+        for line in (telling or lines)[:1]:
+            return line[:200]
+    return ""

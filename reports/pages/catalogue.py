@@ -1,0 +1,30 @@
+"""PAGES: the one list. A new page is its own module and template, and one line here."""
+
+from __future__ import annotations
+
+from reports.pages.centrodes import page as centrodes
+from reports.pages.errata import page as errata
+from reports.pages.four_bar import page as four_bar
+from reports.pages.n_four_bar import page as n_four_bar
+from reports.pages.page import Page
+from reports.pages.pendulum import page as pendulum
+from reports.pages.person import page as person
+from reports.pages.rolling import page as rolling
+from reports.pages.scaling import page as scaling
+from reports.pages.skate import page as skate
+from reports.pages.slider_crank import page as slider_crank
+from reports.pages.wheels import page as wheels
+
+PAGES: tuple[Page, ...] = (
+    four_bar.PAGE,
+    skate.PAGE,
+    wheels.PAGE,
+    pendulum.PAGE,
+    slider_crank.PAGE,
+    n_four_bar.PAGE,
+    person.PAGE,
+    scaling.PAGE,
+    rolling.PAGE,
+    centrodes.PAGE,
+    errata.PAGE,
+)

@@ -1,0 +1,184 @@
+"""Where methods fail on the four-bar: experiments with a statement of what should happen, and stability maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
+from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scene import Scene
+from reports.grid.cells import Cell
+from reports.pages.page import Failure, Observation, StabilityMap
+from reports.text.tables import number
+
+PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+RATE_TOLERANCE = 1e-3  # what solve_ivp takes when nobody says otherwise
+
+
+def _cells(
+    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
+) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
+
+
+def rates_drift() -> list[Observation]:
+    """The chapter's pseudocode at several tolerances over 1 and 100 revolutions, against the closed form."""
+    scene = DrivenFourBar()
+    found = []
+    for revolutions in (1, 100):
+        t = np.linspace(0, revolutions * scene.duration, 50 * revolutions + 1)
+        beta, _ = scene.four_bar.angles(scene.start + scene.rate * t)
+        for rtol in (RATE_TOLERANCE, 1e-6, 1e-9):
+            run = scene.four_bar.integrate_rates(t, scene.rate, scene.start, rtol=rtol, atol=rtol * 1e-3)
+            alive = np.isfinite(run.beta)
+            error = float(np.max(np.abs(run.beta - beta)[alive]))
+            turns = "one revolution" if revolutions == 1 else f"{revolutions} revolutions"
+            stopped = f", {run.stopped}" if run.stopped else ""
+            found.append(
+                Observation(
+                    "RK45 on the printed rates",
+                    f"{turns}, rtol {number(rtol, 1)}",
+                    f"beta off by {number(error)} rad after {run.evaluations} evaluations{stopped}",
+                )
+            )
+    return found
+
+
+def _refusal() -> list[Observation]:
+    scene = OverdrivenFourBar()
+    try:
+        scene.motion([scene.duration])
+    except ValueError as sentence:
+        return [Observation("the reference", f"{scene.duration:.3g} s", f"refuses: {sentence}")]
+    raise AssertionError("a crank was driven beyond its limit and the reference went along")
+
+
+SWEEPS = tuple(
+    replace(pymunk.TUNED, variant=f"tuned, {count} sweep{'s' if count > 1 else ''}", iterations=count, error_bias=0.0)
+    for count in (1, 2, 5, 20)
+)
+
+# The drive by overwriting with the tuned loop, beside `mujoco.DRIVES`, which has it with the loop as shipped.
+OVERWRITTEN = replace(mujoco.TUNED, variant="tuned, overwritten crank", drive="overwrite")
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="Rates without feedback",
+        expected="The angles follow the closed form; only the rates were integrated, so nothing closes the loop again.",
+        observations=rates_drift,
+        remark=(
+            "A linkage is a position constraint. Integrating (18.70) and (18.71) keeps every error that was ever "
+            "made, and since the crank goes round, the same errors are made again in every revolution. A smaller "
+            "tolerance only delays the drift; a closed form, or a projection onto closed positions, removes it."
+        ),
+    ),
+    Failure(
+        title="A parallelogram through its change points",
+        expected=(
+            "Twice a revolution all four bars lie in line. There the loop closes in two ways, parallel and crossed, "
+            "the rows lose rank, and only the bars' inertia says which way the motion goes on: parallel."
+        ),
+        cells=_cells(Parallelogram(), ALL[:-1], (1, 10, 100)) + _cells(Parallelogram(), ALL[-1:], (1, 10)),
+        remark=(
+            "Methods differ here. pymunk as shipped and exact multipliers get through at each step; the error of the "
+            "first falls tenfold from step to step. MuJoCo as shipped gets through as well, and its softness leaves "
+            "the same error at each step. Only pymunk tuned gets worse with every smaller step: the closer a sample "
+            "comes to the singular position, the larger the forces that are asked for, and it closes all of the gap "
+            "at once. MuJoCo tuned and extended start anew at one step and are accurate at the others: what counts "
+            "is where the samples fall. pymunk extended tears at each step, as its extrapolation needs an error that "
+            "is smooth in the step."
+        ),
+    ),
+    Failure(
+        title="A crank driven into its limit",
+        expected=(
+            f"The bars of this triple-rocker can follow the crank for {OverdrivenFourBar().stopping_time:.4f} s. After "
+            "that no position closes the loop; the reference refuses."
+        ),
+        cells=_cells(OverdrivenFourBar(), ALL[:-1], (1, 10, 100)) + _cells(OverdrivenFourBar(), ALL[-1:], (1, 10)),
+        observations=_refusal,
+        remark=(
+            "No engine says that the task is impossible. The loop is torn, usually without a warning, or the engine "
+            "starts anew by itself. Watch the largest gap over the whole run: a torn loop may close again, on either "
+            "branch."
+        ),
+    ),
+    Failure(
+        title="Five ways to drive a crank",
+        expected="The crank turns at 10 rad/s exactly, and the other bars follow: there is nothing to be simulated.",
+        cells=_cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),
+        remark=(
+            "Overwriting the crank's state after every step is the common trick. The solver still believes that the "
+            "loop's forces accelerate the crank, so it takes wrong forces for the loop. With the loop as shipped the "
+            "error does not fall with the step. With the tuned loop, whose spring is tied to the step, it falls, from "
+            "a torn loop at the largest step, but stays far larger than with a crank that nothing can accelerate. A "
+            "servo lags by torque over gain, at every step. A kinematic body, or an armature that nothing can "
+            "accelerate, is what a prescribed rate means."
+        ),
+    ),
+    Failure(
+        title="Steps far too large",
+        expected=(
+            "At 10 rad/s a step of 0.1 s is a radian of the crank: no method is accurate here; an engine could warn."
+        ),
+        cells=tuple(cell for samples in (20, 10, 5) for cell in _cells(SpinningFourBar(), ALL, (1,), samples)),
+        remark=(
+            "A finite number is not an answer: about half of these runs end with finite numbers, on a loop that is "
+            "torn, and no engine says so."
+        ),
+    ),
+    Failure(
+        title="Too few iterations",
+        expected="Sweeps over the joints go on until they agree; what is left open is closed in the next step.",
+        cells=_cells(SpinningFourBar(), SWEEPS, (1, 10, 100)),
+        remark=(
+            "With the whole gap closed in every step, the correction's speed is the gap over the step, so that what "
+            "the sweeps leave undone grows as the step shrinks: two sweeps are enough at 1e-3 s and tear the loop at "
+            "1e-4 s."
+        ),
+    ),
+    Failure(
+        title="Worse as the step shrinks",
+        expected="Each step a tenth of the last: an error of first order should fall tenfold every time.",
+        cells=_cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
+        remark=(
+            "MuJoCo as shipped has two errors here: Euler's, which falls with the step, and that of a soft loop, "
+            "which does not. At 1e-3 s they happen to cancel, so that a user who refines the step sees the answer "
+            "become worse. The smaller error was luck; the plateau is the model."
+        ),
+    ),
+)
+
+RATIOS = (1e-4, 1e-2, 1.0, 1e2, 1e4)
+MAP_STEPS = (1, 3, 10, 30, 100)
+
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="stability",
+        title="How heavy may the coupler be, at which step?",
+        parameter="mass of the coupler per metre, relative to the other bars'",
+        cells=tuple(
+            (ratio, Cell(FreeFourBar(density=(1.0, ratio, 1.0)), engine, every, "map"))
+            for engine in PUBLIC
+            for ratio in RATIOS
+            for every in MAP_STEPS
+        ),
+        remark=(
+            "A bar that is much lighter than its neighbours is what sweeps over the joints find hardest: each joint "
+            "undoes what the last one did, and with the whole gap closed in every step the error feeds on itself, at "
+            "the smallest step too. pymunk as shipped, which closes little of the gap in a step, gets through "
+            "everywhere once the step is small enough. MuJoCo as shipped tears at the lightest and the heaviest "
+            "coupler, whatever the step: its loop's spring is too soft for them. MuJoCo tuned, with reduced "
+            "coordinates, a stiff spring and one exact solve a step, gets through but for one case at the largest "
+            "step."
+        ),
+    ),
+)

@@ -1,0 +1,74 @@
+"""The four-bar's page: its scenes, its failure experiments, and the nine configurations of Fig. 18.66."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from engines import mujoco, pymunk
+from engines.registry import ENGINES
+from reference.four_bar.scenes import DrivenFourBar
+from reference.scenes import SCENES
+from reports.charts import drawings
+from reports.charts.theme import svg
+from reports.grid.cells import Cell
+from reports.pages.four_bar.expectations import KNOWN, ORDERS
+from reports.pages.four_bar.experiments import FAILURES, MAPS
+from reports.pages.page import Material, Page
+from reports.text.lookups import told
+
+NAME = "four_bar"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+# The nine poses of Fig. 18.66 stand at the ends of eight equal parts: the last is the first again.
+PARTS = 8
+SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
+OVERLAID = {"pymunk default": ("pymunk", "--"), "mujoco default": ("mujoco", ":")}
+
+
+def figures(material: Material) -> dict[str, str]:
+    """The nine configurations, with each engine as shipped overlaid where it differs visibly."""
+    scene = DrivenFourBar()
+    cells = {
+        f"{engine.name} {engine.variant}": Cell(scene, engine, 1, samples=PARTS * SAMPLES_A_PART)
+        for engine in ENGINES
+        if f"{engine.name} {engine.variant}" in OVERLAID
+    }
+    found = material.trajectories(tuple(cells.values()))
+    truth = scene.motion(np.arange(PARTS + 1) * scene.duration / PARTS)
+    others = {
+        f"{name}, step {cell.step:.2g} s": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
+        for name, cell in cells.items()
+        if cell in found
+    }
+    titles = [f"t{i} = {t:.3f} s" for i, t in enumerate(truth.t)]
+    figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others)
+    return {"configurations": svg(figure, "The nine configurations of Fig. 18.66, from the closed form")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
+    soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
+    return {
+        **told(material, SCENES_HERE),
+        "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
+        "stiff_share": 1 / hard[0] - 1,
+        "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
+    }
+
+
+PAGE = Page(
+    name=NAME,
+    title="The four-bar linkage",
+    lesson="Three bars and four pins: the loop that the chapter closes exactly and an engine closes by forces.",
+    scenes=SCENES_HERE,
+    engines=ENGINES,
+    failures=FAILURES,
+    maps=MAPS,
+    figures=figures,
+    words=words,
+    orders=ORDERS,
+    known=KNOWN,
+)

@@ -1,0 +1,112 @@
+"""Where methods fail on the N-four-bar: at its singular positions, as shipped and hardened, and with more loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from reference.n_four_bar import NFourBar
+from reference.scene import Scene
+from reports.grid.cells import Cell
+from reports.pages.page import Failure, Observation, StabilityMap
+from reports.text.tables import number
+
+PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
+
+
+def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
+
+
+SOFT = _cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # one singular position, not yet the second
+
+
+def forces_without_a_limit() -> list[Observation]:
+    """How the largest reaction grows towards a singular position, with how little the loops are still open."""
+    scene = NFourBar()
+    first = scene.singular_times(5.0)[0]
+    found = []
+    for before in (1e-1, 1e-2, 1e-3, 1e-4):
+        reaction = abs(scene.motion([first - before]).reaction).max()
+        found.append(
+            Observation("the reference", f"{number(before, 1)} s before", f"largest reaction {reaction:.3g} N")
+        )
+    return found
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="Through the singular position, as shipped",
+        expected=(
+            f"The cranks first lie along the couplers after {NFourBar().singular_times(5.0)[0]:.4f} s. All of them go "
+            "on together; that is a pendulum's motion, known exactly. The branch is told as an outcome of its own."
+        ),
+        cells=SOFT,
+        remark=(
+            "The loops are soft by a time constant of 0.02 s whatever the step, so that near the line each crank "
+            "finds its own way, and the error does not fall with the step, nor with a better integrator. A user with "
+            "an inaccurate closed loop was told that the defaults are fairly soft and to make the equality "
+            "constraints stiffer ([mujoco#2172](https://github.com/google-deepmind/mujoco/issues/2172)). Another "
+            "reports a loop that breaks at a step of 5e-4 s with a thousand iterations "
+            "([mujoco#2698](https://github.com/google-deepmind/mujoco/issues/2698)). Neither speaks of a singular "
+            "position, and both are older than MuJoCo 3.7, whose loops have the velocity term that was missing before "
+            "([changelog](https://mujoco.readthedocs.io/en/stable/changelog.html))."
+        ),
+    ),
+    Failure(
+        title="Forces that have no limit",
+        expected=(
+            "An inner crank carries twice the coupler's weight of an outer one, so their own balances disagree, and "
+            "the forces along the couplers that keep them together grow like 1 / cos of the angle. The motion stays "
+            "smooth: the truth passes the line at finite speed."
+        ),
+        cells=_cells(ONCE, (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED), (1, 10, 100)),
+        observations=forces_without_a_limit,
+        remark=(
+            "A smaller step brings a sample closer to the line and asks for a larger force. Of these six methods only "
+            "pymunk tuned can't bear that: it passes at 1e-2 s, and not at the smaller steps. The errors of pymunk as "
+            "shipped and of MuJoCo tuned fall with the step, that of MuJoCo as shipped stays, and that of MuJoCo "
+            "extended is small throughout but has no order. Extrapolation (pymunk extended) needs an error that is "
+            "smooth in the step and finds one that isn't: it makes a wrong answer of several usable ones. In another "
+            "library a closed loop was seen to drift exponentially until it was NaN ([RigidBodyDynamics.jl#480]"
+            "(https://github.com/JuliaRobotics/RigidBodyDynamics.jl/issues/480)); nothing there says that a singular "
+            "position was the cause."
+        ),
+    ),
+    Failure(
+        title="Exact multipliers at a singular position",
+        expected="The rows lose rank there; between samples a step may land anywhere near it.",
+        cells=_cells(
+            ONCE,
+            (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")),
+            (1, 3, 10),
+        ),
+        remark=(
+            "At fixed steps of order 4 a method steps over the instant and keeps its order, since a stage seldom falls "
+            "on it. An integrator with error control would be stopped by the forces and crawl: so the truth is never "
+            "taken from one here, but from the symmetric motion's own equation."
+        ),
+    ),
+)
+
+LOOPS = (1, 2, 5, 10, 20)
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="loops",
+        title="How many loops, at which step, through one singular position?",
+        parameter="loops",
+        cells=tuple(
+            (float(loops), Cell(NFourBar(loops=loops, duration=1.2, horizon=1.2), engine, every, "map", samples=24))
+            for engine in (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
+            for loops in LOOPS
+            for every in (5, 15, 50)
+        ),
+        remark="With a single loop the line is a parallelogram's change point; each loop more adds a freedom to it.",
+    ),
+)

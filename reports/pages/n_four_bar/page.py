@@ -1,0 +1,74 @@
+"""The N-four-bar's page: a chain whose one freedom becomes N + 1 twice a turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from engines.registry import VARIANTS
+from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes import SCENES
+from reports.charts.stroboscope import Strip, stroboscope
+from reports.charts.theme import svg
+from reports.grid.outcomes import Outcome
+from reports.pages.chain_orders import CLOSED, from_rest
+from reports.pages.n_four_bar.expectations import KNOWN
+from reports.pages.n_four_bar.experiments import FAILURES, MAPS, SOFT
+from reports.pages.page import Material, Page
+from reports.text.lookups import told
+from reports.text.unmeasured import UNMEASURED
+
+NAME = "n_four_bar"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Stroboscopic pictures of the truth: two loops and ten from upright, and two through the singular position."""
+    two, ten = NFourBar(), TenFourBars()
+    line = float(two.singular_times(5.0)[0])
+    strips = (
+        Strip(two, "Two loops", 7, end=0.9),
+        Strip(two, "Through the singular position", 7, start=line - 0.15, end=line + 0.15),
+        Strip(ten, "Ten loops", 6, end=1.0),
+    )
+    return {"stroboscope": svg(stroboscope(strips), "N four-bars in motion")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
+    soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
+    """
+    lookups = told(material, SCENES_HERE)
+
+    def failed(scene: str, engine: str, variant: str) -> Any:
+        outcomes = lookups["ended"](scene, engine, variant)
+        if not outcomes:
+            return UNMEASURED
+        wrong = all(Outcome(outcome).wrong for outcome in outcomes)
+        return "stays on the branch" if wrong else f"can be compared: {', '.join(outcomes)}"
+
+    rows = material.of(SOFT)
+    angles = [row.angle for row in rows if Outcome(row.outcome).wrong and math.isfinite(row.angle)]
+    whole = rows and len(angles) == len(rows)
+    soft = {"count": len(rows), "least": min(angles), "most": max(angles)} if whole else UNMEASURED
+    exact = {
+        scene.name: {"period": scene.period, "singular": [float(t) for t in scene.singular_times(scene.period)]}
+        for scene in (NFourBar(), TenFourBars(), FortyFourBars())
+    }
+    return {**lookups, "failed": failed, "soft": soft, "exact": exact}
+
+
+PAGE = Page(
+    name=NAME,
+    title="N four-bars side by side",
+    lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: there an engine may go on wrongly.",
+    scenes=SCENES_HERE,
+    engines=VARIANTS,
+    failures=FAILURES,
+    maps=MAPS,
+    figures=figures,
+    words=words,
+    orders={**CLOSED, **from_rest(scene.name for scene in SCENES_HERE)},
+    known=KNOWN,
+)

@@ -1,0 +1,128 @@
+"""What a page is made of, and what it is given: the parts that every mechanism's page shares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from engines import Engine
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.gate.checks import Deviation
+from reports.gate.promises import Promises
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement
+
+
+@dataclass(frozen=True)
+class Observation:
+    """The outcome of something that is not an engine (a method of the reference, say): printed beside the cells'."""
+
+    method: str
+    setting: str
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An experiment in which methods are expected to fail.
+
+    `expected` says what the reference says should happen. `cells` have the purpose "failure". `observations` is called
+    when the page is written, for methods that are not engines. `columns` are the quantities (`reports.grid.quantities`)
+    whose largest errors are told of every cell; without any, a grid of methods and steps tells the angle's.
+    """
+
+    title: str
+    expected: str
+    cells: tuple[Cell, ...] = ()
+    observations: Callable[[], Sequence[Observation]] | None = None
+    remark: str = ""  # what the outcomes teach
+    columns: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StabilityMap:
+    """Steps against a parameter: `cells` are (value of the parameter, cell), cells with the purpose "map"."""
+
+    name: str  # of the picture's file, with the page's name before it
+    title: str
+    parameter: str
+    cells: tuple[tuple[float, Cell], ...]
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Material:
+    """What there is to write a page from: the stored rows of its cells, and trajectories made on demand."""
+
+    rows: Mapping[Cell, Measurement]
+    trajectories: Callable[[Sequence[Cell]], Mapping[Cell, Trajectory]] = lambda cells: {}
+
+    def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The sweep rows of some scenes, in the order of the grid."""
+        names = {scene.name for scene in scenes}
+        return [row for cell, row in self.rows.items() if cell.purpose == "sweep" and cell.scene.name in names]
+
+    def of(self, cells: Iterable[Cell]) -> list[Measurement]:
+        """The rows of these cells, those that were run."""
+        return [self.rows[cell] for cell in cells if cell in self.rows]
+
+
+FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
+
+
+def usual_series(row: Measurement) -> bool:
+    """The methods that charts show as series: each engine's three variants, and ideal constraints at order 1 and 4."""
+    return row.variant in FEATURED
+
+
+def everything(scene: Scene, engine: Engine) -> bool:
+    return True
+
+
+def no_figures(material: Material) -> dict[str, str]:
+    return {}
+
+
+def no_words(material: Material) -> dict[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Page:
+    """One mechanism's page: `name`.md in the results, from the template of the same name beside this file.
+
+    figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
+    template's own variables, numbers taken from the rows.
+    compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
+    quantity: the error by which methods are compared and charted, a name in `reports.grid.quantities`.
+    orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
+    method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
+    """
+
+    name: str
+    title: str
+    lesson: str  # one sentence for the index
+    scenes: tuple[Scene, ...]
+    engines: tuple[Engine, ...]
+    failures: tuple[Failure, ...] = ()
+    maps: tuple[StabilityMap, ...] = ()
+    compared: Callable[[Scene, Engine], bool] = everything
+    quantity: str = "angle"
+    featured: Callable[[Measurement], bool] = usual_series
+    figures: Callable[[Material], Mapping[str, str]] = no_figures
+    words: Callable[[Material], Mapping[str, Any]] = no_words
+    orders: Promises = field(default_factory=dict, compare=False)
+    known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
+
+    def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
+        """The engines in which a scene of the page is run."""
+        return tuple(engine for engine in self.engines if self.compared(scene, engine))
+
+    def extra_cells(self) -> tuple[Cell, ...]:
+        """The cells of failures and maps, beyond the sweep."""
+        return (
+            *(cell for failure in self.failures for cell in failure.cells),
+            *(cell for picture in self.maps for _, cell in picture.cells),
+        )

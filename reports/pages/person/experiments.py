@@ -1,0 +1,109 @@
+"""Where methods fail on a person: standing itself, a light shank under a heavy trunk, knees almost straight."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from engines import Engine, mujoco, pymunk
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot, modes_upright
+from reference.person.two_feet import TwoFeet
+from reference.scene import Scene
+from reference.validation import InvalidMechanism
+from reports.grid.cells import Cell
+from reports.pages.page import Failure, Observation, StabilityMap
+
+PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
+LONGER = SwayingOnOneFoot(duration=0.6, horizon=0.6)
+
+
+def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
+
+
+def growth() -> list[Observation]:
+    """The modes of standing upright on one foot."""
+    squares, _ = modes_upright(SwayingOnOneFoot())
+    found = []
+    for square in squares:
+        rate = math.sqrt(abs(square))
+        said = f"swings at {rate:.3g} rad/s" if square < 0 else f"grows by e in {1 / rate:.3g} s"
+        found.append(Observation("the reference, linearised", "upright on one foot", said))
+    return found
+
+
+def refusals() -> list[Observation]:
+    """What the reference says to stances that can't be."""
+    found = []
+    for wrong in ({"stance": 2.0}, {"hip_y": 0.95}, {"knees": 0}, {"height": 0.0}):
+        try:
+            replace(TwoFeet(), **wrong)
+        except InvalidMechanism as sentence:
+            setting = ", ".join(f"{name} = {value!r}" for name, value in wrong.items())
+            found.append(Observation("the reference", setting, f"refuses: {sentence}"))
+    return found
+
+
+def sweeps(count: int) -> Engine:
+    """pymunk closing every gap in one step, by this many sweeps."""
+    return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="Standing still",
+        expected=(
+            "Upright on one foot is an equilibrium with five modes, two that swing and three that grow. The sway "
+            f"starts on one that swings, to six digits; after {SwayingOnOneFoot().duration:g} s what the digits left "
+            "out has grown, and the knee buckles."
+        ),
+        cells=_cells(LONGER, ALL, (1, 10, 100)),
+        observations=growth,
+        remark=(
+            "The knee's mode makes a millionth of a radian a visible angle within half a second: without muscles "
+            "nobody sways for longer than that, and a simulation that shows a body without muscles standing shows its "
+            "own softness, friction or rounding. The errors grow with the same mode, so a method of first order needs "
+            "a step of 1e-4 s to tell when the knee goes, and at 1e-2 s it may go to the other side."
+        ),
+    ),
+    Failure(
+        title="A heavy trunk on light shanks, with too few sweeps",
+        expected="A shank has a fifteenth of the trunk's mass and is two joints away from it.",
+        cells=_cells(OneFoot(), (pymunk.DEFAULT, *map(sweeps, (5, 10, 30, 100))), (1, 10)),
+        remark=(
+            "What a chain needs depends on its masses as well as on its length: five sweeps would do for a few equal "
+            "links; here ten are not enough, and with five or ten the smaller step is the worse one."
+        ),
+    ),
+    Failure(
+        title="Stances that can't be",
+        expected="Feet too far apart, a hip out of reach, a person without a height.",
+        observations=refusals,
+        remark="Nothing is built: an engine would start with a torn leg and pull it together at once.",
+    ),
+)
+
+COUNTS = (5, 10, 20, 50, 100)
+GAINS = {"all of the gap": 0.0, "as shipped but for the sweeps": pymunk.DEFAULT.error_bias}
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="sweeps",
+        title="How many sweeps does a falling person need, on one foot?",
+        parameter="sweeps in a step",
+        cells=tuple(
+            (float(count), Cell(OneFoot(), replace(engine, iterations=count), every, "map"))
+            for engine in (replace(pymunk.DEFAULT, variant=name, error_bias=bias) for name, bias in GAINS.items())
+            for count in COUNTS
+            for every in (1, 3, 10, 30, 100)
+        ),
+        remark=(
+            "With all of the gap closed in every step, too few sweeps are worse the smaller the step: what they leave "
+            "is corrected at a speed of the gap over the step. As shipped nothing explodes, and more sweeps buy little."
+        ),
+    ),
+)

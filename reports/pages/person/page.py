@@ -1,0 +1,70 @@
+"""The person's page: swaying on one foot, falling from one foot and from two."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from engines.registry import VARIANTS
+from reference.person.one_foot import OneFoot
+from reference.person.swaying import SwayingOnOneFoot, modes_upright
+from reference.person.two_feet import TwoFeet
+from reference.scenes import SCENES
+from reports.charts.stroboscope import Points, Strip, stroboscope
+from reports.charts.theme import svg
+from reports.pages.chain_orders import CLOSED, EXTRAPOLATED, OPEN, from_rest
+from reports.pages.page import Material, Page
+from reports.pages.person.expectations import KNOWN
+from reports.pages.person.experiments import FAILURES, MAPS
+from reports.text.lookups import told
+
+NAME = "person"
+ONE_FOOT = ("person_swaying", "person_one_foot")
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+
+def ends(person: OneFoot) -> dict[str, Points]:
+    """The shoulder, and the ankle of a lifted foot: ends that have no joint, in their bodies' frames [m]."""
+    away = person.lengths - person._behind
+    return {"trunk": ((float(away[2]), 0.0),), "right shank": ((float(away[4]), 0.0),)}
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Films of the truth, with the floor."""
+    sway, one, two = SwayingOnOneFoot(duration=0.5), OneFoot(), TwoFeet()
+    strips = (
+        Strip(sway, "Swaying on one foot until the knee buckles", 6, ends=ends(sway), spread=0.7, floor=True),
+        Strip(one, "Falling from one foot", 6, ends=ends(one), spread=0.8, floor=True),
+        Strip(two, "Falling from two feet", 6, ends=ends(two), spread=1.0, floor=True),
+    )
+    return {"stroboscope": svg(stroboscope(strips, columns=1), "A person swaying and falling, as a film")}
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """Rows, and freedoms by rank."""
+    freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in SCENES_HERE}
+    knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
+    return {**told(material, SCENES_HERE), "freedoms": freedoms, "knee": knee}
+
+
+PAGE = Page(
+    name=NAME,
+    title="A person on one foot and on two",
+    lesson="Five segments and no muscle: an open chain on one foot, a loop on two; unheld, the knee buckles.",
+    scenes=SCENES_HERE,
+    engines=VARIANTS,
+    failures=FAILURES,
+    maps=MAPS,
+    figures=figures,
+    words=words,
+    orders={
+        **CLOSED,
+        # On one foot nothing is closed.
+        **{(scene, method): promise for scene in ONE_FOOT for method, promise in OPEN.items()},
+        **from_rest(scene.name for scene in SCENES_HERE),
+        # Observed on all three: an error of the fifth power is left.
+        **{(scene.name, "pymunk extended"): replace(EXTRAPOLATED, order=5) for scene in SCENES_HERE},
+    },
+    known=KNOWN,
+)

@@ -1,0 +1,217 @@
+"""Bodies that roll, drawn from the reference: roulettes, the contact with its directions, elliptic gears."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from reference.curves.curve import Array, Curve, Placed, Vector
+from reference.curves.ellipse import Ellipse
+from reference.curves.open import Catenary, Parabola
+from reference.curves.round import Circle, Line, Ring, Side
+from reference.rolling.contact import turned
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+
+POINTS = 241
+
+
+@dataclass(frozen=True)
+class Roulette:
+    """What one panel shows: a body at some rotations [rad], and the path of one of its points [m] over all of them."""
+
+    title: str
+    rolling: Rolling
+    point: Vector
+    path: tuple[float, float]
+    shown: tuple[float, ...]
+    ground: tuple[float, float]  # arcs [m] of the ground that are drawn
+    body: tuple[float, float] | None = None  # arcs [m] of the body that are drawn; all of it if None
+
+
+def roulettes() -> tuple[Roulette, ...]:
+    """Six that the chapter or its classics know by name."""
+    ellipse, twin = Ellipse(0.5, 0.3), Placed(Ellipse(0.5, 0.3), turn=math.pi / 2)
+    focus = (0.4, 0.0)
+    disc = Circle(0.4)
+    square = Rolling.at_arcs(Side(1.0), Placed(Catenary(0.5), turn=math.pi))
+    # Its material is above it; turned over it rolls on the line along its outside.
+    parabola = Rolling.at_arcs(Parabola(0.3), Line())
+    return (
+        Roulette(
+            "a point of a rim on a line: cycloid",
+            Rolling.at_angle(disc, Line()),
+            (0.0, -0.4),
+            (-2 * math.pi, 0.0),
+            (-2 * math.pi, -4.2, -2.1, 0.0),
+            (-2.9, 0.4),
+        ),
+        Roulette(
+            "focus of an ellipse on a line",
+            Rolling.at_angle(ellipse, Line()),
+            focus,
+            (-2 * math.pi, 0.0),
+            (-2 * math.pi, -4.2, -2.1, 0.0),
+            (-2.9, 0.4),
+        ),
+        Roulette(
+            "focus of an ellipse on its twin: a circle",
+            Rolling.at_arcs(ellipse, twin, 0.0, 0.0),
+            focus,
+            (0.0, 4 * math.pi),
+            (math.pi, math.pi + 2.2, math.pi + 4.3),
+            (0.0, ellipse.length),
+        ),
+        Roulette(
+            "a point of a rim in a ring of 4/3 its radius: hypocycloid",
+            Rolling.at_arcs(Circle(0.45), Ring(0.6)),
+            (0.45, 0.0),
+            (-2 * math.pi, 0.0),
+            (-1.4, -0.7, 0.0),
+            (0.0, Ring(0.6).length),
+        ),
+        Roulette(
+            "focus of a parabola on a line: catenary",
+            parabola,
+            (0.0, 0.3),
+            (parabola.theta - 1.1, parabola.theta + 1.1),
+            (parabola.theta - 0.8, parabola.theta, parabola.theta + 0.8),
+            (-1.4, 1.4),
+            (-0.9, 0.9),
+        ),
+        Roulette(
+            "a square on catenaries: its centre stays level",
+            square,
+            (0.0, 0.0),
+            (-math.pi / 4, math.pi / 4),
+            (-math.pi / 4, 0.0, math.pi / 4),
+            (-0.5, 0.5),
+        ),
+    )
+
+
+def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
+    """Points (n, 2) [m] along a boundary; a square is closed."""
+    if isinstance(curve, Side) and arcs is None:
+        half = curve.side / 2
+        return half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], dtype=float)
+    low, high = arcs or (0.0, curve.length)
+    return curve.point(np.linspace(low, high, POINTS))
+
+
+def placed(points: Array, pose: Array) -> Array:
+    """Points (n, 2) of a body in the world, for one pose (3,)."""
+    return turned(np.asarray(pose[2]), points) + pose[:2]
+
+
+def draw_roulettes(chosen: Sequence[Roulette], theme: Theme = LIGHT, columns: int = 2) -> Figure:
+    """A panel each."""
+    rows = -(-len(chosen) // columns)
+    with settings():
+        figure = new_figure(2.75 * rows, theme)
+        for panel, one in zip(figure.subplots(rows, columns, squeeze=False).ravel(), chosen, strict=False):
+            _blank(panel, one.title, theme)
+            ground = outline(one.rolling.ground, one.ground)
+            panel.plot(*ground.T, color=theme.ink, linewidth=1.8)
+            body = outline(one.rolling.body, one.body)
+            for theta in one.shown:
+                pose = one.rolling.pose(theta)
+                panel.plot(*placed(body, pose).T, color=theme.quiet, linewidth=1.0)
+                arm = one.rolling.position(theta, one.point)
+                panel.plot(*np.stack([one.rolling.contact(theta).point, arm]).T, color=theme.quiet, linewidth=0.8)
+                panel.plot(*arm, "o", color=theme.pymunk, markersize=4.5, zorder=4)
+            path = one.rolling.position(np.linspace(*one.path, 2 * POINTS), one.point)
+            panel.plot(*path.T, color=theme.pymunk, linewidth=2.0, zorder=3)
+    return figure
+
+
+def draw_contact(theme: Theme = LIGHT) -> Figure:
+    """A body on a hill, on flat ground and in a hole: the contact C, e_t, e_n, and the circles of curvature."""
+    body = Ellipse(0.5, 0.3)
+    hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
+    grounds: tuple[tuple[str, Curve, float], ...] = (
+        ("on a hill", hill, 0.35),
+        ("on flat ground", Line(), 0.35),
+        ("in a hole", hole, 0.35),
+    )
+    with settings():
+        figure = new_figure(3.5, theme)
+        for panel, (title, ground, theta) in zip(figure.subplots(1, 3), grounds, strict=True):
+            rolling = Rolling.at_angle(body, ground, theta)
+            contact = rolling.contact(theta)
+            a, b = float(contact.ground_curvature), float(contact.body_curvature)
+            title = (
+                f"{title}: $\\kappa_A$ = {a:.2f}, $\\kappa_B$ = {b:.2f} 1/m\n$ds/d\\theta$ = {contact.rate:.3f} m/rad"
+            )
+            _blank(panel, title, theme)
+            near = np.linspace(-0.75, 0.75, POINTS) + float(contact.ground_arc)
+            panel.plot(*ground.point(near).T, color=theme.ink, linewidth=2.0)
+            panel.plot(*placed(outline(body), rolling.pose(theta)).T, color=theme.quiet, linewidth=1.6)
+            point, tangent, normal = contact.point, contact.tangent, contact.normal
+            turn = np.linspace(0, 2 * math.pi, POINTS)
+            circle = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+            panel.plot(*(point + normal / b + circle / b).T, color=theme.fourth, linewidth=1.2, linestyle=":")
+            for vector, name, colour in ((tangent, "$e_t$", theme.pymunk), (normal, "$e_n$", theme.mujoco)):
+                tip = point + 0.45 * vector
+                panel.annotate(
+                    "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
+                )
+                panel.annotate(name, point + 0.53 * vector, color=colour, ha="center", va="center", fontsize=11)
+            panel.plot(*point, "o", color=theme.ink, markersize=4, zorder=6)
+            panel.annotate("C", point - 0.09 * normal, color=theme.ink, ha="center", va="center")
+            centre = np.array([point[0], point[1] + 0.3])
+            panel.set_xlim(centre[0] - 0.85, centre[0] + 0.85)
+            panel.set_ylim(centre[1] - 0.62, centre[1] + 0.72)
+    return figure
+
+
+def draw_gears(scene: EllipticGears, theme: Theme = LIGHT) -> Figure:
+    """The gears at four instants, and how fast the second turns."""
+    turn = 2 * math.pi / scene.turning_rate
+    times = (0.15 + np.arange(4)) * turn / 4
+    with settings():
+        figure = new_figure(4.6, theme)
+        grid = figure.add_gridspec(2, 4, height_ratios=[1.0, 1.1])
+        truth = scene.motion(times)
+        [roll] = [joint for joint in scene.mechanism().joints if isinstance(joint, Roll)]
+        rim = outline(roll.rolling.body)
+        for index in range(4):
+            panel = figure.add_subplot(grid[0, index])
+            _blank(panel, f"t = {times[index]:.2f} s", theme)
+            for gear, colour in ((0, theme.pymunk), (1, theme.mujoco)):
+                pose = truth.pose[index, gear]
+                panel.plot(*placed(rim, pose).T, color=colour, linewidth=1.8)
+                panel.plot(2 * scene.major * gear, 0.0, "^", color=theme.ink, markersize=6)
+                spoke = np.stack([[2 * scene.major * gear, 0.0], pose[:2]])
+                panel.plot(*spoke.T, color=colour, linewidth=1.0)
+            reach = 1.06 * scene.major * (1 + scene.eccentricity)
+            panel.set_xlim(-reach, 2 * scene.major + reach)
+            panel.set_ylim(-reach, reach)
+        panel = figure.add_subplot(grid[1, :])
+        style_axes(panel, theme)
+        t = np.linspace(0, 2 * turn, 400)
+        rates = scene.motion(t).twist[:, :, 2]
+        panel.plot(t, rates[:, 0], color=theme.pymunk, linewidth=1.8)
+        panel.plot(t, rates[:, 1], color=theme.mujoco, linewidth=1.8)
+        panel.annotate("first gear", (t[-1], rates[-1, 0]), xytext=(-4, 5), textcoords="offset points", ha="right",
+                       color=theme.pymunk)  # fmt: skip
+        low = int(np.argmin(rates[:, 1]))
+        panel.annotate("second gear", (t[low], rates[low, 1]), xytext=(28, 4), textcoords="offset points",
+                       color=theme.mujoco)  # fmt: skip
+        panel.set_xlabel("time [s]")
+        panel.set_ylabel("rate [rad/s]")
+    return figure
+
+
+def _blank(panel: Axes, title: str, theme: Theme) -> None:
+    panel.set_facecolor(theme.paper)
+    panel.set_axis_off()
+    panel.set_aspect("equal")
+    panel.set_title(title, loc="left", fontsize=9, color=theme.ink)

@@ -1,0 +1,279 @@
+"""Where methods fail at rolling: experiments with a statement of what should happen, and a stability map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from engines.mujoco import rolls as mujoco_rolls
+from engines.pymunk import rolls as pymunk_rolls
+from reference.rolling.limits import DiscInHole, SquareOnCatenaries
+from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.grid.cells import Cell
+from reports.grid.running import trajectories
+from reports.pages.page import Failure, Observation, StabilityMap
+from reports.text.tables import number
+
+CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+EQUALITY = next(method for method in mujoco_rolls.METHODS if "equality" in method.variant)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED, mujoco.EXTENDED, EQUALITY)
+ROLLER = 0  # the only body's index
+
+# Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
+SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
+SOFT_STEPS = {100: 1e-4, 10: 1e-3}
+CLEARANCES = (0.5, 0.1, 1e-2, 1e-3, 1e-4)
+MAP_STEPS = (1, 10, 100)
+
+
+def cells(
+    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
+) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
+
+
+def polygon_cells() -> tuple[tuple[int, Cell], ...]:
+    """(corners, cell) of the ellipse as polygons of ever more corners."""
+    return tuple(
+        (corners, cell)
+        for corners, engine in zip(pymunk_rolls.CORNERS, pymunk_rolls.FACETED, strict=True)
+        for cell in cells(RollingEllipse(), (engine,), (1, 10, 100))
+    )
+
+
+def soft_contact(constant: float, step: float) -> Engine:
+    """MuJoCo's contact with a time constant [s] at a step [s], its slip as stiff as it goes."""
+    variant = f"contact of {1e3 * constant:g} ms"
+    steps = round(constant / step)
+    return replace(mujoco.TUNED, variant=variant, rolls=replace(mujoco.TUNED.rolls, steps=steps))
+
+
+def softness_cells() -> tuple[tuple[float, Cell], ...]:
+    """(time constant [s], cell) of the ellipse on ever stiffer contacts."""
+    return tuple(
+        (constant, Cell(RollingEllipse(), soft_contact(constant, step), every, "failure"))
+        for every, step in SOFT_STEPS.items()
+        for constant in SOFTNESS
+        if constant >= 2 * step * (1 - 1e-9)
+    )
+
+
+def hill_runs(engines: Iterable[Engine]) -> list[tuple[Cell, Trajectory]]:
+    """Whole motions on the hill, beyond where they may be compared, of methods that ran."""
+    wanted = [Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100)]
+    found = trajectories(wanted)
+    return [(cell, found[cell]) for cell in wanted if cell in found]
+
+
+def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
+    """How far a body is from the ideal motion [m]: largest up to the last comparable sample, and at the end."""
+    truth = cell.scene.motion(found.t)
+    apart = np.linalg.norm((found.pose - truth.pose)[:, ROLLER, :2], axis=-1)
+    within = found.t <= cell.scene.comparable_until * (1 + 1e-12)
+    return float(apart[within].max()), float(apart[-1])
+
+
+def partings() -> list[Observation]:
+    """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
+    out = []
+    for cell, found in hill_runs((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED)):
+        before, after = parting(cell, found)
+        told = (
+            f"off by {number(before)} m up to {cell.scene.comparable_until:.3f} s, by {number(after)} m at "
+            f"{cell.scene.duration:g} s"
+        )
+        out.append(Observation(f"{cell.engine.name} {cell.engine.variant}", f"step {number(cell.step)} s", told))
+    return out
+
+
+def absent_contact(cell: Cell, found: Trajectory) -> float:
+    """The share of samples before the slip at which a contact carries nothing, though it must carry N (one roller)."""
+    # The first sample has no step before it.
+    within = (found.t <= cell.scene.comparable_until) & (found.t > 0)
+    mechanism = cell.scene.mechanism()
+    weight = mechanism.bodies[ROLLER].mass * float(np.hypot(*mechanism.gravity))
+    return float(np.mean(np.abs(found.reaction[within, 1]) < 1e-3 * weight))
+
+
+def chatter() -> list[Observation]:
+    """How often the contact on the hill is absent while it should press."""
+    stiff = (method for method in mujoco_rolls.METHODS if "stiff" in method.variant)
+    return [
+        Observation(
+            f"{cell.engine.name} {cell.engine.variant}",
+            f"step {number(cell.step)} s",
+            f"absent in {100 * absent_contact(cell, found):.0f} % of samples",
+        )
+        for cell, found in hill_runs((*CONTACTS, *stiff))
+    ]
+
+
+def refused(scene: RollingScene, setting: str) -> Callable[[], list[Observation]]:
+    """What the reference says of a motion that can't be."""
+
+    def observe() -> list[Observation]:
+        try:
+            scene.motion([scene.duration])
+        except ValueError as sentence:
+            return [Observation("the reference", setting, f"refuses: {sentence}")]
+        raise AssertionError(f"the reference went along with {scene}")
+
+    return observe
+
+
+FAILURES: tuple[Failure, ...] = (
+    *(
+        Failure(
+            title=f"A contact as shipped, under {body}",
+            expected="Each step a tenth of the last: the error should fall tenfold every time, or faster.",
+            cells=cells(scene, (mujoco.DEFAULT,), (1, 10, 100, 1000)),
+            remark=remark,
+        )
+        for body, scene, remark in (
+            (
+                "an ellipse",
+                RollingEllipse(),
+                "By default MuJoCo's contact is a spring and a damper with a time constant of 0.02 s (solref). Rolling "
+                "moves the contact along the body. The rows of a contact have no term for that motion: the body lags "
+                "by a time constant times what is missing. This belongs to the model, so no step removes it.",
+            ),
+            (
+                "an eccentric disc",
+                RollingDisc(),
+                "The same kind of plateau, reached from above: Euler's own error falls, the rest stays.",
+            ),
+        )
+    ),
+    Failure(
+        title="Softer and stiffer contacts",
+        expected="A contact as stiff as the step allows should be as exact as the step.",
+        cells=tuple(cell for _, cell in softness_cells()),
+        remark=(
+            "At 20 ms the error is nearly the same at both steps: it comes from the time constant. At 6 ms the two "
+            "steps already differ, and at a few steps of time constant the step's own error is as large: at the "
+            "smaller step the shortest constant is not the best one. MuJoCo raises a constant shorter than two steps "
+            "to two (`refsafe`, on by default). The contact of 20 ms here is not the default one, although the time "
+            "constant is the same: it has Runge-Kutta's steps, the elliptic cone, a friction of 10 and the stiffest "
+            "impedance (default: Euler's steps, the pyramidal cone, 1, and 0.9 to 0.95), so its error is another."
+        ),
+    ),
+    Failure(
+        title="Polygons",
+        expected="An ellipse has no corners. With more of them the error should fall, and with the step too.",
+        cells=tuple(cell for _, cell in polygon_cells()),
+        remark=(
+            "Pymunk has circles, segments and convex polygons, and no ellipse. A polygon rolls by falling from corner "
+            "to corner and loses energy in each blow: what is computed well is another body. With 32 and 128 corners "
+            "the two smaller steps give the same error, so the corners make it. With 512 the last step still lowers it "
+            "by about a fifth."
+        ),
+    ),
+    *(
+        Failure(
+            title=f"Nearly conformal curves: a hole larger by {clearance:g} of its radius",
+            expected=(
+                f"The disc turns at 1 rad/s for ever, while its contact runs round the hole at about {1 / clearance:g} "
+                f"rad/s: by {1 / clearance:g} rad/s times the step in a step. The truth is in closed form."
+            ),
+            cells=cells(DiscInHole(clearance=clearance), CONSTRAINTS, (1, 10, 100)),
+            observations=observations,
+            remark=remark,
+        )
+        for clearance, observations, remark in (
+            (0.1, None, "Every method follows, each with its own order."),
+            (
+                0.01,
+                None,
+                "The reflection, which is our code around pymunk, has the wrong rotation at each of these steps. Its "
+                "gap falls with the step all the same, and nothing warns: a closed gap proves nothing here. The others "
+                "lose the rotation at the largest step only, or not at all.",
+            ),
+            (
+                1e-3,
+                refused(DiscInHole(clearance=1e-10), "clearance 1e-10"),
+                "The curvatures nearly cancel in 1/(kappa_A + kappa_B): in a step the contact moves further than a "
+                "method can follow. At the largest step two methods open the contact; the others finish with the wrong "
+                "rotation. No engine warns. Rows written into MuJoCo by our code recover first with a smaller step; "
+                "the reflection does not.",
+            ),
+        )
+    ),
+    Failure(
+        title="A corner",
+        expected=(
+            f"A square rolls level over the arch of a catenary for {SquareOnCatenaries().corner:.4f} s and then stands "
+            "on its corner: the curvature is infinite, the contact has nowhere to run. The reference refuses."
+        ),
+        cells=cells(SquareOnCatenaries(), (*CONSTRAINTS, Lagrange("rk4", "projection")), (1, 10)),
+        observations=refused(SquareOnCatenaries(), "beyond the corner"),
+        remark=(
+            "Methods by constraint ask our code where the contact will be, and beyond the corner there is no answer. "
+            "In pymunk our code stops the run. In MuJoCo numbers become infinite or huge: it warns and starts the "
+            "motion anew, or our code refuses first. By contact nothing was built: neither engine has this "
+            "ground as a shape."
+        ),
+    ),
+    Failure(
+        title="Beyond the hop, and beyond the friction",
+        expected=(
+            f"On the hill the ideal contact asks for more friction than 1 from "
+            f"{RollingOnCircle().comparable_until:.4f} s on, and at {RollingOnCircle().hop:.4f} s it would have to "
+            "pull. Ideal rolling goes on; a body with real contact slips and flies. From there on the comparison is "
+            "invalid, and it stops."
+        ),
+        cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
+        observations=partings,
+        remark=(
+            "Up to there the tuned contacts are off by an error that falls with the step; after it they are off by "
+            "hundreds of times as much or more, at either step. The method by constraint follows the ideal motion to "
+            "the end, with a force that no ground could give. Neither is wrong: they answer different questions."
+        ),
+    ),
+    Failure(
+        title="Chatter on curved ground",
+        expected="The body presses on the hill until it hops, so that its contact carries a force in every sample.",
+        observations=chatter,
+        remark=(
+            "In each of these runs the contact carries nothing in a part of the samples, at the smaller step too. The "
+            "motion before the hop is right all the same, so the impulse is right on average; the force of a single "
+            "sample can't be trusted."
+        ),
+    ),
+    Failure(
+        title="Steps far too large",
+        expected="The disc stays on the ground. Steps this large are wrong, and a warning would help.",
+        cells=tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), CONTACTS, (1,), samples)),
+        remark=(
+            "In one step a free body falls by g times the step squared (0.1 m at 0.1 s) before contact is looked at "
+            "again. At each of these steps the contact opens, or the shapes overlap, by a fifth of the disc's size "
+            "or more, and by more at larger steps. No engine warns. MuJoCo 4.0 has speculative contacts against "
+            "tunnelling (the flag `speculative`, see its release notes); they are off by default and not used here."
+        ),
+    ),
+)
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="stability",
+        title="How nearly conformal, at which step?",
+        parameter="clearance of the hole, relative to its radius",
+        cells=tuple(
+            (clearance, Cell(DiscInHole(clearance=clearance), engine, every, "map"))
+            for engine in CONSTRAINTS
+            for clearance in CLEARANCES
+            for every in MAP_STEPS
+        ),
+        remark=(
+            "Along a diagonal the contact turns equally far in a step. Rows written into MuJoCo by our code follow "
+            "that rule: where they fail, a smaller step helps. Our reflection around pymunk has the rotation at a "
+            "clearance of 0.1 and more, and loses it at 0.01 and less, at each of these steps."
+        ),
+    ),
+)

@@ -1,0 +1,325 @@
+"""Where constructions of a skate fail: experiments with a statement of what should happen, and stability maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from engines import Engine
+from engines.registry import VARIANTS
+from reference.joints import Pin, Skate
+from reference.mechanism import Body, Mechanism
+from reference.scene import Scene
+from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.skate.limits import HeldBySkates, SkateOnSlope
+from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.trajectory import Trajectory
+from reports.grid.cells import Cell
+from reports.pages.observing import observe
+from reports.pages.page import Failure, Observation, StabilityMap
+from reports.pages.skate.methods import CONSTRUCTIONS, limited, method
+from reports.text.tables import number
+
+Columns = tuple[str, ...]
+MOTION: Columns = ("position", "angle", "slip", "energy")
+
+# What a user would take, and the best of each kind.
+ORDINARY: tuple[Engine, ...] = tuple(
+    engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
+)
+# Between these rates [rad/s] a turning on the straight run grows as the linearised motion says: far above where it
+# starts, and its square is still below a thousandth of that of the largest rate.
+GROWING = (2e-3, 4e-2)
+
+
+def _cells(
+    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
+) -> tuple[Cell, ...]:
+    return tuple(
+        Cell(scene, engine, count, "failure", samples)
+        for engine in engines
+        for count in _affordable(engine, tuple(every))
+    )
+
+
+def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
+    """What runs a cell at many steps is at rounding with the longest already."""
+    return every[:1] if engine.variant == "extended" else every
+
+
+def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
+    """The slope of log |turning rate| over time [1/s] between the rates of GROWING; NaN when it never gets there."""
+    size = np.abs(rate)
+    late = int(np.argmax(size > GROWING[1])) if np.any(size > GROWING[1]) else 0
+    chosen = (np.arange(len(t)) < late) & (size > GROWING[0])
+    if chosen.sum() < 3:
+        return float("nan")
+    return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
+
+
+def turned_at(t: np.ndarray, rate: np.ndarray) -> float:
+    """When it turns fastest [s], which is when the exact sleigh slides neither way."""
+    return float(t[int(np.argmax(np.abs(rate)))])
+
+
+def backwards() -> list[Observation]:
+    """The growth of a small turning and the time of turning round, in each method at two steps."""
+    scene = SleighBackwards()
+    t = np.linspace(0, scene.duration, scene.samples + 1)
+    truth = scene.motion(t).twist[:, 0, 2]
+    found = [
+        Observation("linearised exact motion", "", f"grows by exp({scene.growth_rate():.4g} t)"),
+        Observation("exact motion", "", _grown(t, truth)),
+    ]
+    for engine in (*ORDINARY, *CONSTRUCTIONS):
+        cell = Cell(scene, engine, 1, "failure")
+        found += observe(cell, f"step {number(cell.step)} s", lambda run: _grown(run.t, run.twist[:, 0, 2]))
+    return found
+
+
+def _grown(t: np.ndarray, rate: np.ndarray) -> str:
+    rate = np.where(np.isfinite(rate), rate, 0.0)
+    grows = growth_of(t, rate)
+    if np.isnan(grows):
+        return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"
+    return f"{grows:.4f} per second; fastest, {np.abs(rate).max():.3f} rad/s, at {turned_at(t, rate):.2f} s"
+
+
+def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:
+    """When the exact lateral force first exceeds a limit [N], to 1e-4 of the duration [s]; None if never."""
+    t = np.linspace(0, scene.duration, 10_001)
+    over = np.flatnonzero(np.abs(scene.lateral_force(t)) > limit)
+    return float(t[over[0]]) if over.size else None
+
+
+def _body(*joints: Pin | Skate) -> Mechanism:
+    return Mechanism((Body("body", 2.0, 0.3, (0.0, 0.0, 0.0)),), joints)
+
+
+def _skate(name: str, point: tuple[float, float], angle: float = 0.0) -> Skate:
+    return Skate(name, None, "body", point, angle)
+
+
+COUNTED: tuple[tuple[str, Mechanism], ...] = (
+    ("free body", _body()),
+    ("pinned body (18.62)", _body(Pin("pin", None, "body", (-0.5, 0.0), (-0.5, 0.0)))),
+    ("one skate (18.64)", _body(_skate("one", (-0.5, 0.0)))),
+    ("two skates on one axle", _body(_skate("left", (-0.5, 0.2)), _skate("right", (-0.5, -0.2)))),
+    ("two skates in one line", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0)))),
+    ("two skates, one steered", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0), 0.4))),
+    ("a pin and a skate off it", _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0)))),
+    (
+        "a pin and a skate square to it",
+        _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0), np.pi / 2)),
+    ),
+    ("three skates", HeldBySkates().mechanism()),
+)
+
+
+def counting() -> list[Observation]:
+    """Freedoms by rank and by brackets, and integrability by Frobenius, of skates on one body."""
+    found = []
+    for name, mechanism in COUNTED:
+        configuration, velocity = mechanism.degrees_of_freedom()
+        reached = freedoms_by_brackets(mechanism)[-1] if velocity else 0
+        kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
+        said = f"({configuration}, {velocity}); {kind}: of {configuration} it can reach {reached}"
+        if velocity == 0:
+            said = f"({configuration}, {velocity}): nothing can move, wherever it stands"
+        found.append(Observation(name, f"{mechanism.row_count} row{'' if mechanism.row_count == 1 else 's'}", said))
+    return found
+
+
+def slipping() -> list[Observation]:
+    """When the exact lateral force exceeds a friction's limit, and when engines with that limit slip."""
+    found = []
+    for limit in FRICTION_LIMITS:
+        exact = first_beyond(SLIDING, limit)
+        when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
+        found.append(Observation("exact lateral force", f"{limit:g} N", when))
+        for engine in limited(limit):
+            found += observe(Cell(SLIDING, engine, 10, "failure"), f"{limit:g} N", _slipped)
+    return found
+
+
+def _slipped(run: Trajectory) -> str:
+    slip = np.abs(SLIDING.mechanism().slip(run.pose, run.twist)[:, 0])
+    over = np.flatnonzero(slip > SLIPS)
+    return f"slips by {SLIPS:g} m/s at {run.t[over[0]]:.2f} s, at most {slip.max():.2g}" if over.size else "holds"
+
+
+SLIDING = SleighBackwards()
+PEAK = float(np.abs(SLIDING.lateral_force(np.linspace(0, SLIDING.duration, 10_001))).max())
+FRICTION_LIMITS = (0.1, 0.3, 0.5, 0.7)  # N
+SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
+
+NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
+LONG = 1000.0  # s
+CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
+COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
+LONG_SAMPLES = 1000
+# How fast the last of its turning dies out [1/s]: the linearised rate at the speed that it ends with.
+DYING = -COASTING.growth_rate() * float(COASTING.rates(LONG)[0]) / COASTING.speed
+STRAIGHT_BACK = SleighBackwards(turning_rate=0.0, start=(0.0, 0.0, 0.3), duration=60.0, horizon=60.0)
+ENGINES_ALONE = tuple(engine for engine in ORDINARY if engine.name != "lagrange")
+LASTING = (*ENGINES_ALONE, method("pymunk skate: reflection"))
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="No slip at all, and a wholly wrong motion",
+        expected=(
+            "The blade's force turns the body too. Taking away the velocity across the blade without the turning that "
+            "goes with it leaves no slip and a body of another inertia, or of none."
+        ),
+        cells=_cells(ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)),
+        columns=MOTION,
+        remark=(
+            "No slip does not prove a right motion. Zeroing the centre's velocity is right only for a blade under the "
+            "centre of mass; zeroing the blade's point by shifting the whole velocity adds energy from nowhere. The "
+            "third method does the same with an impulse at the blade, and costs one line more."
+        ),
+    ),
+    Failure(
+        title="The sleigh run backwards",
+        expected=(
+            "With the centre of mass behind the skate a small turning grows as "
+            f"exp({SleighBackwards().growth_rate():g} t) until the sleigh has turned round. Measured: growth between "
+            f"{GROWING[0]:g} and {GROWING[1]:g} rad/s, and when it turns fastest."
+        ),
+        observations=backwards,
+        remark=(
+            "An engine whose row is a little late has a growth rate that is a little low, and turns round a little "
+            "late; MuJoCo's tendon at the predicted pose (`mujoco tuned`) is a little early instead. The naive "
+            "zeroing, which is `pymunk default` too, does not turn round at all: it makes a stable vehicle of an "
+            "unstable one, so that the simulation hides the instability."
+        ),
+    ),
+    Failure(
+        title="Straight back, for a minute",
+        expected="Without any turning the sleigh slides straight on, though unstable. Only rounding can turn it.",
+        cells=_cells(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600),
+        columns=MOTION,
+        remark=(
+            "Rounding of 1e-17 rad/s grows to 1 rad/s in about "
+            f"{np.log(1e17) / SleighBackwards().growth_rate():.0f} s. "
+            "A method that ends elsewhere is not wrong: the question has no stable answer. One that goes straight on "
+            "has no rounding in the row at this heading, or, as the naive zeroing, no instability."
+        ),
+    ),
+    Failure(
+        title="Coasting for 1000 s",
+        expected=(
+            "The sleigh slides straight after some seconds; its heading and energy are the closed form's for ever."
+        ),
+        cells=_cells(COASTING, LASTING, (20,), LONG_SAMPLES),
+        columns=MOTION,
+        remark=(
+            "Once straight a projection loses nothing any more: the heading keeps the error of the first seconds, and "
+            "the position's grows with it. A reflection fails altogether, with its energy exact to the end. Being "
+            "symmetric in time it has, for every motion that dies out, a slip that changes sign with every step and "
+            f"grows at the same rate: here {DYING:.2g} per second, so that rounding is a metre per second after "
+            f"{np.log(1e16) / DYING:.0f} s. It is a method for seconds (and for a circle), not for minutes of a motion "
+            "that settles; extrapolation does not cure it. A projection, or the damping of a written row, does."
+        ),
+    ),
+    Failure(
+        title="Circling for 1000 s",
+        expected=(
+            "With the skate under the centre of mass the sleigh goes round a circle at an even rate for ever: "
+            f"{CIRCLING.turning_rate * LONG:.0f} rad, and every centripetal force is the skate's."
+        ),
+        cells=_cells(CIRCLING, LASTING, (20,), LONG_SAMPLES),
+        columns=MOTION,
+        remark=(
+            "The naive zeroing projects a velocity that has turned by w h onto the blade in every step and so loses "
+            "the part (w h)^2/2 of the speed; so does a row held at the end of a step. The energy of a circle shows "
+            "it, where that of a sleigh that straightens does not."
+        ),
+    ),
+    Failure(
+        title="Friction too low to hold",
+        expected=(
+            "A real blade holds only so much. The ideal force says when it would slip: the first time that it exceeds "
+            f"the limit, on the sleigh that turns round (at most {PEAK:.3f} N). Until then nothing differs from the "
+            "ideal skate, after it everything may."
+        ),
+        observations=slipping,
+        remark=(
+            "So the reaction in a run with an ideal skate tells whether a real blade would hold. An engine's friction "
+            "with that limit tells it too, if it does not creep by itself as much as it slips. Both "
+            "engines here slip one to two tenths of a second after the exact force passes the limit, since the slip "
+            "has to grow before it is counted."
+        ),
+    ),
+    Failure(
+        title="At rest across a slope",
+        expected="An ideal skate at zero speed holds as much as it must. Nothing turns it: it rests for ever.",
+        cells=_cells(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "reaction"),
+        remark=(
+            "A soft row creeps: its force needs a slip to exist. MuJoCo's friction is soft too and creeps, as its "
+            "documentation says (Modeling, 'Slow slippage'). It is not seen in `mujoco default` because of this "
+            "blade's coefficients, 1e-5 along and 10 across, as in the maintainers' example for skating: MuJoCo scales "
+            "the softness of the row across by the square of their ratio, 1e-12. With equal coefficients it creeps. "
+            "The naive zeroing (`pymunk default`) is right here, where nothing turns."
+        ),
+    ),
+    Failure(
+        title="Turning on a slope",
+        expected="The skate that turns evenly slides in cycloids, sideways and never down (the picture above).",
+        cells=_cells(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+    ),
+    Failure(
+        title="Counting freedoms of skates on one body",
+        expected=(
+            "By rank (configuration, velocity), and by brackets: whether the rows are integrable together, and how "
+            "many freedoms of configuration motions can then reach."
+        ),
+        observations=counting,
+        remark=(
+            "Two skates never fix a body: their axles meet in a point, or are parallel, and about that point it turns. "
+            "Two in one line can only go straight, and their rows are then integrable together, though neither is: "
+            "counting joints as 'holonomic' one by one says three configurations where one can be reached. A pin and a "
+            "skate off it, or three skates, leave no freedom of velocity at all: the body stands where it was put, "
+            "and it could have been put anywhere."
+        ),
+    ),
+    Failure(
+        title="Held by three skates on a slope",
+        expected="No freedom of velocity is left: the body stays. The three rows are independent: forces are known.",
+        cells=_cells(HeldBySkates(), ENGINES_ALONE, (1, 10)),
+        columns=("position", "angle", "slip", "reaction"),
+        remark=(
+            "Nothing constrains its place, only its velocity: every slip that a method leaves adds up, and no engine "
+            "can notice."
+        ),
+    ),
+)
+
+# Offsets of the centre of mass ahead of the skate [m]: far behind, behind, nearly on it, ahead, far ahead.
+OFFSETS = (-10.0, -0.5, -1e-3, 1e-3, 0.5, 10.0, 1e3)
+# (samples, steps a sample): steps of 0.3, 0.1, 0.03, 0.01 and 0.001 s over 3 s.
+MAP_STEPS = ((10, 1), (30, 1), (100, 1), (300, 1), (300, 10))
+MAPPED = tuple(
+    method(f"{name} {variant}") for name in ("pymunk", "mujoco") for variant in ("default", "tuned", "extended")
+)
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="offsets",
+        title="How far may the centre of mass be from the skate, at which step?",
+        parameter="offset of the centre of mass [m]",
+        cells=tuple(
+            (offset, Cell(ChaplyginSleigh(offset=offset), engine, every, "map", samples))
+            for engine in MAPPED
+            for offset in OFFSETS
+            for samples, every in MAP_STEPS
+        ),
+        remark=(
+            "Positive: ahead of the skate. For a method that holds the row the offset matters little; the naive "
+            "zeroing (`pymunk default`) is right where the centre of mass is on the skate, and nowhere else."
+        ),
+    ),
+)

@@ -1,0 +1,139 @@
+"""Where methods fail on the slider-crank: a groove off the centre of mass, dead centres, slots almost out of reach."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from engines import Engine, mujoco, pymunk
+from engines.lagrange import Lagrange
+from reference.scene import Scene
+from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
+from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.validation import InvalidMechanism
+from reports.grid.cells import Cell
+from reports.pages.page import Failure, Observation, StabilityMap
+from reports.text.tables import number
+
+PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
+ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
+
+
+def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
+    steps = tuple(every)
+    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
+
+
+GROOVE = (
+    replace(pymunk.DEFAULT, variant="default, GrooveJoint at the rod's end", slot="groove"),
+    replace(pymunk.TUNED, variant="tuned, GrooveJoint at the rod's end", slot="groove"),
+)
+GROOVES = _cells(RodEndInSlot(), GROOVE, (1, 10, 100))
+
+
+def leaving() -> list[Observation]:
+    """When the truth has left the dead centre by a radian, for starts nearer and nearer to it."""
+    found = []
+    for angle in (1e-2, 1e-4, 1e-6):
+        scene = SliderAtDeadCentre(angle=angle)
+        t = [scene.duration * i / 3000 for i in range(3001)]
+        theta = scene.motion(t).pose[:, 0, 2]
+        when = next(time for time, value in zip(t, theta, strict=True) if value > 1)
+        found.append(Observation("the reference", f"{number(angle)} rad aside", f"a radian away after {when:.3f} s"))
+    return found
+
+
+def refusals() -> list[Observation]:
+    """What the reference says to slots that can't be reached."""
+    found = []
+    shape = DrivenSliderCrank()
+    for offset in (shape.rod - shape.crank, 1.0):
+        try:
+            replace(shape, offset=offset)
+        except InvalidMechanism as sentence:
+            found.append(Observation("the reference", f"offset {offset:.3g} m", f"refuses: {sentence}"))
+    return found
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="The rod's end in a groove",
+        expected=(
+            "Without a sliding block the rod's own end runs in the slot. Crank and rod move as before: the crank is "
+            "driven, and mass does not enter."
+        ),
+        cells=GROOVES + _cells(RodEndInSlot(), ALL, (1, 10, 100)),
+        remark=(
+            "Use a `GrooveJoint` only at a centre of mass, on a body that can't turn, or where the arm from the centre "
+            "of mass to the anchor lies along or across the groove. The joint solves for the impulse that would stop "
+            "its anchor in both directions and then keeps the part along the normal "
+            "([cpGrooveJoint.c](https://github.com/slembcke/Chipmunk2D/blob/master/src/cpGrooveJoint.c)). That is the "
+            "impulse which stops the motion along the normal only if the normal is an eigenvector of the inverse mass "
+            "at the anchor, as in the three cases named. "
+            "At a rod's end it settles at a wrong one, so the error as shipped is the same at every step, with "
+            "nothing that looks like a failure but the gap. Closing all of the gap hides it: the error falls with the "
+            "step, at order 1. The other rows hold the slot by a pin joint from far away across it "
+            "(pymunk), or by a row or a slide (MuJoCo), and have no such error."
+        ),
+    ),
+    Failure(
+        title="A slider that has to start the crank, next to its dead centre",
+        expected=(
+            "Everything is pushed along the slot, from rest, a millionth of a radian beside the outer dead centre. The "
+            "slider has almost no lever, but the motion is exact: the crank leaves, always to the side where it stood."
+        ),
+        cells=_cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+        observations=leaving,
+        remark=(
+            "A start a hundred times nearer leaves 0.38 s later: errors grow by e every 0.08 s as the motion does, so "
+            "what counts is an error relative to how far aside it is. No joint of these methods pushes to the side by "
+            "being open, so none goes the wrong way; they only differ in when."
+        ),
+    ),
+    Failure(
+        title="A slider in its dead centre",
+        expected="Exactly in line it has no lever at all, and stays for ever, in an equilibrium that can't be kept.",
+        cells=_cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10)),
+        remark=(
+            "Symmetry keeps it there: all forces lie along one line, and no rounding leaves it. A simulation in which "
+            "the crank never starts is no proof that a machine would stand still."
+        ),
+    ),
+    Failure(
+        title="A slot out of reach",
+        expected="With an offset of rod minus crank or more the crank can't turn fully.",
+        observations=refusals,
+        remark="No engine is asked: there is no motion that it could be held against.",
+    ),
+)
+
+REACHES = (0.0, 0.5, 0.9, 0.99, 0.999)
+
+
+def near(reach: float) -> DrivenSliderCrank:
+    """Driven, the slot at this part of the largest offset."""
+    plain = DrivenSliderCrank()
+    return replace(plain, offset=reach * (plain.rod - plain.crank), angle=math.pi / 2)
+
+
+MAPS: tuple[StabilityMap, ...] = (
+    StabilityMap(
+        name="reach",
+        title="How near to the largest offset, at which step?",
+        parameter="offset, relative to rod minus crank",
+        cells=tuple(
+            (reach, Cell(near(reach), engine, every, "map"))
+            for engine in (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
+            for reach in REACHES
+            for every in (1, 3, 10, 30)
+        ),
+        remark=(
+            "At the largest offset the rod stands upright once a turn and the two assemblies meet. Near it the slider "
+            "is fast and the forces are large for a moment. MuJoCo's soft loop as shipped lets the rod through to the "
+            "other assembly, at every step; pymunk's as shipped does so at all but the smallest. Sweeps that close "
+            "all of the gap tear the mechanism, in more cases the smaller the step. MuJoCo tuned and extended get "
+            "through everywhere."
+        ),
+    ),
+)

@@ -1,0 +1,127 @@
+"""Where vehicles on ideal wheels go wrong: reversing, casters that swing round, and a wheel too many."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from engines import Engine
+from engines.registry import VARIANTS
+from reference.scene import Scene
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
+from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers
+from reports.grid.cells import Cell
+from reports.pages.observing import observe
+from reports.pages.page import Failure, Observation
+from reports.text.tables import number
+
+ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
+MOTION = ("position", "angle", "gap", "slip", "energy")
+
+BACKING = CarAndTrailer(speed=-1.0, steering=0.0, bend=0.05, hitch=0.0)
+PUSHED = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
+FOLDED = math.pi / 2  # rad
+
+
+def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
+    return tuple(
+        Cell(scene, engine, count, "failure") for engine in engines for count in _affordable(engine, tuple(every))
+    )
+
+
+def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
+    """What runs a cell at many steps is at rounding with the longest already."""
+    return every[:1] if engine.variant == "extended" else every
+
+
+def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
+    """When |values| first passes a limit, linear between samples; None if it never does."""
+    over = np.flatnonzero(np.abs(values) > limit)
+    if not over.size or over[0] == 0:
+        return None
+    late = int(over[0])
+    before, after = abs(values[late - 1]), abs(values[late])
+    return float(t[late - 1] + (t[late] - t[late - 1]) * (limit - before) / (after - before))
+
+
+def folding() -> list[Observation]:
+    """When the reversing trailer is bent beyond a right angle: closed form, kinematics, and methods that coast."""
+    # Straight back the bend b obeys b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
+    exact = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)
+    found = [Observation("closed form, at an even speed", "", f"{exact:.4f} s")]
+    car = CarWithTrailers(BACKING.wheelbase, (BACKING.length,), (BACKING.hitch,))
+    convoy = car.drive(BACKING.speed, BACKING.steering, BACKING.pose, (BACKING.bend,), [exact + 1])
+    found.append(Observation("the reference, driven at an even speed", "", f"{convoy.jackknifed_at:.4f} s"))
+    tow = Tow(BACKING.length, BACKING.bend)
+    way = -exact * abs(BACKING.speed)
+    found.append(
+        Observation("the drawbar pushed along by that way", "", f"bent by {float(tow.relative_angle(way)):.4f} rad")
+    )
+    t = np.linspace(0, BACKING.duration, BACKING.samples + 1)
+    truth = BACKING.motion(t).pose
+    found.append(Observation("the reference, coasting", "", _folded(t, truth)))
+    for engine in ENGINES_ALONE:
+        for every in _affordable(engine, (1, 10)):
+            cell = Cell(BACKING, engine, every, "failure")
+            found += observe(cell, f"step {number(cell.step)} s", lambda run: _folded(run.t, run.pose))
+    return found
+
+
+def _folded(t: np.ndarray, pose: np.ndarray) -> str:
+    bend = pose[:, 1, 2] - pose[:, 0, 2]
+    bend = np.where(np.isfinite(bend), bend, 0.0)
+    when = crossing(t, bend, FOLDED)
+    return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
+
+
+FAILURES: tuple[Failure, ...] = (
+    Failure(
+        title="A reversing trailer jack-knifes",
+        expected=(
+            f"Backing straight from a bend of {BACKING.bend:g} rad the bend grows as exp(v t / L), "
+            f"{abs(BACKING.speed) / BACKING.length:g} per second, and passes a right angle. Coasting, the car is slowed"
+            " down by what it gives to the trailer."
+        ),
+        cells=_cells(BACKING, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+        observations=folding,
+        remark=(
+            "The ideal wheels go on through the fold, real bodies would touch. The naive zeroing (`pymunk default`, a "
+            "user's trick and no part of pymunk) computes another vehicle: its trailer folds about half a second late, "
+            "at both steps."
+        ),
+    ),
+    Failure(
+        title="Casters swing round when the cart is pushed back",
+        expected=(
+            "A caster that stands straight behind its kingpin is unstable as soon as the cart goes back, and swings "
+            "round by half a turn: the left one first, which stood less straight."
+        ),
+        cells=_cells(PUSHED, ENGINES_ALONE, (1, 10)),
+        columns=MOTION,
+    ),
+    Failure(
+        title="Both wheels of every axle: the car and its trailer",
+        expected=(
+            "The two wheels of an axle stop the same motion, so the second changes nothing but the number of rows; how "
+            "the two share the force is not determined, and the reference gives each half."
+        ),
+        cells=_cells(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+        remark=(
+            "Compare with the same vehicle with one row an axle, in the tables above: each method has the same "
+            "position error as there, apart from rounding. That holds for MuJoCo's soft default friction too. The "
+            "errors of the forces differ more than those of the motion."
+        ),
+    ),
+    Failure(
+        title="Both wheels of the fixed axle: the cart",
+        expected="As above: one row would do.",
+        cells=_cells(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
+        columns=("position", "slip", "energy", "reaction"),
+    ),
+)

@@ -1,0 +1,82 @@
+"""The wheels' page: vehicles that coast on ideal wheels, and what towed and free wheels do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from engines.registry import VARIANTS
+from reference.scenes import SCENES
+from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.wheels.cart import Cart
+from reports.charts.plane_panels import paths
+from reports.charts.theme import svg
+from reports.grid.cells import Cell
+from reports.grid.convergence import best_of
+from reports.pages.page import Material, Page
+from reports.pages.skate.methods import method
+from reports.pages.skate.page import counted
+from reports.pages.wheels import pictures as wheels_pictures
+from reports.pages.wheels.expectations import KNOWN, ORDERS
+from reports.pages.wheels.experiments import FAILURES
+from reports.text.unmeasured import UNMEASURED
+
+NAME = "wheels"
+SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+
+OVERLAID: dict[str, tuple[str, Any]] = {
+    "pymunk default": ("pymunk", "--"),
+    "pymunk tuned": ("pymunk", "-"),
+    "mujoco default": ("mujoco", "--"),
+    "mujoco tuned": ("mujoco", ":"),
+}
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Both vehicles coasting, tows, casters, and the trailer that folds."""
+    panels = []
+    for title, scene in (
+        ("car and trailer, 5 s, steps of 1e-2 s", CarAndTrailer()),
+        ("cart with two casters, 3 s", Cart()),
+    ):
+        cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
+        made = material.trajectories(tuple(cells.values()))
+        truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
+        found = {name: (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made}
+        panels.append(wheels_pictures.coasting(truth, found, title))
+    return {
+        "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),
+        "tows": svg(wheels_pictures.tows(), "A towed wheel: the tractrix, and tows round circles"),
+        "casters": svg(wheels_pictures.casters(), "Casters that trail, and that swing round"),
+        "reversing": svg(wheels_pictures.reversing(), "A reversing trailer folds"),
+    }
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """`counted`: the freedoms' table; `least(scene, engine, variant)`: the row with the least position error."""
+    rows = material.sweep(SCENES_HERE)
+
+    def least(scene: str, engine: str, variant: str) -> Any:
+        own = (row for row in rows if row.scene == scene)
+        return best_of(own, engine, variant, "position") or UNMEASURED
+
+    shown = (*SCENES_HERE, CarAndTrailer(redundant=True), Cart(redundant=True))
+    doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
+    return {"counted": counted(shown, (*(scene.name for scene in SCENES_HERE), *doubled)), "least": least}
+
+
+PAGE = Page(
+    name=NAME,
+    title="Ideal wheels",
+    lesson="Cars, trailers and carts: pins and skates together, coasting in the ways that the wheels still allow.",
+    scenes=SCENES_HERE,
+    engines=VARIANTS,
+    failures=FAILURES,
+    quantity="position",
+    figures=figures,
+    words=words,
+    orders=ORDERS,
+    known=KNOWN,
+)

@@ -1,0 +1,1 @@
+"""Rows to words: tables, the overview, templates to pages."""
