@@ -9,11 +9,11 @@ import numpy as np
 from engines import registry
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
-from engines.mujoco.roll_contact import CompletedContact, RollContact
-from engines.mujoco.roll_rows import RollEquality, RollRows
+from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
+from engines.mujoco.joints.roll.rows import RollEquality, RollRows
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 from engines.pymunk.engine import Pymunk
-from engines.pymunk.outlines import SHIPPED_CONTACT
+from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.reflection import Reflected
 from reference import centrodes, shapes
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced

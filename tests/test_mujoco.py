@@ -12,7 +12,7 @@ import pytest
 from engines import Unsupported
 from engines.mujoco import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, Hardened, MuJoCo, Shipped, TiedToStep, bare_loop
 from engines.mujoco.engine import refuse_wrong_version
-from engines.mujoco.solution import unsolved
+from engines.mujoco.solver_check import unsolved
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Joint, Pin
 from reference.mechanism import Body, Mechanism

@@ -15,7 +15,7 @@ from engines import Unsupported
 from engines import mujoco as adapter
 from engines.mujoco import factorisation
 from engines.mujoco.factorisation import AGREEMENT, disagreement
-from engines.mujoco.skates import METHODS as SKATES
+from engines.mujoco.methods import SKATES
 from reference.scenes import SCENES
 
 # Three links on the tip of the first, a fifth on one of them, two loops across: the smallest that 4.0.0 gets wrong.

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
-from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo, roll_contact
-from engines.mujoco.roll_rows import roll_rows
-from engines.mujoco.roll_table import RollTable
-from engines.mujoco.rolls import METHODS, CompletedContact, RollContact, RollEquality, RollRows
+from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
+from engines.mujoco.joints.roll import CompletedContact, RollContact, RollEquality, RollRows, contact
+from engines.mujoco.joints.roll.rows import roll_rows
+from engines.mujoco.methods import ROLLS
+from engines.rolling_table import RollTable
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
 from reference.curves.round import Circle, Line, Ring, Side
@@ -34,7 +35,7 @@ from reference.rolling.scenes import (
 from reference.trajectory import Trajectory
 
 ELLIPSE, DISC = RollingEllipse(), RollingDisc()
-EULER, EQUALITY, COMPLETED = METHODS
+EULER, EQUALITY, COMPLETED = ROLLS
 
 
 @dataclass(frozen=True)
@@ -224,7 +225,7 @@ def test_real_contact_is_exact_once_its_velocity_term_is_added(scene: RollingSce
 
 
 def test_real_contact_without_the_term_is_wrong_by_a_millionfold(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(roll_contact, "_missing", lambda *_: lambda *_: 0j)
+    monkeypatch.setattr(contact, "_missing", lambda *_: lambda *_: 0j)
     # The missing acceleration of about 10 m/s^2 moves the contact by 10 / k, k = 1 / (0.04 s)^2: 16 mm.
     assert angle_error(COMPLETED, ELLIPSE, dt=1e-3) > 1e-3
 
@@ -259,7 +260,7 @@ def test_a_cylinder_rolls_as_a_sphere_does_with_twice_the_rows() -> None:
 
 def test_a_model_has_the_rows_that_rolling_needs() -> None:
     rows = {"default": 4, "tuned": 3, "extended": 2, EULER.variant: 3, EQUALITY.variant: 2, COMPLETED.variant: 3}
-    for engine in (DEFAULT, TUNED, EXTENDED, *METHODS):
+    for engine in (DEFAULT, TUNED, EXTENDED, *ROLLS):
         size = engine.build(DISC.mechanism(), 1e-3).size
         assert (size.bodies, size.coordinates, size.rows) == (1, 3, 2)
         # A contact has a normal row and two of friction, of which one points out of the plane and is empty, or four

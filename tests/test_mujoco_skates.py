@@ -12,10 +12,10 @@ import pytest
 
 from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
-from engines.mujoco import skating as skating_module
-from engines.mujoco.skates import METHODS
-from engines.mujoco.skating import skate_rows
-from engines.mujoco.slots import slot_rows
+from engines.mujoco.joints import skate as skate_module
+from engines.mujoco.joints.skate import skate_rows
+from engines.mujoco.joints.slot import slot_rows
+from engines.mujoco.methods import SKATES
 from engines.mujoco.tree import spanning_tree
 from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_writer, writing
 from reference.joints import Joint, Pin, Skate, Slot
@@ -27,8 +27,8 @@ from reference.wheels.cart import Cart
 from tests.mechanisms import bar, four_bar
 
 SLEIGH = ChaplyginSleigh()
-NAMED = {engine.variant: engine for engine in METHODS}
-EVERY = (DEFAULT, TUNED, EXTENDED, *METHODS)
+NAMED = {engine.variant: engine for engine in SKATES}
+EVERY = (DEFAULT, TUNED, EXTENDED, *SKATES)
 
 
 def run(engine: MuJoCo, scene: Any, dt: float) -> tuple[Trajectory, Trajectory]:
@@ -217,13 +217,13 @@ def test_a_blade_a_thousandth_further_back_would_be_noticed() -> None:
 
 
 def test_a_row_without_its_velocity_term_would_be_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = skating_module.skate_rows
+    right = skate_module.skate_rows
 
     def without(skate: Skate, damping: float) -> Any:
         own = right(skate, 0.0)
         return lambda t, first, second: [(*row[:6], 0.0) for row in own(t, first, second)]
 
-    monkeypatch.setattr(skating_module, "skate_rows", without)
+    monkeypatch.setattr(skate_module, "skate_rows", without)
     assert position_error(EXTENDED, SLEIGH, 1e-2) > 1e-2
 
 

@@ -19,7 +19,7 @@ from engines import Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, bare_loop
-from engines.pymunk.recorder import Recorder
+from engines.pymunk.running import Recorder
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism

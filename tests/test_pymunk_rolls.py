@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
-from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, rolls
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
 from engines.pymunk.contacts import Touch
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
@@ -99,22 +99,22 @@ def test_extended_rolling_is_exact_to_rounding_with_forces(scene):
 
 @every_scene
 def test_a_pivot_at_the_predicted_contact_is_of_second_order(scene):
-    assert order(rolls.PIVOT, scene, 10) == pytest.approx(2, abs=0.2)  # in the ring the next power still shows
+    assert order(methods.ROLL_PIVOT, scene, 10) == pytest.approx(2, abs=0.2)  # in the ring the next power still shows
 
 
 @pytest.mark.parametrize("scene", [ELLIPSE, DISC, RING], ids=lambda scene: scene.name)
 def test_a_reflection_is_of_second_order_and_keeps_the_energy(scene):
     # The contact of round pairs is exact, so that only the power two remains.
-    assert order(rolls.REFLECTED, scene, 10) == pytest.approx(2, abs=0.1)
-    mechanism, trajectory = scene.mechanism(), run(rolls.REFLECTED, scene, 10)
+    assert order(methods.ROLL_REFLECTED, scene, 10) == pytest.approx(2, abs=0.1)
+    mechanism, trajectory = scene.mechanism(), run(methods.ROLL_REFLECTED, scene, 10)
     kinetic = 0.5 * np.sum(mechanism.inertias * truth(scene).twist ** 2, axis=(1, 2)).max()
     # Half drifts and half kicks do not commute: the energy wavers by h^2 of gravity's work, and does not drift.
     assert np.ptp(energy(mechanism, trajectory)) < 1e-4 * kinetic
 
 
 def test_a_pivot_at_the_contact_of_now_loses_half_of_the_rolling_acceleration_of_a_step():
-    assert angle_error(rolls.STALE_PIVOT, ELLIPSE, 10) > 100 * angle_error(rolls.PIVOT, ELLIPSE, 10)
-    assert order(rolls.STALE_PIVOT, ELLIPSE, 30) == pytest.approx(1, abs=0.2)
+    assert angle_error(methods.ROLL_STALE_PIVOT, ELLIPSE, 10) > 100 * angle_error(methods.ROLL_PIVOT, ELLIPSE, 10)
+    assert order(methods.ROLL_STALE_PIVOT, ELLIPSE, 30) == pytest.approx(1, abs=0.2)
 
 
 def test_two_gears_that_move_roll_on_each_other():
@@ -141,7 +141,7 @@ def test_a_round_body_by_contact_is_of_first_order_whatever_the_settings():
 
 def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_step():
     plateaus = {}
-    for engine in rolls.FACETED:
+    for engine in methods.ROLL_FACETED:
         coarse, fine = (angle_error(engine, ELLIPSE, every) for every in (10, 30))
         plateaus[engine.contact.vertices] = fine
         if engine.contact.vertices in (32, 128):
@@ -152,7 +152,9 @@ def test_a_polygon_stays_away_from_the_ellipse_by_its_corners_however_small_the_
 
 def test_upstream_on_ground_without_thickness_a_fine_polygon_stops_dead():
     """At some contact the wrong normal is found; on a segment with a radius, whose surface is the same, it never is."""
-    thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (rolls.THIN_GROUND, rolls.FACETED[-1]))
+    thin, thick = (
+        run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (methods.ROLL_THIN_GROUND, methods.ROLL_FACETED[-1])
+    )
     assert abs(thin) < 0.1
     assert thick == pytest.approx(truth(ELLIPSE).twist[5, 0, 2], rel=0.05)
 
@@ -224,7 +226,7 @@ def test_contact_settings_that_would_abort_the_process_are_refused(given):
         Contact(**given)
 
 
-@pytest.mark.parametrize("engine", [*METHODS, rolls.REFLECTED], ids=lambda each: each.variant)
+@pytest.mark.parametrize("engine", [*METHODS, methods.ROLL_REFLECTED], ids=lambda each: each.variant)
 @pytest.mark.parametrize("scene", [ELLIPSE, HILL], ids=lambda scene: scene.name)
 def test_rolling_that_blows_up_is_a_result_and_not_an_exception(engine, scene):
     trajectory = engine.build(scene.mechanism(), 1e200)(10, 2)

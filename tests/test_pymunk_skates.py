@@ -10,7 +10,7 @@ import pytest
 
 from engines import Unsupported
 from engines.lagrange import Lagrange
-from engines.pymunk import EXTENDED, TUNED, Pymunk, skates
+from engines.pymunk import EXTENDED, TUNED, Pymunk, methods
 from engines.pymunk.reflection import Reflected
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
@@ -42,7 +42,7 @@ def slip(scene, trajectory: Trajectory) -> float:
 
 
 @pytest.mark.parametrize(
-    "engine", [skates.PROJECTED, skates.GROOVE, skates.STALE_GROOVE], ids=lambda each: each.variant
+    "engine", [methods.SKATE_PROJECTED, methods.SKATE_GROOVE, methods.SKATE_STALE_GROOVE], ids=lambda each: each.variant
 )
 def test_a_row_held_at_the_end_of_each_step_is_of_first_order(engine):
     coarse, fine = (position_error(engine, SLEIGH, every) for every in (10, 40))
@@ -50,15 +50,15 @@ def test_a_row_held_at_the_end_of_each_step_is_of_first_order(engine):
 
 
 def test_a_reflection_is_of_second_order_and_keeps_the_energy_to_rounding():
-    coarse, fine = (position_error(skates.REFLECTED, SLEIGH, every) for every in (10, 40))
+    coarse, fine = (position_error(methods.SKATE_REFLECTED, SLEIGH, every) for every in (10, 40))
     assert np.log2(coarse / fine) / 2 == pytest.approx(2, abs=0.1)
-    trajectory, _ = run(skates.REFLECTED, SLEIGH, 10)
+    trajectory, _ = run(methods.SKATE_REFLECTED, SLEIGH, 10)
     assert largest(energy(SLED, trajectory) / SLEIGH.energy - 1) < 1e-12  # 3000 roundings of 1e-16
 
 
 def test_no_slip_proves_nothing_the_shifted_velocity_is_another_motion_at_any_step():
     for every in (10, 40):
-        trajectory, truth = run(skates.POINT, SLEIGH, every)
+        trajectory, truth = run(methods.SKATE_POINT, SLEIGH, every)
         assert slip(SLEIGH, trajectory) < 1e-14
         assert largest(trajectory.pose[..., :2] - truth.pose[..., :2]) > 1  # m, of a path of 6 m
         # It pumps energy in: the sleigh ends many times livelier than it began.
@@ -66,14 +66,14 @@ def test_no_slip_proves_nothing_the_shifted_velocity_is_another_motion_at_any_st
 
 
 def test_zeroing_the_centres_velocity_is_another_motion_unless_the_skate_is_there():
-    assert position_error(skates.CENTRE, SLEIGH, 40) > 1
+    assert position_error(methods.SKATE_CENTRE, SLEIGH, 40) > 1
     there = ChaplyginSleigh(offset=0.0)
-    assert position_error(skates.CENTRE, there, 40) < 5e-3  # a circle, first order
+    assert position_error(methods.SKATE_CENTRE, there, 40) < 5e-3  # a circle, first order
 
 
 def test_the_predicted_groove_slips_by_rounding_only_and_the_stale_one_by_a_step():
     predicted, _ = run(TUNED, SLEIGH, 10)
-    stale, _ = run(skates.STALE_GROOVE, SLEIGH, 10)
+    stale, _ = run(methods.SKATE_STALE_GROOVE, SLEIGH, 10)
     assert slip(SLEIGH, predicted) < 1e-10
     assert 1e-4 < slip(SLEIGH, stale) < 1e-1
 
@@ -91,14 +91,14 @@ def test_the_extended_sleigh_reaches_its_goal(scene):
 
 def test_a_groove_extrapolated_is_as_good_and_both_powers_are_right():
     # Were the powers of the error others, five levels would leave 1e-5 and more.
-    assert position_error(skates.GROOVE_EXTRAPOLATED, SLEIGH, 1) < 1e-11
-    assert position_error(replace(skates.GROOVE_EXTRAPOLATED, powers=(2, 3, 4, 5)), SLEIGH, 1) > 1e-7
+    assert position_error(methods.SKATE_GROOVE_EXTRAPOLATED, SLEIGH, 1) < 1e-11
+    assert position_error(replace(methods.SKATE_GROOVE_EXTRAPOLATED, powers=(2, 3, 4, 5)), SLEIGH, 1) > 1e-7
 
 
 def test_runs_of_odd_and_even_step_counts_must_not_be_mixed_in_a_reflection():
-    trajectory, truth = run(replace(skates.REFLECTED_EXTRAPOLATED, levels=(2, 3, 4, 5)), SLEIGH, 1)
+    trajectory, truth = run(replace(methods.SKATE_REFLECTED_EXTRAPOLATED, levels=(2, 3, 4, 5)), SLEIGH, 1)
     assert largest(trajectory.twist - truth.twist) > 1e-8  # what the row lacks changes sign with every step
-    trajectory, truth = run(skates.REFLECTED_EXTRAPOLATED, SLEIGH, 1)
+    trajectory, truth = run(methods.SKATE_REFLECTED_EXTRAPOLATED, SLEIGH, 1)
     assert largest(trajectory.twist - truth.twist) < 1e-10
 
 
@@ -130,7 +130,7 @@ def test_a_blade_set_at_an_angle_is_turned_with_the_body():
         (replace(SLED.bodies[0], twist=(np.cos(0.3), np.sin(0.3) + 0.0, 0.0)),),
         (Skate("skate", None, "sleigh", (-0.5 * np.cos(0.3), -0.5 * np.sin(0.3)), 0.3),),
     )
-    for engine in (TUNED, EXTENDED, skates.PROJECTED):
+    for engine in (TUNED, EXTENDED, methods.SKATE_PROJECTED):
         trajectory = engine.build(turned, 1e-2)(50, 1)
         # Without turning it slides straight along the blade.
         path = trajectory.pose[:, 0, :2] - turned.pose[0, :2]
@@ -158,19 +158,19 @@ def test_a_skate_on_a_body_that_moves_is_held_too():
     trajectory = EXTENDED.build(mechanism, 1e-2)(50, 1)
     assert largest(trajectory.pose - truth.pose) < 1e-9
     assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-8
-    for engine in (skates.CENTRE, skates.PROJECTED, skates.STALE_GROOVE):
+    for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED, methods.SKATE_STALE_GROOVE):
         with pytest.raises(Unsupported, match="on the ground only"):
             engine.build(mechanism, 1e-2)
 
 
 def test_friction_makes_no_skate_and_says_why():
     with pytest.raises(Unsupported, match="no normal force to multiply"):
-        skates.FRICTION.build(SLED, 1e-3)
+        methods.SKATE_FRICTION.build(SLED, 1e-3)
 
 
 def test_a_reflection_refuses_bodies_that_are_joined():
     with pytest.raises(Unsupported, match="one skate or contact"):
-        skates.REFLECTED.build(CAR.mechanism(), 1e-3)
+        methods.SKATE_REFLECTED.build(CAR.mechanism(), 1e-3)
 
 
 def test_a_construction_that_does_not_exist_is_refused_with_those_that_do():
@@ -178,7 +178,7 @@ def test_a_construction_that_does_not_exist_is_refused_with_those_that_do():
         Pymunk("mine", skate="velcro")  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("engine", skates.METHODS, ids=lambda each: each.variant)
+@pytest.mark.parametrize("engine", methods.SKATES, ids=lambda each: each.variant)
 def test_a_sleigh_that_is_thrown_too_far_is_a_result_and_not_an_exception(engine):
     wild = replace(SLED, bodies=(replace(SLED.bodies[0], twist=(1e200, 0.0, 0.0)),))
     try:

@@ -13,7 +13,7 @@ from pymunk.constraints import GrooveJoint
 
 from engines import Size, Unsupported
 from engines.lagrange import Lagrange
-from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, slots
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, methods
 from engines.pymunk.contraction import contraction, gain, sweeps
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
@@ -83,10 +83,10 @@ def test_a_rod_in_a_groove_joint_is_wrong_at_any_step():
     """cpGrooveJoint solves both directions and keeps one: right only where the normal is an axis of the mass."""
     mechanism, exact = rod_in_a_groove(), rod_truth()
     for every in (1, 10):
-        trajectory = slots.GROOVE.build(mechanism, 1e-2 / every)(60, every)
+        trajectory = methods.SLOT_GROOVE.build(mechanism, 1e-2 / every)(60, every)
         assert largest(joint_gap(mechanism, trajectory)) > 0.1  # m, in a mechanism of 1 m
         assert largest(trajectory.pose - exact.pose) > 0.1
-    stalled = slots.GROOVE_EXTRAPOLATED.build(mechanism, 1e-3)(60, 10)
+    stalled = methods.SLOT_GROOVE_EXTRAPOLATED.build(mechanism, 1e-3)(60, 10)
     assert largest(stalled.pose - exact.pose) > 1e-6
 
 

@@ -11,8 +11,8 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from engines.mujoco import rolls as mujoco_rolls
-from engines.pymunk import rolls as pymunk_rolls
+from engines.mujoco import methods as mujoco_methods
+from engines.pymunk import methods as pymunk_methods
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.limits import DiscInHole, SquareOnCatenaries
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
@@ -90,7 +90,7 @@ def test_a_shipped_contact_does_not_converge_and_a_tuned_one_does():
 
 
 def test_a_polygons_error_falls_with_its_corners_and_not_with_the_step():
-    eight, many = pymunk_rolls.FACETED[0], pymunk_rolls.FACETED[-1]
+    eight, many = pymunk_methods.ROLL_FACETED[0], pymunk_methods.ROLL_FACETED[-1]
     errors = {
         (engine.variant, every): row(RollingEllipse(), engine, every).angle
         for engine in (eight, many)
@@ -104,7 +104,7 @@ def test_nearly_conformal_rolling_breaks_with_a_word_in_one_method_and_without_i
     scene = DiscInHole(clearance=1e-2)
     warned = row(scene, mujoco.EXTENDED, 1)
     assert "turns by" in warned.sentence
-    silent = row(scene, pymunk_rolls.REFLECTED, 100)
+    silent = row(scene, pymunk_methods.ROLL_REFLECTED, 100)
     # The contact is closed and doesn't slip, and the body has stopped turning.
     assert silent.gap < 1e-5
     assert silent.outcome == Outcome.SATURATED
@@ -138,7 +138,12 @@ def test_a_square_stands_on_its_corner_when_energy_says_and_the_reference_stops_
 def test_every_method_stops_at_the_corner_and_was_right_until_there():
     scene = SquareOnCatenaries()
     # The reflection is beyond the corner in its last sample, where the joint has no gap that could be measured.
-    for engine in (pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED, mujoco.EXTENDED, Lagrange("rk4", "projection")):
+    for engine in (
+        pymunk_methods.ROLL_PIVOT,
+        pymunk_methods.ROLL_REFLECTED,
+        mujoco.EXTENDED,
+        Lagrange("rk4", "projection"),
+    ):
         found = row(scene, engine, 1)
         assert not Outcome(found.outcome).comparable
         assert found.sentence
@@ -146,7 +151,7 @@ def test_every_method_stops_at_the_corner_and_was_right_until_there():
 
 
 def test_contact_on_a_hill_is_let_go_and_caught_again():
-    stiff = next(method for method in mujoco_rolls.METHODS if "stiff" in method.variant)
+    stiff = next(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
     assert run_of(absent_contact, RollingOnCircle(), stiff, 100) > 0.02
     assert run_of(absent_contact, RollingOnCircle(), mujoco.EXTENDED, 10) == 0.0
 

@@ -6,20 +6,19 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 import mujoco
 
 from engines import Size, Softness, Unsupported
-from engines.mujoco.model import Coordinates, DriveBy, Model, RollBy, build_model
-from engines.mujoco.roll_contact import CompletedContact, RollContact
-from engines.mujoco.roll_rows import RollEquality, RollRows
+from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
+from engines.mujoco.joints.skate import STEPWISE, SkateBy
+from engines.mujoco.joints.slot import SlotBy
+from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
 from engines.mujoco.running import MuJoCoRun
-from engines.mujoco.skating import STEPWISE, SkateBy
-from engines.mujoco.slots import SlotBy
-from engines.mujoco.solution import choose_solver
-from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
+from engines.mujoco.solver_check import choose_solver
+from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
 from engines.mujoco.tree import spanning_tree
 from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
@@ -55,8 +54,8 @@ class MuJoCo(Valid):
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
     `servo_gain` [N m s/rad]; or because its state is overwritten after every step, as users do. `solvers` are tried at
     the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
-    `engines.mujoco.skating.add_skates`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever
-    the integrator otherwise, since four stages of the same stale row cost more and gain nothing.
+    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
+    integrator otherwise, since four stages of the same stale row cost more and gain nothing.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -164,44 +163,3 @@ def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: Positive, steps: Count) 
     for _ in range(steps):
         advance(compiled, data)
     return time.process_time() - begin
-
-
-DEFAULT = MuJoCo("default")
-TUNED = MuJoCo(
-    "tuned",
-    "RK4",
-    TiedToStep(),
-    jacobian="dense",
-    islands=False,
-    skates="predicted tendon",
-    rolls=RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic"),
-)
-EXTENDED = MuJoCo(
-    "extended",
-    "RK4",
-    Hardened(),
-    armature=1e12,
-    solvers=("Newton", "PGS", "CG"),
-    iterations=100,
-    tolerance=1e-28,
-    jacobian="dense",
-    islands=False,
-    slots="rows",
-    skates="rows",
-    rolls=RollRows(),
-)
-METHODS = (
-    DEFAULT,
-    TUNED,
-    EXTENDED,
-    replace(TUNED, variant="stiff Euler", integrator="Euler"),
-    replace(TUNED, variant="stiff implicitfast", integrator="implicitfast"),
-    replace(TUNED, variant="stiff discrete", integrator="discrete"),
-    replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
-    replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
-)
-# Other ways to prescribe a rate; where nothing is driven they are no methods of their own.
-DRIVES = (
-    replace(TUNED, variant="tuned, servo", drive="servo"),
-    replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),
-)

@@ -19,10 +19,9 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
-from engines.mujoco.roll_contact import CompletedContact, RollContact
-from engines.mujoco.roll_rows import RollEquality, RollRows
-from engines.mujoco.skating import SkateBy, add_skates
-from engines.mujoco.slots import SlotBy, add_slots
+from engines.mujoco.joints.roll import RollBy
+from engines.mujoco.joints.skate import SkateBy, add_skates
+from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.tree import Tree, spanning_tree, world_offset
 from engines.mujoco.written_rows import add_placeholders, installed, row_writer, writing
@@ -32,7 +31,6 @@ from reference.rolling.roll import Roll
 
 Coordinates = Literal["tree", "free"]
 DriveBy = Literal["inertia", "servo", "overwrite"]
-RollBy = RollContact | CompletedContact | RollRows | RollEquality
 
 
 @dataclass(frozen=True)

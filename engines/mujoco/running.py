@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from engines import Size
 from engines.mujoco.construction import in_turn
+from engines.mujoco.joints.roll.roll_warnings import roll_warnings
 from engines.mujoco.model import Model
-from engines.mujoco.roll_doubts import roll_doubts
-from engines.mujoco.solution import unsolved
+from engines.mujoco.solver_check import unsolved
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
 
@@ -92,7 +92,7 @@ class MuJoCoRun:
         reaction[read] = self.model.mechanism.reaction(pose[read], change[read], *self.model.loads())
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
-        warnings += roll_doubts(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
+        warnings += roll_warnings(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
     def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:

@@ -1,6 +1,6 @@
 """pymunk under test: impulses by Gauss-Seidel sweeps, as shipped, well set, started in step, and extrapolated.
 
-METHODS are for every scene. Other constructions of a joint are in `engines.pymunk.skates`, `.rolls` and `.slots`.
+All methods are in `engines.pymunk.methods`, the constructions of each joint in `engines.pymunk.joints`.
 
 What one step of Chipmunk does (cpSpaceStep): it drifts, p += v dt, with the old velocity; then, at the new positions,
 it kicks, and lets every joint correct the velocities in turn, `iterations` times, beginning with the impulses of the
@@ -30,15 +30,11 @@ from itertools import repeat
 from engines import Engine, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
-from engines.pymunk.extended import EXTENDED, LEAPFROG, Extended
-from engines.pymunk.outlines import Contact
+from engines.pymunk.extended import Extended
+from engines.pymunk.joints.roll import Contact
+from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
 from reference.mechanism import Mechanism
 from reference.validation import Count, Positive, validated
-
-DEFAULT = Pymunk("default")
-# Contact: all of the overlap is left alone, because pushing bodies apart rolls them too.
-TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
-METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
 
 @validated

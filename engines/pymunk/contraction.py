@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from engines.pymunk.drives import find_cranks, find_turned
+from engines.pymunk.joints.drive import find_cranks, find_turned
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE

@@ -9,11 +9,12 @@ import pymunk
 from pymunk.constraints import PivotJoint
 
 from engines import Softness
-from engines.pymunk import blades, rollers, slides
 from engines.pymunk.contraction import contraction, gain, sweeps
+from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
+from engines.pymunk.joints.skate import SkateConstruction
+from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
-from engines.pymunk.outlines import SHIPPED_CONTACT, Contact
-from engines.pymunk.recorder import PymunkRun
+from engines.pymunk.running import PymunkRun
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, Fraction, Name, Positive, Valid, validated
@@ -41,7 +42,7 @@ class Pymunk(Valid):
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
-    (`engines.pymunk.blades`, `.rollers`, `.slides`), `contact` how contact is set where it stands for a Roll.
+    (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
 
     A `gain` below 1 in every step would be an error_bias ** dt; that power underflows to 0 at small steps, which is a
     gain of 1. Models by "contraction" are therefore built in a unit of time in which the step is 1, where that matters.
@@ -53,9 +54,9 @@ class Pymunk(Valid):
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
-    skate: blades.SkateConstruction = "centre"
-    roll: rollers.RollConstruction = "contact"
-    slot: slides.SlotConstruction = "exact"
+    skate: SkateConstruction = "centre"
+    roll: RollConstruction = "contact"
+    slot: SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
 
     @property

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from engines import Run
 from engines.extrapolated import Extrapolated
-from engines.pymunk.engine import Pymunk
-from engines.pymunk.reflection import Reflected, reflectable
+from engines.pymunk.reflection import reflectable
 from reference.joints import Skate
 from reference.mechanism import Mechanism
 from reference.validation import Name, Positive, Valid, validated
@@ -48,18 +47,3 @@ class Extended(Valid):
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Raises whatever the chosen engine raises."""
         return self.chosen(mechanism).build(mechanism, dt)
-
-
-LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
-# Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
-AIMED = Pymunk("aimed", 40, 0.0, skate="groove", roll="pivot")
-# The leapfrog's error has all powers from the second, not only even ones; with a skate from the first.
-FIVE = (2, 3, 4, 6, 8)
-# Even numbers of steps only, as a reflection asks for, and even powers, as it gives.
-EVEN, EVEN_POWERS = (2, 4, 6, 8), (2, 4, 6)
-EXTENDED = Extended(
-    "extended",
-    single=Extrapolated(Reflected("reflection"), "extended", levels=EVEN, powers=EVEN_POWERS),
-    skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4)),
-    pins=Extrapolated(LEAPFROG, "extended", levels=FIVE, powers=(2, 3, 4, 5)),
-)

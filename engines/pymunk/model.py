@@ -13,12 +13,11 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.constraints import Constraint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
 
 from engines import Size, Unsupported
-from engines.pymunk.blades import SkateConstruction, blade
-from engines.pymunk.drives import crank_body, find_cranks, find_turned, motor, turned_body
-from engines.pymunk.outlines import Contact, touching
-from engines.pymunk.pins import pin
-from engines.pymunk.rollers import MovedPivot, RollConstruction
-from engines.pymunk.slides import SlotConstruction, slide
+from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
+from engines.pymunk.joints.pin import pin
+from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, touching
+from engines.pymunk.joints.skate import SkateConstruction, blade
+from engines.pymunk.joints.slot import SlotConstruction, slide
 from reference.joints import Drive, Joint, Pin, Skate, Slot, Vector
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll

@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
 from engines import Size, Unsupported
-from engines.pymunk.blades import along_blade
 from engines.pymunk.contacts import Touch
-from engines.pymunk.recorder import reactions
+from engines.pymunk.joints.skate import along_blade
+from engines.pymunk.running import reactions
 from reference.joints import Skate, Vector
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll

@@ -9,8 +9,8 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from engines.mujoco import rolls as mujoco_rolls
-from engines.pymunk import rolls as pymunk_rolls
+from engines.mujoco import methods as mujoco_methods
+from engines.pymunk import methods as pymunk_methods
 from reference.rolling.limits import DiscInHole, SquareOnCatenaries
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
 from reference.scene import Scene
@@ -21,8 +21,8 @@ from reports.pages.page import Failure, Observation, StabilityMap
 from reports.text.tables import number
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-EQUALITY = next(method for method in mujoco_rolls.METHODS if "equality" in method.variant)
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED, mujoco.EXTENDED, EQUALITY)
+EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_REFLECTED, mujoco.EXTENDED, EQUALITY)
 ROLLER = 0  # the only body's index
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
@@ -43,7 +43,7 @@ def polygon_cells() -> tuple[tuple[int, Cell], ...]:
     """(corners, cell) of the ellipse as polygons of ever more corners."""
     return tuple(
         (corners, cell)
-        for corners, engine in zip(pymunk_rolls.CORNERS, pymunk_rolls.FACETED, strict=True)
+        for corners, engine in zip(pymunk_methods.CORNERS, pymunk_methods.ROLL_FACETED, strict=True)
         for cell in cells(RollingEllipse(), (engine,), (1, 10, 100))
     )
 
@@ -104,7 +104,7 @@ def absent_contact(cell: Cell, found: Trajectory) -> float:
 
 def chatter() -> list[Observation]:
     """How often the contact on the hill is absent while it should press."""
-    stiff = (method for method in mujoco_rolls.METHODS if "stiff" in method.variant)
+    stiff = (method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
     return [
         Observation(
             f"{cell.engine.name} {cell.engine.variant}",

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines import Engine
-from engines.mujoco import rolls as mujoco_rolls
-from engines.pymunk import rolls as pymunk_rolls
+from engines.mujoco import methods as mujoco_methods
+from engines.pymunk import methods as pymunk_methods
 from engines.registry import VARIANTS
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingInRing, RollingOnCircle
@@ -26,8 +26,12 @@ NAME = "rolling"
 SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
 # Ideal constraints under Euler say nothing here that Runge-Kutta's don't, and finding a contact is what costs.
 COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
-BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_rolls.STALE_PIVOT, pymunk_rolls.PIVOT, pymunk_rolls.REFLECTED)
-ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_rolls.METHODS)
+BY_CONSTRAINT: tuple[Engine, ...] = (
+    pymunk_methods.ROLL_STALE_PIVOT,
+    pymunk_methods.ROLL_PIVOT,
+    pymunk_methods.ROLL_REFLECTED,
+)
+ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_methods.ROLLS)
 
 HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
 

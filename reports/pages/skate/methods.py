@@ -7,13 +7,13 @@ from typing import Any
 
 from engines import Engine
 from engines.mujoco import MuJoCo
-from engines.mujoco import skates as mujoco_skates
+from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import Pymunk
-from engines.pymunk import skates as pymunk_skates
+from engines.pymunk import methods as pymunk_methods
 from engines.registry import VARIANTS
 from reference.mechanism import Mechanism
 
-CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_skates.METHODS, *mujoco_skates.METHODS)
+CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
 _KNOWN = {f"{engine.name} {engine.variant}": engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
 
 
@@ -49,7 +49,7 @@ class LimitedTendon(MuJoCo):
 
 def limited(limit: float) -> tuple[Engine, ...]:
     """Skates that slip when they would have to give more than this side force [N]."""
-    tendon = next(engine for engine in mujoco_skates.METHODS if engine.variant == "tendon friction")
+    tendon = next(engine for engine in mujoco_methods.SKATES if engine.variant == "tendon friction")
     settings = {name: value for name, value in vars(tendon).items() if name != "variant"}
     return (
         LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit),

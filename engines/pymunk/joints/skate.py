@@ -2,9 +2,9 @@
 
 A blade across a rigid body constrains the same motion wherever it touches along its axle, so every construction puts
 it at the foot of the perpendicular from the centre of mass: there the arm is along the blade, and a `GrooveJoint`'s
-impulse is the right one (see `engines.pymunk.links`).
+impulse is the right one (see `engines.pymunk.joints.link`).
 
-`CONSTRUCTIONS` names them:
+`SkateConstruction` names them:
 
 - "centre": after each step the velocity of the centre of mass across the blade is set to zero. Wrong unless the blade
   is there: it is another body's motion.
@@ -21,18 +21,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, sin
-from typing import Literal, get_args
+from typing import Literal
 
 import pymunk
 from pymunk._chipmunk_cffi import lib
 from pymunk.constraints import Constraint, GrooveJoint
 
 from engines import Unsupported
-from engines.pymunk.links import Link, drifted
+from engines.pymunk.joints.link import Link, drifted
 from reference.joints import Skate
 
 SkateConstruction = Literal["centre", "point", "projection", "stale groove", "groove", "friction"]
-CONSTRUCTIONS: tuple[str, ...] = get_args(SkateConstruction)
 
 Aim = Callable[[float], None]
 Repair = Callable[[], None]

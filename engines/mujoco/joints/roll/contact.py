@@ -18,9 +18,9 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Callback, Hooks
-from engines.mujoco.roll_shapes import RoundShape, add_shapes
-from engines.mujoco.roll_table import RollTable
+from engines.mujoco.joints.roll.shapes import RoundShape, add_shapes
 from engines.mujoco.stiffness import STIFFEST, Shipped
+from engines.rolling_table import RollTable
 from reference.rolling.roll import Roll
 from reference.validation import InvalidMechanism, Positive, Valid
 

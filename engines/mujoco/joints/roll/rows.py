@@ -1,6 +1,6 @@
 """Rolling as constraints in MuJoCo: two rows written in a callback, or a joint equality whose polynomial is rewritten.
 
-Both hold the body's origin where rolling puts it at its rotation, P(theta) of `engines.mujoco.roll_table`.
+Both hold the body's origin where rolling puts it at its rotation, P(theta) of `engines.rolling_table`.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -17,9 +17,9 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Binder, Building, Hooks
-from engines.mujoco.roll_table import RollTable
 from engines.mujoco.tree import Link
 from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.rolling_table import RollTable
 from reference.rolling.roll import Roll
 from reference.validation import Valid
 

@@ -16,7 +16,7 @@ from typing import Any
 import mujoco
 
 from engines.mujoco.construction import Building, Callback, Hooks, read_by_step
-from engines.mujoco.skate_multipliers import refuse_loops, without_slip
+from engines.mujoco.joints.skate.multipliers import refuse_loops, without_slip
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_rows import GROUND, WrittenJoint, chain, row_writer
 

@@ -10,16 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, isinf, sin
-from typing import Literal, get_args
+from typing import Literal
 
 import pymunk
 from pymunk.constraints import Constraint, GrooveJoint
 
-from engines.pymunk.links import Link
+from engines.pymunk.joints.link import Link
 from reference.joints import Slot, Vector
 
 SlotConstruction = Literal["exact", "groove"]
-CONSTRUCTIONS: tuple[str, ...] = get_args(SlotConstruction)
 
 # A groove ends, a slot does not: this many lengths of the mechanism from the middle. Rounding grows in proportion.
 REACH = 1e3

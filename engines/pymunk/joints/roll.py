@@ -1,21 +1,36 @@
-"""A Roll by contact and friction in pymunk: its two curves as shapes, as a user would make them."""
+"""What can stand for a Roll in pymunk: two shapes that press and rub, or a pivot moved along both curves.
+
+`RollConstruction` names them:
+
+- "contact": by contact and friction, the two curves as shapes, as a user would make them.
+- "pivot": a `PivotJoint` whose anchors, one on each curve, are set before every step where the curves will touch after
+  its drift. Both are found by arc length from the start, so the gap it closes is the whole gap since the start.
+- "stale pivot": the same where they touch now: half of the rolling acceleration is missing.
+
+For one body on the ground a Roll can also be held by reflection: `engines.pymunk.reflection`.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 import pymunk
+from pymunk._chipmunk_cffi import lib
+from pymunk.constraints import PivotJoint
 
 from engines import Unsupported
+from engines.pymunk.contacts import Touch
 from reference.curves.curve import Curve, Placed, Vector
 from reference.curves.round import Circle, Line
 from reference.kinds import from_to
 from reference.rolling.roll import Roll
 from reference.validation import Fraction, NonNegative, Valid
+
+RollConstruction = Literal["contact", "pivot", "stale pivot"]
 
 
 def _shipped() -> tuple[float, float]:
@@ -101,3 +116,31 @@ def _shape(
 def _turned(angle: float, point: Vector) -> np.ndarray:
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])
+
+
+class MovedPivot:
+    """The pivot of one Roll, between any two bodies; `origins` [m] are the engine's in the mechanism's body frames."""
+
+    def __init__(
+        self,
+        joint: Roll,
+        first: pymunk.Body,
+        second: pymunk.Body,
+        origins: tuple[Vector, Vector],
+        predicted: bool,
+    ) -> None:
+        self._touch = Touch(joint.rolling)
+        self._bodies, self._predicted = (first._body, second._body), predicted
+        self._from_first, self._from_second = origins
+        self.constraint = PivotJoint(first, second, (0.0, 0.0), (0.0, 0.0))
+        self._pointer = self.constraint._constraint
+
+    def __call__(self, ahead: float) -> None:
+        first, second = self._bodies
+        if not self._predicted:
+            ahead = 0.0
+        rotation = lib.cpBodyGetAngle(second) - lib.cpBodyGetAngle(first)
+        rotation += ahead * (lib.cpBodyGetAngularVelocity(second) - lib.cpBodyGetAngularVelocity(first))
+        (x1, y1), (x2, y2) = self._touch.on_both(rotation)
+        lib.cpPivotJointSetAnchorA(self._pointer, (x1 - self._from_first[0], y1 - self._from_first[1]))
+        lib.cpPivotJointSetAnchorB(self._pointer, (x2 - self._from_second[0], y2 - self._from_second[1]))

@@ -16,23 +16,23 @@ NOTHING = 1e-9
 FAST = 0.1
 
 
-def roll_doubts(mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array) -> list[str]:
+def roll_warnings(mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array) -> list[str]:
     """Sentences that begin with "ours:", for the samples (times,) of a run with this step [s].
 
     Nearly conformal curves: the contact runs along them by omega / (curvature_A + curvature_B), so that it turns by
     omega dt / conformality in a step, which must stay small whatever the body itself turns by.
     """
-    doubts: list[str] = []
+    found: list[str] = []
     if not len(t):
-        return doubts
+        return found
     first_row = 0
     for joint in mechanism.joints:
         if isinstance(joint, Roll):
             rows = reaction[:, first_row : first_row + joint.size]
-            doubts += _lost(joint, t, rows)
-            doubts += _fast(joint, mechanism, step, t, pose, twist)
+            found += _lost(joint, t, rows)
+            found += _fast(joint, mechanism, step, t, pose, twist)
         first_row += joint.size
-    return doubts
+    return found
 
 
 def _lost(joint: Roll, t: Array, rows: Array) -> list[str]:

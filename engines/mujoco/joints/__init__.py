@@ -1,0 +1,1 @@
+"""What MuJoCo holds each joint by: one file, or one folder, a joint."""

@@ -1,0 +1,1 @@
+"""What pymunk holds each joint by: one file a joint."""
