@@ -85,8 +85,8 @@ class Scene(Valid, ABC):
         return f"scene {self.name!r}"
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
-        """The assembly mode (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
         return np.zeros(np.shape(pose)[:-2], dtype=int)
 
     @property

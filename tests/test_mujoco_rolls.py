@@ -15,9 +15,9 @@ from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo, roll_contact
 from engines.mujoco.roll_rows import roll_rows
 from engines.mujoco.roll_table import RollTable
 from engines.mujoco.rolls import METHODS, CompletedContact, RollContact, RollEquality, RollRows
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling

@@ -11,7 +11,7 @@ import pytest
 from engines import Unsupported
 from engines.lagrange import Lagrange
 from reference.four_bar.scenes import FreeFourBar
-from reference.pendulum.long import LongPendulum
+from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cli.selection import QUICK_CELL, choose_cells

@@ -13,8 +13,8 @@ import pytest
 import reports.pages
 from engines.lagrange import Lagrange
 from reference.scenes import SCENES
-from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.validation import InvalidMechanism
 from reports.charts.plane_panels import Blades, Panel, paths
 from reports.charts.plane_panels import Path as Line
@@ -79,8 +79,8 @@ def test_a_turning_skate_on_a_slope_stands_as_high_as_before_after_each_turn():
 
 
 def test_bad_skates_on_a_slope_are_refused():
-    with pytest.raises(InvalidMechanism, match="slope"):
-        SkateOnSlope(slope=math.nan)
+    with pytest.raises(InvalidMechanism, match="gravity"):
+        SkateOnSlope(gravity=math.nan)
     with pytest.raises(InvalidMechanism, match="mass"):
         SkateOnSlope(mass=0.0)
     with pytest.raises(InvalidMechanism, match="skate_on_slope"):

@@ -37,7 +37,7 @@ class Disc(Scene):
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
         return turning(self.mechanism(), times)
 
-    def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
+    def branch_of(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
         """Beyond 2 rad, which it never reaches by itself: a change of assembly that opens no joint."""
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 

@@ -44,21 +44,21 @@ def bar_forces(
     Angles, rates and accelerations are those of crank, coupler and rocker (theta, beta, phi) and broadcast.
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
-    weight = complex(*gravity)
+    falling = complex(*gravity)
     # Plane vectors are complex numbers here: half bars, and their accelerations about their own end.
     half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
-    swing = [
-        arm * (1j * np.asarray(bend) - np.asarray(rate) ** 2)
-        for arm, rate, bend in zip(half, rates, accelerations, strict=True)
+    moving = [
+        arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
+        for arm, rate, acceleration in zip(half, rates, accelerations, strict=True)
     ]
     pull = [
-        masses[0] * (swing[0] - weight),
-        masses[1] * (2 * swing[0] + swing[1] - weight),
-        masses[2] * (swing[2] - weight),
+        masses[0] * (moving[0] - falling),
+        masses[1] * (2 * moving[0] + moving[1] - falling),
+        masses[2] * (moving[2] - falling),
     ]  # m (a - g) of each bar: the sum of its pin forces
     spin = [
-        mass * length**2 / 12 * np.asarray(bend)
-        for mass, length, bend in zip(masses, lengths, accelerations, strict=True)
+        mass * length**2 / 12 * np.asarray(acceleration)
+        for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
     ]
     # Moments of the coupler about B and of the rocker about D leave two equations for the force at C.
     coupler, rocker = 2 * half[1], 2 * half[2]

@@ -95,9 +95,9 @@ class Chain(Valid):
         banded[2, ..., 1:, 0] = far[..., :-1, 1, 0]
         banded[1, ..., 1:, 0], banded[1, ..., 1:, 1] = far[..., :-1, 0, 0], far[..., :-1, 1, 1]
         banded[0, ..., 1:, 1] = far[..., :-1, 0, 1]
-        swing = rate[..., None] ** 2 * half
-        right = -swing
-        right[..., 1:, :] -= swing[..., :-1, :]
+        centripetal = rate[..., None] ** 2 * half
+        right = -centripetal
+        right[..., 1:, :] -= centripetal[..., :-1, :]
         right[..., 0, 1] += self.gravity  # gravity is the same on both sides of every other joint
         if max(self.masses) <= UNEVEN * min(self.masses):
             solution = solveh_banded(
@@ -125,8 +125,8 @@ class Chain(Valid):
         below = np.zeros_like(forces)
         below[..., :-1, :] = forces[..., 1:, :]
         centre = (forces - below) / self._mass[:, None]
-        turning = -np.sum(across(half) * (forces + below), axis=-1) / self.inertia
-        lever = turning[..., None] * across(half) - np.asarray(rate, dtype=np.longdouble)[..., None] ** 2 * half
+        alpha = -np.sum(across(half) * (forces + below), axis=-1) / self.inertia
+        lever = alpha[..., None] * across(half) - np.asarray(rate, dtype=np.longdouble)[..., None] ** 2 * half
         out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
         out[..., 1:, :] -= (centre + lever)[..., :-1, :]
         out[..., 0, 1] -= self.gravity
@@ -203,16 +203,16 @@ class Chain(Valid):
         """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
         self._refuse_other_shapes(angle, rate, acceleration)
         half = 0.5 * self._length[:, None] * direction_of(angle)
-        speed = rate[..., None] * across(half)
-        change = acceleration[..., None] * across(half) - rate[..., None] ** 2 * half
+        velocity = rate[..., None] * across(half)
+        linear = acceleration[..., None] * across(half) - rate[..., None] ** 2 * half
 
         def centres(steps: Array) -> Array:
             return 2 * np.cumsum(steps, axis=-2) - steps
 
         return (
             np.concatenate([centres(half), (angle - math.pi / 2)[..., None]], axis=-1),
-            np.concatenate([centres(speed), rate[..., None]], axis=-1),
-            np.concatenate([centres(change), acceleration[..., None]], axis=-1),
+            np.concatenate([centres(velocity), rate[..., None]], axis=-1),
+            np.concatenate([centres(linear), acceleration[..., None]], axis=-1),
         )
 
     @validated
@@ -253,7 +253,7 @@ class Chain(Valid):
         return float(t[first]), float(np.polyfit(t[first:], np.log(growth[first:]), 1)[0])
 
     @validated
-    def error(self, angle: Array, rate: Array, t: Times) -> Array:
+    def truth_error(self, angle: Array, rate: Array, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
         return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
 
@@ -285,13 +285,16 @@ def velocities(length: Positive, angles: tuple[float, float], rates: tuple[float
 
 @validated
 def accelerations(
-    length: Positive, angles: tuple[float, float], rates: tuple[float, float], second_rates: tuple[float, float]
+    length: Positive,
+    angles: tuple[float, float],
+    rates: tuple[float, float],
+    angular_accelerations: tuple[float, float],
 ) -> TwoPoints:
     """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), B/A
     likewise.
     """
     first, second = (
-        length * (turning * across(direction_of(np.asarray(phi))) - rate**2 * direction_of(np.asarray(phi)))
-        for phi, rate, turning in zip(angles, rates, second_rates, strict=True)
+        length * (alpha * across(direction_of(np.asarray(phi))) - rate**2 * direction_of(np.asarray(phi)))
+        for phi, rate, alpha in zip(angles, rates, angular_accelerations, strict=True)
     )
     return TwoPoints(first, second, first + second)

@@ -63,9 +63,9 @@ class LinkPendulum(Scene):
         state = _integrated(self.chain, self.angle, self.rate, until)(times)
         return state[:, : self.links], state[:, self.links :]
 
-    def error(self, t: ArrayLike) -> Array:
+    def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) [rad, rad/s]."""
-        return self.chain.error(np.full(self.links, self.angle), np.full(self.links, self.rate), self.times(t))
+        return self.chain.truth_error(np.full(self.links, self.angle), np.full(self.links, self.rate), self.times(t))
 
     def mechanism(self) -> Mechanism:
         angle, rate = np.full(self.links, self.angle), np.full(self.links, self.rate)

@@ -10,8 +10,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.curves.circles_lines import Line, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
-from reference.curves.round import Line, Ring, Side
 from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
 from reference.rolling.contact import Contact, quarter_turned, turned
@@ -300,11 +300,12 @@ class Rolling(Valid):
 
     @validated
     def pinned_acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)
+        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
     ) -> Array:
         """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration as if the body were pinned at C."""
         arm = self._arm(self.contact(theta), point)
-        return np.asarray(growth)[..., None] * quarter_turned(arm) - np.asarray(rate)[..., None] ** 2 * arm
+        lever = np.asarray(angular_acceleration)[..., None] * quarter_turned(arm)
+        return lever - np.asarray(rate)[..., None] ** 2 * arm
 
     @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -313,6 +314,9 @@ class Rolling(Valid):
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 
     @validated
-    def acceleration(self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
-        """Accelerations (..., 2) [m/s^2] of a point at the rate omega [rad/s] and its growth alpha [rad/s^2] (...)."""
-        return self.pinned_acceleration(theta, rate, growth, point) + self.rolling_acceleration(theta, rate)
+    def acceleration(
+        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
+    ) -> Array:
+        """Accelerations (..., 2) [m/s^2] of a point at rates [rad/s] and angular accelerations [rad/s^2] (...)."""
+        pinned = self.pinned_acceleration(theta, rate, angular_acceleration, point)
+        return pinned + self.rolling_acceleration(theta, rate)

@@ -11,9 +11,9 @@ from typing import ClassVar
 import numpy as np
 
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring
 from reference.mechanism import Body, Mechanism
 from reference.rolling.body import GRAVITY, RollingBody
 from reference.rolling.kinematics import Rolling

@@ -158,10 +158,10 @@ class SkatePath(Valid):
         times = sample_times("skate path", t)
         along, arm = self._arm(times, point)
         speed, turning = self._given("speed", times)[:, None], self._given("turning_rate", times)[:, None]
-        speeding = self._rate_of("speed", times)[:, None]
-        turning_up = self._rate_of("turning_rate", times)[:, None]
-        of_c = speeding * along + speed * turning * _left_of(along)
-        return of_c + turning_up * _left_of(arm) - turning**2 * arm
+        speed_rate = self._rate_of("speed", times)[:, None]
+        angular_acceleration = self._rate_of("turning_rate", times)[:, None]
+        of_c = speed_rate * along + speed * turning * _left_of(along)
+        return of_c + angular_acceleration * _left_of(arm) - turning**2 * arm
 
 
 def _left_of(vector: Array) -> Array:

@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.ellipse import Ellipse
 from reference.curves.open import Catenary, Parabola
-from reference.curves.round import Circle, Line, Ring, Side
 from reference.rolling.contact import turned
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling

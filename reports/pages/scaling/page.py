@@ -12,7 +12,7 @@ from typing import Any
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
-from reference.pendulum.long import LongPendulum
+from reference.pendulum.many_links import LongPendulum
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.scaling_fit import Series, cost_exponent, error_exponent, series_of
@@ -186,16 +186,16 @@ def words(material: Material) -> Mapping[str, Any]:
         "swept": at(SWEPT, 100),
         "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
-        "own": own_error(),
+        "own": truth_error(),
         "step": STEP,
         "duration": LongPendulum().duration,
     }
 
 
 @cache
-def own_error() -> float:
+def truth_error() -> float:
     """The largest error [rad] of the truth of the longest chain that is run to the end."""
-    return float(LongPendulum(max(LARGE)).error([LongPendulum().duration])[0])
+    return float(LongPendulum(max(LARGE)).truth_error([LongPendulum().duration])[0])
 
 
 def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None:

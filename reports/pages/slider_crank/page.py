@@ -22,14 +22,14 @@ SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the truth: in line, offset, and the other assembly."""
+    """Stroboscopic pictures of the truth: in line, offset, and the other branch."""
     driven = DrivenSliderCrank()
     offset = DrivenSliderCrank(offset=0.4, crank=0.4)
     strips = (
         Strip(driven, "Driven", 13),
         Strip(FreeSliderCrank(), "Let go", 13, end=0.6),
         Strip(offset, "Slot 0.4 m above the pivot", 13),
-        Strip(DrivenSliderCrank(assembly=-1), "The other assembly", 13),
+        Strip(DrivenSliderCrank(branch=-1), "The other branch", 13),
     )
     return {"stroboscope": svg(stroboscope(strips), "Slider-cranks in motion")}
 
