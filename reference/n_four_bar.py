@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.memory import require_room
-from reference.pendulum.link import Pendulum, across, direction_of
+from reference.pendulum.link import Pendulum, direction_of
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validation import Count, NonNegative, Positive, validated
@@ -78,9 +79,7 @@ class NFourBar(Scene):
     def _placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2N + 1, 3)."""
         down = direction_of(angle)
-        normal = across(down)
-        velocity = rate[:, None] * normal
-        linear = acceleration[:, None] * normal - rate[:, None] ** 2 * down
+        velocity, linear = rotation_velocity(rate, down), rotation_acceleration(rate, acceleration, down)
         cranks, couplers = self.loops + 1, self.loops
         size = self.length
 

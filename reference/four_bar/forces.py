@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from reference.plane import from_complex
 from reference.validation import Numbers, Positive, validated
 
 Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
@@ -69,11 +70,7 @@ def bar_forces(
     at_a = pull[0] + at_b
     at_d = pull[2] - at_c
     torque = spin[0] + _cross(half[0], pull[0]) + _cross(2 * half[0], at_b)
-    return Forces(_plane(at_a), _plane(at_b), _plane(at_c), _plane(at_d), torque)
-
-
-def _plane(value: Any) -> Any:
-    return np.stack([np.real(value), np.imag(value)], axis=-1)
+    return Forces(from_complex(at_a), from_complex(at_b), from_complex(at_c), from_complex(at_d), torque)
 
 
 def _cross(first: Any, second: Any) -> Any:

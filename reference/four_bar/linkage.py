@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, difference, sweep
 from reference.four_bar.forces import Densities, Forces, bar_forces
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
+from reference.plane import from_complex
 from reference.validation import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 
 Interval = tuple[float, float]
@@ -191,7 +192,7 @@ class FourBar(Valid):
     def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:
         """World position (..., 2) [m] of the coupler's point `along` BC from B and `across` to its left [m]."""
         beta, _ = self.angles(theta, branch)
-        return _plane(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
+        return from_complex(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
 
     @validated
     def coupler_motion(
@@ -209,9 +210,9 @@ class FourBar(Valid):
         crank = self.crank * np.exp(1j * np.asarray(theta))
         arm = _arm(along, across) * np.exp(1j * motion.beta)
         return PointMotion(
-            _plane(crank + arm),
-            _plane(1j * (crank * rate + arm * motion.beta_dot)),
-            _plane(crank * (1j * acceleration - rate**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
+            from_complex(crank + arm),
+            from_complex(1j * (crank * rate + arm * motion.beta_dot)),
+            from_complex(crank * (1j * acceleration - rate**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
         )
 
     @validated
@@ -282,7 +283,3 @@ class FourBar(Valid):
 
 def _arm(along: ArrayLike, across: ArrayLike) -> Any:
     return np.asarray(along) + 1j * np.asarray(across)
-
-
-def _plane(value: Any) -> Any:
-    return np.stack([np.real(value), np.imag(value)], axis=-1)

@@ -14,6 +14,7 @@ from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
 from reference.kinds import from_to
 from reference.mechanism import Body, Mechanism, Triple
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.row_system import undetermined
@@ -93,10 +94,9 @@ class EllipticGears(Scene):
             (1, 2 * self.major, self.second_angle(first), rate, angular_acceleration),
         ):
             arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-            across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
             pose[:, gear] = np.column_stack([arm[:, 0] + pin, arm[:, 1], angle])
-            twist[:, gear] = np.column_stack([omega[:, None] * across, omega])
-            acceleration[:, gear] = np.column_stack([alpha[:, None] * across - omega[:, None] ** 2 * arm, alpha])
+            twist[:, gear] = np.column_stack([rotation_velocity(omega, arm), omega])
+            acceleration[:, gear] = np.column_stack([rotation_acceleration(omega, alpha, arm), alpha])
         return pose, twist, acceleration
 
     def mechanism(self) -> Mechanism:
