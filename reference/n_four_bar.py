@@ -42,7 +42,6 @@ class NFourBar(Scene):
     """
 
     name: ClassVar[str] = "n_four_bar_2"
-    page: ClassVar[str] = "n_four_bar"
     source: ClassVar[str] = (
         "IFToMM library of computational benchmark problems, A02 N-four-bar; section 18.5, closed chains"
     )

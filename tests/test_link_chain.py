@@ -10,7 +10,7 @@ import pytest
 from scipy.special import jn_zeros
 
 from reference.numerics.integration import IntegrationFailed, integrate
-from reference.pendulum.chain import Chain, accelerations, velocities
+from reference.pendulum import Chain, accelerations, velocities
 from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap, slip

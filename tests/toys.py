@@ -23,7 +23,6 @@ class Disc(Scene):
     """A disc on a pin through its centre turns at a constant rate [rad/s], and the pin carries its weight."""
 
     name: ClassVar[str] = "disc"
-    page: ClassVar[str] = "discs"
     source: ClassVar[str] = "invented"
 
     rate: float = 2.0

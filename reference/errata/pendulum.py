@@ -11,7 +11,7 @@ import numpy as np
 
 from reference.errata.erratum import Array, Erratum, Values
 from reference.numerics.cauchy import derivative
-from reference.pendulum.chain import accelerations
+from reference.pendulum.double_pendulum import accelerations
 
 # Length of a bar [m]; angles, rates and accelerations [rad, rad/s, rad/s^2] of the two.
 BAR, PHI, PHI_RATE, PHI_ACCELERATION = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)

@@ -34,8 +34,6 @@ class FourBarScene(Scene):
     the three, gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
     """
 
-    page: ClassVar[str] = "four_bar"
-
     crank: Positive = 0.4
     coupler: Positive = 0.4 * math.sqrt(2)
     rocker: Positive = 0.8 * math.sqrt(2)

@@ -140,7 +140,6 @@ class BarPendulum(Scene):
     """
 
     name: ClassVar[str] = "pendulum_1"
-    page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum (1 link)"
     length: Positive = 1.0
     mass: Positive = 1.0

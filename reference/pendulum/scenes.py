@@ -37,7 +37,6 @@ class LinkPendulum(Scene):
     """
 
     name: ClassVar[str] = "pendulum_2"
-    page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
     reach: ClassVar[float] = 2.0  # a chaotic truth: by then a pendulum of two links has lost half of its digits
     links: Count = 2

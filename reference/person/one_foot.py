@@ -39,7 +39,6 @@ class OneFoot(Scene):
     """
 
     name: ClassVar[str] = "person_one_foot"
-    page: ClassVar[str] = "person"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
     reach: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
     mass: Positive = 75.0

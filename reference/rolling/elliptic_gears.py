@@ -41,7 +41,6 @@ class EllipticGears(Scene):
     """
 
     name: ClassVar[str] = "elliptic_gears"
-    page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66), between two moving bodies"
 
     major: Positive = 0.3  # m, semi-axis a

@@ -27,7 +27,6 @@ from reference.validation import Positive
 class RollingScene(Scene):
     """A body on fixed ground: subclasses give the two curves; the centre of mass is the origin of the body's curve."""
 
-    page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
     reach: ClassVar[float] = 2.0  # the contact is searched for at every step, and bodies roll ever faster downhill

@@ -32,7 +32,6 @@ class PinnedBody(Scene):
     """
 
     name: ClassVar[str] = "pinned_body"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eqs. 18.62-18.63"
 
     mass: Positive = 2.0

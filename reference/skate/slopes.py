@@ -27,7 +27,6 @@ class SkateOnSlope(Scene):
     """
 
     name: ClassVar[str] = "skate_on_slope"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eq. 18.64, under gravity"
 
     mass: Positive = 2.0
@@ -90,7 +89,6 @@ class HeldBySkates(Scene):
     """
 
     name: ClassVar[str] = "held_by_skates"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, degrees of freedom by rank"
 
     mass: Positive = 2.0

@@ -43,7 +43,6 @@ class DrivenSliderCrank(Scene):
     """
 
     name: ClassVar[str] = "driven_slider_crank"
-    page: ClassVar[str] = "slider_crank"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a slider-crank"
     driven: ClassVar[bool] = True
     crank: Positive = 0.3

@@ -43,7 +43,6 @@ class CarAndTrailer(Scene):
     """
 
     name: ClassVar[str] = "car_and_trailer"
-    page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
     masses: tuple[Positive, Positive] = (2.0, 1.0)

@@ -30,7 +30,6 @@ class Cart(CoastingScene):
     """
 
     name: ClassVar[str] = "cart"
-    page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
     mass: Positive = 2.0

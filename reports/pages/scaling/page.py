@@ -17,6 +17,7 @@ from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.scaling_fit import Series, cost_exponent, error_exponent, series_of
 from reports.pages.page import Material, Page
+from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.reference_method import BandedChain
 from reports.text.tables import NOTHING, markdown, number
@@ -215,6 +216,7 @@ PAGE = StudyPage(
     lesson="One link to a thousand: coordinates, sweeps and exact multipliers, and what each costs at the large end.",
     scenes=(),
     engines=(),
+    companions=pendulum.SCENES,
     figures=figures,
     words=words,
     studied=CELLS,

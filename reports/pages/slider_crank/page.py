@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.scenes import SCENES
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.pages.chain_orders import CLOSED, prescribed
@@ -18,7 +17,7 @@ from reports.pages.slider_crank.experiments import FAILURES, MAPS
 from reports.text.lookups import told
 
 NAME = "slider_crank"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (DrivenSliderCrank(), FreeSliderCrank())
 
 
 def figures(material: Material) -> dict[str, str]:
@@ -39,14 +38,14 @@ def words(material: Material) -> Mapping[str, Any]:
     shape = DrivenSliderCrank().moving.shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
-    return {**told(material, SCENES_HERE), **formulas}
+    return {**told(material, SCENES), **formulas}
 
 
 PAGE = Page(
     name=NAME,
     title="The slider-crank",
     lesson="A slot and three pins: a loop that slides, and a groove whose impulse is right only at a centre of mass.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,
