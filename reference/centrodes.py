@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from reference.curves.curve import Array
 from reference.curves.traced import FEWEST, STILL, Traced, spline
 from reference.kinds import NOT_FINITE, of_shape
+from reference.plane import perpendicular, rotated
 from reference.rolling.kinematics import Rolling
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism, Numbers, Valid, index_of, validated
@@ -35,10 +36,8 @@ def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
     pose, twist (..., 3) of one body. NaN where the rotation rate is zero: the centre is at infinity.
     """
     rate = np.where(twist[..., 2] == 0, np.nan, twist[..., 2])
-    arm = np.stack([-twist[..., 1] / rate, twist[..., 0] / rate], axis=-1)
-    cosine, sine = np.cos(pose[..., 2]), np.sin(pose[..., 2])
-    in_body = np.stack([cosine * arm[..., 0] + sine * arm[..., 1], cosine * arm[..., 1] - sine * arm[..., 0]], axis=-1)
-    return pose[..., :2] + arm, in_body
+    arm = perpendicular(twist[..., :2]) / rate[..., None]
+    return pose[..., :2] + arm, rotated(-pose[..., 2], arm)
 
 
 @validated

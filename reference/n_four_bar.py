@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.memory import require_room
-from reference.pendulum.link import Pendulum, across, direction_of
+from reference.pendulum.link import Pendulum, direction_of
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validation import Count, NonNegative, Positive, validated
@@ -41,7 +42,6 @@ class NFourBar(Scene):
     """
 
     name: ClassVar[str] = "n_four_bar_2"
-    page: ClassVar[str] = "n_four_bar"
     source: ClassVar[str] = (
         "IFToMM library of computational benchmark problems, A02 N-four-bar; section 18.5, closed chains"
     )
@@ -78,9 +78,7 @@ class NFourBar(Scene):
     def _placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2N + 1, 3)."""
         down = direction_of(angle)
-        turning = across(down)
-        swing = rate[:, None] * turning
-        change = acceleration[:, None] * turning - rate[:, None] ** 2 * down
+        velocity, linear = rotation_velocity(rate, down), rotation_acceleration(rate, acceleration, down)
         cranks, couplers = self.loops + 1, self.loops
         size = self.length
 
@@ -94,7 +92,7 @@ class NFourBar(Scene):
         pose = bodies(down, angle - math.pi / 2)
         pose[:, :cranks, 0] += size * np.arange(cranks)
         pose[:, cranks:, 0] += size * (np.arange(couplers) + 0.5)
-        return pose, bodies(swing, rate), bodies(change, acceleration)
+        return pose, bodies(velocity, rate), bodies(linear, acceleration)
 
     def mechanism(self) -> Mechanism:
         state = (value[None] for value in (np.array(math.pi), np.array(self.pendulum.rate), np.array(0.0)))
@@ -130,9 +128,9 @@ class NFourBar(Scene):
         the horizontal force on its top, and going along the chain each coupler's balance gives the next.
         """
         n, m, size = self.loops, self.mass, self.length
-        _, _, change = self._placement(angle, rate, acceleration)
-        coupler = m * (change[:, -1, :2] + np.array([0.0, self.gravity]))  # what its two pins must give together
-        crank = m * (change[:, 0, :2] + np.array([0.0, self.gravity]))
+        _, _, moving = self._placement(angle, rate, acceleration)
+        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # what its two pins must give together
+        crank = m * (moving[:, 0, :2] + np.array([0.0, self.gravity]))
         down = direction_of(angle)
         top = np.zeros((len(angle), n + 1, 2))  # what the couplers do to each crank's top
         top[:, :, 1] = -coupler[:, None, 1] * np.where(np.arange(n + 1) % n == 0, 0.5, 1.0)
@@ -151,7 +149,7 @@ class NFourBar(Scene):
         return out
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
         """+1 while every loop is a parallelogram, -1 once one has folded: its coupler then lies on one of its cranks.
 
         Equal bars fold in two ways: one crank lies along the ground and the other under the coupler. The way whose

@@ -23,12 +23,11 @@ Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN w
 class Scene(Valid, ABC):
     """Subclasses are frozen dataclasses, and their fields are the only place where a number is written.
 
-    `name` is the scene's key, `page` the page that teaches it, `source` where the chapter has it. `duration` [s] is how
-    long it runs; until `horizon` [s] an error grows no faster than about linearly, so that orders can be fitted.
+    `name` is the scene's key, `source` where the chapter has it. `duration` [s] is how long it runs; until `horizon`
+    [s] an error grows no faster than about linearly, so that orders can be fitted.
     """
 
     name: ClassVar[str]
-    page: ClassVar[str]
     source: ClassVar[str]
     reach: ClassVar[float] = 10.0  # durations, see `latest`
     duration: float
@@ -85,8 +84,8 @@ class Scene(Valid, ABC):
         return f"scene {self.name!r}"
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
-        """The assembly mode (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
         return np.zeros(np.shape(pose)[:-2], dtype=int)
 
     @property

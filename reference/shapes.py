@@ -12,6 +12,7 @@ import numpy as np
 from reference.centrodes import Centrodes, from_poses
 from reference.curves.curve import Array
 from reference.kinds import NOT_FINITE, from_to, of_shape
+from reference.plane import rotated
 from reference.validation import LARGEST_COUNT, InvalidMechanism, Positive, Valid, index_of, validated
 
 COLUMNS = ("t", "x", "y", "angle")
@@ -47,10 +48,8 @@ def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
     arcs = np.linspace(0.0, min(space.limits[1], body.limits[1]), points)
     theta = space.parameter(arcs)
     fixed, moving = space.point_of(theta), body.point_of(-theta)
-    cosine, sine = np.cos(theta), np.sin(theta)
-    x = fixed[:, 0] - (cosine * moving[:, 0] - sine * moving[:, 1])
-    y = fixed[:, 1] - (sine * moving[:, 0] + cosine * moving[:, 1])
-    return Shapes(fixed, moving, np.column_stack([x, y, theta]), motion.error)
+    pose = np.column_stack([fixed - rotated(theta, moving), theta])
+    return Shapes(fixed, moving, pose, motion.error)
 
 
 @validated

@@ -24,18 +24,18 @@ from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Body
 from reference.pendulum.chain import Chain
 from reference.pendulum.link import Pendulum
-from reference.pendulum.long import LongPendulum, OpenChain
+from reference.pendulum.many_links import LongPendulum, OpenChain
 from reference.person.segments import THIGH
-from reference.rolling.limits import DiscInHole, SquareOnCatenaries
 from reference.rolling.roll import Roll
 from reference.rolling.scenes import RollingDisc
+from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scenes import SCENES
-from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.parking import Move
 from reference.skate.path import SkatePath
-from reference.slider_crank.limits import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
 from reports.grid.cells import Cell
 from tests.mechanisms import four_bar

@@ -32,8 +32,12 @@ TRIED = 2000
 # Dataclasses that users don't make: what the suite gives back or uses inside, and the catalogue of errata.
 NOT_MADE_BY_USERS = {
     *("reference.errata.catalogue.WordSlip", "reference.errata.erratum.Values", "reference.errata.erratum.Erratum"),
-    *("reference.errata.pendulum.BarState", "reference.four_bar.sweep.Constants", "reference.kinds.Rule"),
-    *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.pendulum.chain.TwoPoints"),
+    *("reference.errata.pendulum.BarState", "reference.four_bar.closed_form.Constants", "reference.kinds.Rule"),
+    *(
+        "reference.kinds.Kind",
+        "reference.numerics.integration.Integrated",
+        "reference.pendulum.double_pendulum.TwoPoints",
+    ),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.Size"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),

@@ -15,8 +15,8 @@ from reference.n_four_bar import NFourBar
 from reference.pendulum.scenes import LinkPendulum
 from reference.person.two_feet import TwoFeet
 from reference.rolling.spinning_ring import SpinningRing
-from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
 from reports.charts.stroboscope import Strip, outline, stroboscope
@@ -34,7 +34,7 @@ from reports.pages.slider_crank.experiments import GROOVE
 from reports.text.rendering import render_page
 
 PAGES = (pendulum.PAGE, slider_crank.PAGE, n_four_bar.PAGE, person.PAGE)
-LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, assembly=-1), SliderAtDeadCentre(angle=1e-2))
+LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, branch=-1), SliderAtDeadCentre(angle=1e-2))
 
 
 def show(error: float) -> str:

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import pytest
 
+from reference.scene import Scene
+from reference.scenes import SCENES
 from reports.gate.baseline import Baseline
 from reports.gate.checks import CHECKS
 from reports.gate.pytest_plugin import KNOWN
 from reports.gate.verdicts import Case, cases
 from reports.gate.walk import Verdict
 from reports.grid.outcomes import Outcome
-from reports.pages.catalogue import PAGES
+from reports.pages.catalogue import PAGES, page_of, untaught
+from tests.toys import Disc
 
 GRID = cases(PAGES)
 each_case = pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in GRID])
@@ -65,8 +68,22 @@ def test_every_known_deviation_names_a_real_case_and_a_check():
             assert check in CHECKS, check
 
 
-def test_the_grid_is_not_empty_and_every_scene_has_its_page():
-    from reference.scenes import SCENES
-
+def test_the_grid_has_every_scene_of_every_page():
+    assert {case.scene for case in GRID} == {scene for page in PAGES for scene in page.scenes}
     assert GRID
-    assert {scene.name for page in PAGES for scene in page.scenes} == {scene.name for scene in SCENES}
+
+
+@pytest.mark.parametrize("scene", [pytest.param(scene, id=scene.name) for scene in SCENES])
+def test_every_scene_of_the_list_is_taught_by_one_page_with_its_own_numbers(scene: Scene):
+    assert not untaught([scene])
+    assert [page.name for page in PAGES if scene in page.scenes] == [page_of(scene).name]
+
+
+def test_a_page_teaches_only_scenes_of_the_list():
+    assert {scene for page in PAGES for scene in page.scenes} == set(SCENES)
+
+
+def test_a_scene_that_no_page_teaches_is_named():
+    assert untaught((*SCENES, Disc())) == ("disc",)
+    assert untaught(SCENES, [page for page in PAGES if page.name != "wheels"]) == ("car_and_trailer", "cart")
+    assert page_of(Disc()) is None

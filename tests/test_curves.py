@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
 from reference.curves.open import Catenary, LogSpiral, Parabola
-from reference.curves.round import Circle, Line, Ring, Side
 from reference.curves.traced import Traced
 from reference.numerics.monotone import solve_increasing
 from reference.validation import InvalidMechanism

@@ -33,7 +33,6 @@ class Pair(Scene):
     """A driven disc and a free one, whose kinetic energy changes: rows x, y of a pin and a torque."""
 
     name: ClassVar[str] = "pair"
-    page: ClassVar[str] = "discs"
     source: ClassVar[str] = "invented"
 
     duration: float = 0.3

@@ -153,7 +153,7 @@ def random_linkages(count):
         yield linkage
 
 
-def test_random_linkages_close_in_both_assemblies_with_c_on_its_side_of_bd():
+def test_random_linkages_close_in_both_branches_with_c_on_its_side_of_bd():
     classes = set()
     for linkage in random_linkages(300):
         classes.add(linkage.grashof())
@@ -290,7 +290,7 @@ def test_a_parallelogram_keeps_its_digits_beside_its_change_point():
     parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
     assert parallelogram.crank_limits() is None
     for theta in (1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-100, -1e-100):
-        # One of the two assemblies is the parallelogram, whose coupler stays parallel to the ground.
+        # One of the two branches is the parallelogram, whose coupler stays parallel to the ground.
         pairs = np.array([wrapped(parallelogram.angles(theta, branch)) for branch in (1, -1)])
         beta, phi = pairs[np.argmin(np.abs(pairs[:, 0]))]
         # The formulas lose nothing here, where a difference of squared lengths would leave eps / theta.

@@ -20,7 +20,7 @@ TURNED = FreeFourBar(
     coupler=0.9,
     rocker=0.8,
     ground=(-0.6, 0.7),
-    assembly=-1,
+    branch=-1,
     rate=-4.0,
     density=(1.0, 3.0, 0.5),
     start=1.0,
@@ -29,7 +29,7 @@ TURNED = FreeFourBar(
 FREE = (FreeFourBar(), SpinningFourBar(), TRIPLE_ROCKER, TURNED)
 DRIVEN = (
     DrivenFourBar(),
-    DrivenFourBar(rate=-7.0, assembly=-1, revolutions=0.5),
+    DrivenFourBar(rate=-7.0, branch=-1, revolutions=0.5),
     DrivenFourBar(crank=1.0, coupler=0.9, rocker=1.1, ground=(0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
 )
 
@@ -52,8 +52,8 @@ def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint(each):
     assert np.max(np.abs(joint_gap(mechanism, motion))) < 1e-14
     assert np.max(np.abs(slip(mechanism, motion))) < 1e-13
     assert mechanism.degrees_of_freedom() == ((0, 0) if isinstance(each, DrivenFourBar) else (1, 1))
-    assert set(np.abs(each.branch(motion.pose))) == {1}
-    assert each.branch(mechanism.pose) == each.assembly
+    assert set(np.abs(each.branch_of(motion.pose))) == {1}
+    assert each.branch_of(mechanism.pose) == each.branch
 
 
 @pytest.mark.parametrize("each", [*FREE, *DRIVEN])
@@ -114,13 +114,13 @@ def test_a_scene_is_sampled_every_hundredth_of_a_second():
 
 
 @pytest.mark.parametrize("each", FREE)
-def test_free_motion_keeps_its_energy_and_its_own_error_is_rounding(each):
+def test_free_motion_keeps_its_energy_and_its_truth_error_is_rounding(each):
     mechanism, times = each.mechanism(), sampled(each)
     total = energy(mechanism, each.motion(times))
     assert np.ptp(total) < 3e-14 * (1 + np.max(np.abs(total)) + 9.81 * sum(each.masses))
     # Rounding to double of angles of 10 rad and speeds of 20 m/s. Where longdouble is no longer than double, some
     # hundred steps' rounding, amplified by the motion, is added.
-    assert each.own_error(times) < (1e-14 if np.finfo(np.longdouble).eps < 1e-18 else 1e-12)
+    assert each.truth_error(times).max() < (1e-14 if np.finfo(np.longdouble).eps < 1e-18 else 1e-12)
 
 
 @pytest.mark.parametrize("each", [FreeFourBar(), SpinningFourBar(), TURNED])
@@ -131,7 +131,7 @@ def test_free_motion_agrees_with_the_crank_angle_as_the_coordinate(each):
 
     def slope(_, state):
         theta, rate = state
-        unit = four_bar.kinematics(theta, 1.0, 0.0, each.assembly)
+        unit = four_bar.kinematics(theta, 1.0, 0.0, each.branch)
         arms = [
             complex(length * np.exp(1j * a)) for length, a in zip(lengths, (theta, unit.beta, unit.phi), strict=True)
         ]
@@ -169,7 +169,7 @@ def test_twists_and_accelerations_are_derivatives_of_the_poses(each):
         assert np.max(np.abs(np.tensordot(weights, motion.twist, 1) - accelerations(each, times)[4])) < 1e-6
 
 
-def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_assembly():
+def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_branch():
     each = TRIPLE_ROCKER
     assert each.four_bar.grashof() == "triple-rocker"
     times = np.linspace(0, each.duration, 2001)
@@ -177,7 +177,7 @@ def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_assembly():
     (low, high), *_ = (
         interval for interval in each.four_bar.crank_limits() if interval[0] <= each.start <= interval[1]
     )
-    theta, branch = motion.pose[:, 0, 2], each.branch(motion.pose)
+    theta, branch = motion.pose[:, 0, 2], each.branch_of(motion.pose)
     assert np.min(theta) >= low - 1e-14
     assert np.max(theta) <= high + 1e-14
     assert set(branch) == {1, -1}
@@ -188,7 +188,7 @@ def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_assembly():
         pair = slice(change, change + 2)
         told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])
         assert np.max(np.abs(np.diff(motion.twist[pair], axis=0)[0] - told)) < 0.1
-    # Before and after, the angles are those of the closed form in the assembly reported.
+    # Before and after, the angles are those of the closed form on the branch reported.
     beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
     turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
     assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
@@ -230,8 +230,8 @@ def test_a_start_that_can_not_be_is_refused_in_a_sentence():
         DrivenFourBar(revolutions=-1.0)
     with pytest.raises(InvalidMechanism, match="rate is 0"):
         DrivenFourBar(rate=0.0)
-    with pytest.raises(InvalidMechanism, match="assembly is 0"):
-        DrivenFourBar(assembly=0)
+    with pytest.raises(InvalidMechanism, match="branch is 0"):
+        DrivenFourBar(branch=0)
     with pytest.raises(InvalidMechanism, match="start is nan"):
         FreeFourBar(start=math.nan)
 

@@ -11,7 +11,7 @@ from engines.registry import ENGINES
 from reference.memory import LARGEST, require_room
 from reference.n_four_bar import NFourBar
 from reference.pendulum.chain import Chain
-from reference.pendulum.long import LongPendulum
+from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.skate.sleigh import ChaplyginSleigh

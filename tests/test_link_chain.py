@@ -10,7 +10,7 @@ import pytest
 from scipy.special import jn_zeros
 
 from reference.numerics.integration import IntegrationFailed, integrate
-from reference.pendulum.chain import Chain, accelerations, velocities
+from reference.pendulum import Chain, accelerations, velocities
 from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap, slip
@@ -79,7 +79,7 @@ def test_a_force_of_the_wrong_sign_is_caught() -> None:
 @pytest.mark.parametrize("scene", [LinkPendulum(), TenLinks(), HundredLinks()])
 def test_the_truth_own_error_is_shown_by_two_tolerances(scene: LinkPendulum) -> None:
     # A tolerance of 3e-13 a step over some hundred steps, until the horizon grown less than tenfold.
-    assert scene.error(np.linspace(0, min(scene.horizon, scene.duration), 7)).max() < 1e-10
+    assert scene.truth_error(np.linspace(0, min(scene.horizon, scene.duration), 7)).max() < 1e-10
 
 
 def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form() -> None:
@@ -87,7 +87,7 @@ def test_the_stated_error_is_above_the_true_one_of_a_motion_known_in_closed_form
     # From half a second on: at the start both are rounding, and so is their difference.
     t = np.linspace(0.5, 3, 26)
     true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
-    stated = chain.error(t).max()
+    stated = chain.truth_error(t).max()
     assert stated > true > 0
     # Ten times the tolerance, about ten times the error: a bound that says something.
     assert stated < 1e3 * true

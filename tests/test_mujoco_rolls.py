@@ -16,9 +16,9 @@ from engines.mujoco.joints.roll import CompletedContact, RollContact, RollEquali
 from engines.mujoco.joints.roll.rows import roll_rows
 from engines.mujoco.methods import ROLLS
 from engines.rolling_table import RollTable
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling

@@ -99,14 +99,14 @@ def test_forces_have_no_limit_at_a_singular_position_unless_there_is_one_loop() 
 def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
     scene = NFourBar()
     motion = scene.motion(np.linspace(0, 10, 501))
-    assert np.all(scene.branch(motion.pose) == 1)
-    assert np.all(scene.branch(scene.motion(scene.singular_times(10.0)).pose) == 1)
+    assert np.all(scene.branch_of(motion.pose) == 1)
+    assert np.all(scene.branch_of(scene.motion(scene.singular_times(10.0)).pose) == 1)
     # Fold the first loop on its left: crank 0 along the ground, coupler 0 on crank 1; the rest stays.
     folded = scene.motion([0.3]).pose[0].copy()
     crank = folded[1, 2]
     folded[0], folded[3] = (0.5, 0.0, 0.0), (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank)
-    assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14  # an assembly too
-    assert scene.branch(folded) == -1
+    assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14  # a branch too
+    assert scene.branch_of(folded) == -1
     # And the second on its right: crank 2 along the ground to pivot 1, coupler 1 back along crank 1; while crank 1
     # stands upright, and while it lies to the left, where a parallelogram is nearer than the first way to fold.
     for t in (0.3, 1.25):
@@ -115,7 +115,7 @@ def test_the_branch_tells_parallelograms_from_folded_loops() -> None:
         folded[2] = (1.5, 0.0, math.pi)
         folded[4] = (1 + 0.5 * math.cos(crank), 0.5 * math.sin(crank), crank + math.pi)
         assert np.abs(scene.mechanism().gap(folded, 0.0)).max() < 1e-14
-        assert scene.branch(folded) == -1
+        assert scene.branch_of(folded) == -1
     assert math.cos(crank) < -1 / 2
 
 

@@ -21,7 +21,7 @@ SCENES = [
     OneFoot(),
     SwayingOnOneFoot(),
     TwoFeet(),
-    TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, weight=60.0, height=1.6, hip_y=0.72),
+    TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
 ]
 
 
@@ -44,7 +44,7 @@ def test_minimal_coordinates_satisfy_the_mechanism(scene: OneFoot) -> None:
     total = energy(mechanism, motion)
     assert np.ptp(total) < 1e-12 * np.abs(total).max()
     # A standing knee makes a deviation e-fold in 0.03 s: tolerances of 1e-13 a step grow by e^10.
-    assert scene.error(t).max() < (1e-9 if isinstance(scene, SwayingOnOneFoot) else 1e-10)
+    assert scene.truth_error(t).max() < (1e-9 if isinstance(scene, SwayingOnOneFoot) else 1e-10)
 
 
 def test_one_foot_is_an_open_chain_and_two_close_it() -> None:
@@ -103,7 +103,7 @@ def test_a_thigh_longer_by_a_thousandth_and_gravity_of_the_wrong_sign_are_caught
 
 def test_the_branch_is_the_bend_of_the_knees() -> None:
     for scene in (scene for scene in SCENES if isinstance(scene, TwoFeet)):
-        assert np.all(scene.branch(scene.motion(np.linspace(0, scene.duration, 9)).pose) == scene.knees)
+        assert np.all(scene.branch_of(scene.motion(np.linspace(0, scene.duration, 9)).pose) == scene.knees)
 
 
 def test_feet_too_far_apart_and_other_bad_numbers_are_refused() -> None:
@@ -113,7 +113,7 @@ def test_feet_too_far_apart_and_other_bad_numbers_are_refused() -> None:
         TwoFeet(stance=1.2, hip_x=0.3)
     with pytest.raises(InvalidMechanism, match="from the left ankle"):
         TwoFeet(hip_y=1.0)
-    for wrong in ({"weight": 0.0}, {"height": -1.0}, {"trunk": math.nan}, {"stance": math.inf}, {"knees": 0}):
+    for wrong in ({"mass": 0.0}, {"height": -1.0}, {"trunk": math.nan}, {"stance": math.inf}, {"knees": 0}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             TwoFeet(**wrong)
 

@@ -11,9 +11,9 @@ import pytest
 from engines import Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
 from engines.pymunk.contacts import Touch
+from reference.curves.circles_lines import Circle, Line, Side
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Side
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling

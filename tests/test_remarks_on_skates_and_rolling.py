@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engines import mujoco, pymunk
-from reference.rolling.limits import DiscInHole
+from reference.rolling.singular_cases import DiscInHole
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reports.grid.cells import Cell

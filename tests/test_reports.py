@@ -171,13 +171,13 @@ def test_judging_upgrades_sweeps_and_leaves_failures_alone(material):
 def test_unknown_words_are_refused_with_the_nearest_known():
     scenes, engines = (Disc(),), (Toy(), Toy("tuned"))
     with pytest.raises(BadInput, match="unknown scene 'dsic': did you mean 'disc'"):
-        choose_scenes(["dsic"], scenes)
+        choose_scenes(["dsic"], scenes, ())
     with pytest.raises(BadInput, match="unknown engine 'tyo': did you mean 'toy'"):
         choose_engines("tyo", None, engines)
     with pytest.raises(BadInput, match="unknown variant of toy 'tunde': did you mean 'tuned'"):
         choose_engines("toy", "tunde", engines)
     assert "there are alpha, beta" in str(nearest("scene", "zzz", ["alpha", "beta"]))
-    assert choose_scenes(["discs"], scenes) == scenes
+    assert choose_scenes(["discs"], scenes, (replace(PAGE, name="discs"),)) == scenes
     assert choose_engines("toy", None, engines) == engines
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
 from reference.curves.open import Catenary, LogSpiral, Parabola
-from reference.curves.round import Circle, Line, Ring, Side
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import NEAR_CONFORMAL, Rolling
 from reference.rolling.roll import Roll

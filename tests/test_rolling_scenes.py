@@ -10,8 +10,8 @@ import pytest
 
 from engines.lagrange import TRUTH
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring
 from reference.rolling.body import GRAVITY, RollingBody
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling
@@ -48,20 +48,20 @@ def test_the_truth_keeps_energy_contact_and_newtons_law(scene):
     np.testing.assert_allclose(slip(mechanism, truth), 0, atol=1e-13)
     law = scene.motion_law
     theta, rate = law.states(t)
-    growth = law.growth(theta, rate)
-    acceleration = np.concatenate([law.rolling.acceleration(theta, rate, growth), growth[:, None]], axis=-1)
+    alpha = law.angular_acceleration(theta, rate)
+    acceleration = np.concatenate([law.rolling.acceleration(theta, rate, alpha), alpha[:, None]], axis=-1)
     np.testing.assert_allclose(mechanism.reaction(truth.pose, acceleration[:, None, :]), truth.reaction, atol=1e-12)
     # Euler's law about the centre of mass was not used: torque of the contact's force = I alpha.
     arm, contact = law.rolling.contact(theta).arm, law.rolling.contact(theta)
     force = truth.reaction[:, :1] * contact.tangent + truth.reaction[:, 1:] * contact.normal
     torque = -(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
-    np.testing.assert_allclose(torque, law.inertia * growth, atol=1e-12)
+    np.testing.assert_allclose(torque, law.inertia * alpha, atol=1e-12)
 
 
 @by_name(SCENES)
 def test_the_truths_own_error_is_below_a_picoradian_a_radian_turned(scene):
     # What a coarser tolerance, up to 3e-12 a step over up to 60 steps, changes.
-    assert scene.motion_law.error(times(scene)).max() < 2e-11
+    assert scene.motion_law.truth_error(times(scene)).max() < 2e-11
 
 
 @by_name(SCENES)

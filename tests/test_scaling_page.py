@@ -11,7 +11,7 @@ import pytest
 from engines import Unsupported
 from engines.lagrange import Lagrange
 from reference.four_bar.scenes import FreeFourBar
-from reference.pendulum.long import LongPendulum
+from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cli.selection import QUICK_CELL, choose_cells
@@ -19,9 +19,11 @@ from reports.grid.cells import estimated_cost
 from reports.grid.measure import measure
 from reports.grid.scaling_fit import series_of
 from reports.pages.page import Material
+from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
 from reports.pages.scaling.reference_method import BandedChain
+from reports.pages.skate import page as skate
 from reports.text.rendering import render_page
 
 TINY = tuple(cell for cell in CELLS if cell.scene.links <= 3)
@@ -77,13 +79,13 @@ def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alo
 
 
 def test_a_quick_run_has_the_small_chains_and_a_full_one_all():
-    pendulums = tuple(scene for scene in SCENES if scene.page == "pendulum")
+    pendulums = tuple(scene for scene in SCENES if pendulum.PAGE.teaches(scene))
     engines = tuple(dict.fromkeys(cell.engine for cell in CELLS))
     for full in (False, True):
         chosen = [c for c in choose_cells(pendulums, engines, (PAGE,), full) if isinstance(c.scene, LongPendulum)]
         quick = [cell for cell in CELLS if cell.scene.links in SMALL and estimated_cost(cell) <= QUICK_CELL]
         assert chosen == (list(CELLS) if full else quick)
-    others = tuple(scene for scene in SCENES if scene.page == "skate")
+    others = tuple(scene for scene in SCENES if skate.PAGE.teaches(scene))
     assert not any(isinstance(c.scene, LongPendulum) for c in choose_cells(others, engines, (PAGE,), True))
 
 

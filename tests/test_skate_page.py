@@ -13,8 +13,8 @@ import pytest
 import reports.pages
 from engines.lagrange import Lagrange
 from reference.scenes import SCENES
-from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.validation import InvalidMechanism
 from reports.charts.plane_panels import Blades, Panel, paths
 from reports.charts.plane_panels import Path as Line
@@ -79,8 +79,8 @@ def test_a_turning_skate_on_a_slope_stands_as_high_as_before_after_each_turn():
 
 
 def test_bad_skates_on_a_slope_are_refused():
-    with pytest.raises(InvalidMechanism, match="slope"):
-        SkateOnSlope(slope=math.nan)
+    with pytest.raises(InvalidMechanism, match="gravity"):
+        SkateOnSlope(gravity=math.nan)
     with pytest.raises(InvalidMechanism, match="mass"):
         SkateOnSlope(mass=0.0)
     with pytest.raises(InvalidMechanism, match="skate_on_slope"):
@@ -146,17 +146,17 @@ def test_counting_tells_what_the_rows_leave():
     assert told["two skates on one axle"] == told["one skate (18.64)"]
     assert told["two skates in one line"] == "(3, 1); integrable: of 3 it can reach 1"
     assert told["three skates"].startswith("(3, 0)")
-    assert "| car_and_trailer | 5 | (4, 1) | 1 | integrable |" in wheels.counted(wheels.SCENES_HERE)
+    assert "| car_and_trailer | 5 | (4, 1) | 1 | integrable |" in wheels.counted(wheels.SCENES)
 
 
 def test_a_run_has_the_named_methods_of_a_page_and_those_of_its_experiments():
     engines = known_engines((skate.PAGE,))
-    cells = choose_cells(skate.SCENES_HERE, engines, (skate.PAGE,), full=False)
+    cells = choose_cells(skate.SCENES, engines, (skate.PAGE,), full=False)
     swept = {(cell.scene.name, cell.engine.variant) for cell in cells if cell.purpose == "sweep"}
     assert ("sleigh", "skate: reflection") in swept
     # Nothing constructs a skate where there is none.
     assert ("pinned_body", "skate: reflection") not in swept
-    everything = choose_cells(skate.SCENES_HERE, engines, (skate.PAGE,), full=True)
+    everything = choose_cells(skate.SCENES, engines, (skate.PAGE,), full=True)
     assert {cell for failure in skate.PAGE.failures for cell in failure.cells} <= set(everything)
     assert set(cells) < set(everything)
 

@@ -21,9 +21,9 @@ THETA = np.linspace(0, 2 * math.pi, 37)
 SHAPES = [SliderCrank(0.3, 1.0), SliderCrank(0.3, 1.0, 0.2), SliderCrank(0.5, 0.9, -0.3, -1), SliderCrank(1.0, 1.01)]
 SCENES = [
     DrivenSliderCrank(),
-    DrivenSliderCrank(offset=-0.3, assembly=-1, rate=-4.0),
+    DrivenSliderCrank(offset=-0.3, branch=-1, rate=-4.0),
     FreeSliderCrank(),
-    FreeSliderCrank(offset=0.2, rate=3.0, assembly=-1),
+    FreeSliderCrank(offset=0.2, rate=3.0, branch=-1),
 ]
 
 
@@ -61,12 +61,12 @@ def test_velocity_and_acceleration_are_derivatives_of_position(shape: SliderCran
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_the_loop_closes_in_both_assemblies(shape: SliderCrank) -> None:
-    for each in (shape, replace(shape, assembly=-shape.assembly)):
+def test_the_loop_closes_in_both_branches(shape: SliderCrank) -> None:
+    for each in (shape, replace(shape, branch=-shape.branch)):
         beta = each.rod_angle(THETA)
         assert np.abs(each.crank * np.sin(THETA) + each.rod * np.sin(beta) - each.offset).max() < 1e-14
         assert np.abs(each.crank * np.cos(THETA) + each.rod * np.cos(beta) - each.position(THETA)).max() < 1e-14
-        assert np.all(np.sign(np.cos(beta)) == each.assembly)
+        assert np.all(np.sign(np.cos(beta)) == each.branch)
 
 
 @pytest.mark.parametrize("shape", [*SHAPES, SliderCrank(0.3, 1.0, 0.2, -1)])
@@ -92,7 +92,7 @@ def test_the_truth_satisfies_the_mechanism(scene: DrivenSliderCrank) -> None:
     motion = scene.motion(t)
     assert np.abs(joint_gap(mechanism, motion)).max() < 1e-14
     assert np.abs(slip(mechanism, motion)).max() < 1e-13
-    assert np.all(scene.branch(motion.pose) == scene.assembly)
+    assert np.all(scene.branch_of(motion.pose) == scene.branch)
     theta, rate, acceleration = scene.crank_motion(t)
     pose, twist, change = scene._placement(theta, rate, acceleration)
     left = (mechanism.rows(pose) @ change.reshape(len(t), -1, 1))[..., 0]
@@ -139,7 +139,7 @@ def test_the_free_motion_conserves_energy_and_shows_its_error(scene: FreeSliderC
     t = np.linspace(0, scene.duration, 201)
     total = energy(scene.mechanism(), scene.motion(t))
     assert np.ptp(total) < 1e-12 * np.abs(total).max()
-    assert scene.error(t).max() < 1e-9
+    assert scene.truth_error(t).max() < 1e-9
 
 
 def test_the_free_motion_takes_the_time_that_energy_says() -> None:
@@ -162,6 +162,6 @@ def test_bad_slider_cranks_are_refused() -> None:
     for offset in (0.7, 0.8, -0.75):
         with pytest.raises(InvalidMechanism, match="offset is"):
             DrivenSliderCrank(offset=offset)
-    for wrong in ({"crank": 0.0}, {"rod": math.nan}, {"slider_mass": 0.0}, {"assembly": 0}, {"rate": math.inf}):
+    for wrong in ({"crank": 0.0}, {"rod": math.nan}, {"slider_mass": 0.0}, {"branch": 0}, {"rate": math.inf}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             DrivenSliderCrank(**wrong)

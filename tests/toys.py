@@ -23,7 +23,6 @@ class Disc(Scene):
     """A disc on a pin through its centre turns at a constant rate [rad/s], and the pin carries its weight."""
 
     name: ClassVar[str] = "disc"
-    page: ClassVar[str] = "discs"
     source: ClassVar[str] = "invented"
 
     rate: float = 2.0
@@ -37,7 +36,7 @@ class Disc(Scene):
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
         return turning(self.mechanism(), times)
 
-    def branch(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
+    def branch_of(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
         """Beyond 2 rad, which it never reaches by itself: a change of assembly that opens no joint."""
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 

@@ -14,8 +14,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Drive, Pin, Slot, turn
+from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Mechanism
+from reference.plane import components, rotated
 
 Array = NDArray[np.float64]
 
@@ -123,12 +124,12 @@ class Tree:
                     values[:, link.column, None] for values in (position, velocity, acceleration)
                 )
                 rate = twist[:, base, 2, None]
-                along = np.stack(turn(turned[:, base], np.array(link.direction)), axis=-1)
+                along = rotated(turned[:, base], np.array(link.direction))
                 offsets[0] = (base, np.array(link.arm) + way * np.array(link.direction), 1.0)
                 twist[:, body, :2] += way_rate * along
                 change[:, body, :2] += way_gain * along + 2 * rate * way_rate * along[:, ::-1] * [-1.0, 1.0]
             for which, offset, sign in offsets:
-                x, y = turn(turned[:, which], offset)
+                x, y = components(turned[:, which], offset[..., 0], offset[..., 1])
                 rate, gain = twist[:, which, 2], change[:, which, 2]
                 pose[:, body, :2] += sign * np.stack([x, y], axis=-1)
                 twist[:, body, :2] += sign * np.stack([-rate * y, rate * x], axis=-1)
@@ -197,5 +198,5 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
     """A body's own point, from its centre of mass, with world directions at t = 0 [m]."""
     if name is None:
         return point
-    x, y = turn(mechanism.pose[mechanism.body_index(name), 2], np.array(point))
+    x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)
     return float(x), float(y)

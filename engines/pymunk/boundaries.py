@@ -10,9 +10,9 @@ from typing import Protocol
 from scipy.special import ellipeinc
 
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring
 
 Point = tuple[float, float]
 

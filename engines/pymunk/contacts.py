@@ -12,7 +12,7 @@ from math import cos, sin
 from typing import Any
 
 from engines.pymunk.boundaries import Point, boundary_of, unplaced
-from reference.curves.round import Line
+from reference.curves.circles_lines import Line
 from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism
 

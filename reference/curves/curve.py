@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.plane import rotated
 from reference.validation import InvalidMechanism, Numbers, Valid, take, validated
 
 Array = NDArray[np.float64]
@@ -165,9 +166,7 @@ class Placed(Curve):
         return self.curve.speed_of(p)
 
     def point_of(self, p: ArrayLike) -> Array:
-        x, y = np.moveaxis(self.curve.point_of(p), -1, 0)
-        cosine, sine = math.cos(self.turn), math.sin(self.turn)
-        return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1) + np.asarray(self.shift)
+        return rotated(self.turn, self.curve.point_of(p)) + np.asarray(self.shift)
 
     def angle_of(self, p: ArrayLike) -> Array:
         return self.curve.angle_of(p) + self.turn

@@ -11,20 +11,20 @@ import numpy as np
 
 from reference.errata.erratum import Array, Erratum, Values
 from reference.numerics.cauchy import derivative
-from reference.pendulum.chain import accelerations
+from reference.pendulum.double_pendulum import accelerations
 
-# Length of a bar [m]; angles, rates and second rates [rad, rad/s, rad/s^2] of the two.
-BAR, PHI, PHI_RATE, PHI_TURN = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)
+# Length of a bar [m]; angles, rates and accelerations [rad, rad/s, rad/s^2] of the two.
+BAR, PHI, PHI_RATE, PHI_ACCELERATION = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)
 
 
 @dataclass(frozen=True)
 class BarState:
-    """One bar of `length` [m]: its angle from the downward vertical, its rate and second rate."""
+    """One bar of `length` [m]: its angle [rad] from the downward vertical, rate [rad/s], acceleration [rad/s^2]."""
 
     length: float
     angle: float
     rate: float
-    turn: float
+    angular_acceleration: float
 
 
 Formula = Callable[[BarState], Array]
@@ -32,7 +32,7 @@ Formula = Callable[[BarState], Array]
 
 def right(bar: BarState) -> Array:
     """l (phi'' cos phi - phi'^2 sin phi, phi'' sin phi + phi'^2 cos phi) (2,) [m/s^2]."""
-    return accelerations(bar.length, (bar.angle, 0.0), (bar.rate, 0.0), (bar.turn, 0.0)).a
+    return accelerations(bar.length, (bar.angle, 0.0), (bar.rate, 0.0), (bar.angular_acceleration, 0.0)).a
 
 
 def omega_in_the_first_term(bar: BarState) -> Array:
@@ -47,7 +47,7 @@ def dot_missing_in_i(bar: BarState) -> Array:
 
 def exchanged_in_j(bar: BarState) -> Array:
     """Only the j component is wrong: sine and cosine exchanged."""
-    second = bar.rate**2 * math.sin(bar.angle) + bar.turn * math.cos(bar.angle)
+    second = bar.rate**2 * math.sin(bar.angle) + bar.angular_acceleration * math.cos(bar.angle)
     return np.array([right(bar)[0], bar.length * second])
 
 
@@ -62,21 +62,21 @@ PENDULUM_SLIPS: dict[int, tuple[int, Formula]] = {
 
 
 def _bar_end(t: Any, bar: int) -> Any:
-    angle = PHI[bar] + PHI_RATE[bar] * t + PHI_TURN[bar] * t * t / 2
+    angle = PHI[bar] + PHI_RATE[bar] * t + PHI_ACCELERATION[bar] * t * t / 2
     return BAR * np.stack([np.sin(angle), -np.cos(angle)])
 
 
 def _pendulum(number: int) -> Values:
     bar, printed = PENDULUM_SLIPS[number]
-    state = BarState(BAR, PHI[bar], PHI_RATE[bar], PHI_TURN[bar])
+    state = BarState(BAR, PHI[bar], PHI_RATE[bar], PHI_ACCELERATION[bar])
     return Values(printed(state), right(state), derivative(lambda t: _bar_end(t, bar), 0.0, order=2))
 
 
 def _second_note() -> Values:
     """What equals phi1ddot k: omega as printed, or its derivative."""
-    turned = lambda t: PHI[0] + PHI_RATE[0] * t + PHI_TURN[0] * t * t / 2  # noqa: E731
-    omega, change = (derivative(lambda t: np.stack([turned(t)]), 0.0, order=order) for order in (1, 2))
-    return Values(omega, np.array([PHI_TURN[0]]), change)
+    angle = lambda t: PHI[0] + PHI_RATE[0] * t + PHI_ACCELERATION[0] * t * t / 2  # noqa: E731
+    omega, alpha = (derivative(lambda t: np.stack([angle(t)]), 0.0, order=order) for order in (1, 2))
+    return Values(omega, np.array([PHI_ACCELERATION[0]]), alpha)
 
 
 SOLUTION = "problem 18.5.2, solution"

@@ -28,7 +28,7 @@ def _velocity_of_g(t: Any) -> Any:
 
 
 def acceleration_of_g(
-    heading: float, speed: float, push: float, rate: float, turning: float, arm: tuple[float, float]
+    heading: float, speed: float, push: float, rate: float, angular_acceleration: float, arm: tuple[float, float]
 ) -> tuple[Array, Array]:
     """a_G (2,) [m/s^2] as printed and as it must be, for a heading [rad], v_C, vdot_C, thetadot, thetaddot and C -> G.
 
@@ -38,7 +38,7 @@ def acceleration_of_g(
     along = np.array([math.cos(heading), math.sin(heading)])
     left = np.array([-along[1], along[0]])
     span = arm[0] * along + arm[1] * left
-    rest = push * along + turning * np.array([-span[1], span[0]]) - rate**2 * span
+    rest = push * along + angular_acceleration * np.array([-span[1], span[0]]) - rate**2 * span
     return rest - speed * rate * along, rest + speed * rate * left
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from reference.plane import from_complex
 from reference.validation import Numbers, Positive, validated
 
 Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
@@ -44,21 +45,21 @@ def bar_forces(
     Angles, rates and accelerations are those of crank, coupler and rocker (theta, beta, phi) and broadcast.
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
-    weight = complex(*gravity)
+    falling = complex(*gravity)
     # Plane vectors are complex numbers here: half bars, and their accelerations about their own end.
     half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
-    swing = [
-        arm * (1j * np.asarray(bend) - np.asarray(rate) ** 2)
-        for arm, rate, bend in zip(half, rates, accelerations, strict=True)
+    moving = [
+        arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
+        for arm, rate, acceleration in zip(half, rates, accelerations, strict=True)
     ]
     pull = [
-        masses[0] * (swing[0] - weight),
-        masses[1] * (2 * swing[0] + swing[1] - weight),
-        masses[2] * (swing[2] - weight),
+        masses[0] * (moving[0] - falling),
+        masses[1] * (2 * moving[0] + moving[1] - falling),
+        masses[2] * (moving[2] - falling),
     ]  # m (a - g) of each bar: the sum of its pin forces
     spin = [
-        mass * length**2 / 12 * np.asarray(bend)
-        for mass, length, bend in zip(masses, lengths, accelerations, strict=True)
+        mass * length**2 / 12 * np.asarray(acceleration)
+        for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
     ]
     # Moments of the coupler about B and of the rocker about D leave two equations for the force at C.
     coupler, rocker = 2 * half[1], 2 * half[2]
@@ -69,11 +70,7 @@ def bar_forces(
     at_a = pull[0] + at_b
     at_d = pull[2] - at_c
     torque = spin[0] + _cross(half[0], pull[0]) + _cross(2 * half[0], at_b)
-    return Forces(_plane(at_a), _plane(at_b), _plane(at_c), _plane(at_d), torque)
-
-
-def _plane(value: Any) -> Any:
-    return np.stack([np.real(value), np.imag(value)], axis=-1)
+    return Forces(from_complex(at_a), from_complex(at_b), from_complex(at_c), from_complex(at_d), torque)
 
 
 def _cross(first: Any, second: Any) -> Any:

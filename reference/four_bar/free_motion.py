@@ -6,7 +6,7 @@ The chapter's rates (18.70), (18.71), times their denominator, are a direction t
 
 that keeps the loop closed and vanishes only at a change point (bars in line). With (theta, beta, phi)' = u t,
 kinetic energy I(q) u^2 / 2 and potential energy V(q), Lagrange's equation is I u' + u^2 (grad I . t) / 2 = -grad V . t.
-At a crank limit the first component of t passes zero: the crank turns back, the assembly changes its sign, smoothly.
+At a crank limit the first component of t passes zero: the crank turns back, the branch changes its sign, smoothly.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker; the
 chapter's "rod CD", whose direction must be read from D). A is the origin, D anywhere else. `branch` is +1 for C left of
-the directed line B -> D, as in the chapter's figure, -1 for the other assembly.
+the directed line B -> D, as in the chapter's figure, -1 for the other branch (assembly mode).
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, difference, sweep
 from reference.four_bar.forces import Densities, Forces, bar_forces
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
-from reference.four_bar.sweep import Constants, Kinematics, OutOfReach, difference, sweep
+from reference.plane import from_complex
 from reference.validation import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 
 Interval = tuple[float, float]
@@ -41,7 +42,7 @@ class FourBar(Valid):
 
     Every method broadcasts its arguments. Angles are continuous in theta (not wrapped) as long as the crank moves in
     one reachable interval, for any theta and not only along a path; they wind with the crank if it is longer than AD.
-    The chapter's start, theta = pi/2, has beta = pi/4 and phi = 3 pi/4; the other assembly's angles are counted from
+    The chapter's start, theta = pi/2, has beta = pi/4 and phi = 3 pi/4; the other branch's angles are counted from
     the same direction of B seen from D.
 
     Errors are a few roundings in regular positions. Near the end of a reachable interval, at a distance x [rad] from
@@ -191,7 +192,7 @@ class FourBar(Valid):
     def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:
         """World position (..., 2) [m] of the coupler's point `along` BC from B and `across` to its left [m]."""
         beta, _ = self.angles(theta, branch)
-        return _plane(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
+        return from_complex(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
 
     @validated
     def coupler_motion(
@@ -205,13 +206,13 @@ class FourBar(Valid):
     ) -> PointMotion:
         """The same point with its velocity and acceleration (18.67)."""
         motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
-        speed, bend = np.asarray(theta_dot), np.asarray(theta_ddot)
+        rate, acceleration = np.asarray(theta_dot), np.asarray(theta_ddot)
         crank = self.crank * np.exp(1j * np.asarray(theta))
         arm = _arm(along, across) * np.exp(1j * motion.beta)
         return PointMotion(
-            _plane(crank + arm),
-            _plane(1j * (crank * speed + arm * motion.beta_dot)),
-            _plane(crank * (1j * bend - speed**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
+            from_complex(crank + arm),
+            from_complex(1j * (crank * rate + arm * motion.beta_dot)),
+            from_complex(crank * (1j * acceleration - rate**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
         )
 
     @validated
@@ -282,7 +283,3 @@ class FourBar(Valid):
 
 def _arm(along: ArrayLike, across: ArrayLike) -> Any:
     return np.asarray(along) + 1j * np.asarray(across)
-
-
-def _plane(value: Any) -> Any:
-    return np.stack([np.real(value), np.imag(value)], axis=-1)

@@ -34,13 +34,11 @@ class FourBarScene(Scene):
     the three, gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
     """
 
-    page: ClassVar[str] = "four_bar"
-
     crank: Positive = 0.4
     coupler: Positive = 0.4 * math.sqrt(2)
     rocker: Positive = 0.8 * math.sqrt(2)
     ground: Vector = (1.2, 0.0)
-    assembly: Sign = 1
+    branch: Sign = 1
     start: float = math.pi / 2
     rate: float = 0.0
     density: Densities = 1.0
@@ -48,7 +46,7 @@ class FourBarScene(Scene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.four_bar.angles(self.start, self.assembly)
+        self.four_bar.angles(self.start, self.branch)
 
     @property
     def four_bar(self) -> FourBar:
@@ -62,7 +60,7 @@ class FourBarScene(Scene):
         return crank * self.crank, coupler * self.coupler, rocker * self.rocker
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
         """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
         angle = np.asarray(pose)[..., 2]
         return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)
@@ -86,13 +84,13 @@ class FourBarScene(Scene):
     def _bodies(self, motion: BarAngles) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 3 bodies, 3) of the bars in a motion of their angles."""
         bars = np.array(self.four_bar.lengths) * np.exp(1j * motion.angle)
-        speeds = 1j * motion.rate * bars
-        bends = (1j * motion.acceleration - motion.rate**2) * bars
+        velocities = 1j * motion.rate * bars
+        accelerations = (1j * motion.acceleration - motion.rate**2) * bars
         pose, twist, acceleration = (np.empty((*motion.angle.shape, 3)) for _ in range(3))
         for out, ends, origin, angle in (
             (pose, bars, complex(*self.ground), motion.angle),
-            (twist, speeds, 0j, motion.rate),
-            (acceleration, bends, 0j, motion.acceleration),
+            (twist, velocities, 0j, motion.rate),
+            (acceleration, accelerations, 0j, motion.acceleration),
         ):
             middles = (ends[:, 0] / 2, ends[:, 0] + ends[:, 1] / 2, origin + ends[:, 2] / 2)
             centre = np.stack(middles, axis=-1)
@@ -134,13 +132,13 @@ class DrivenFourBar(FourBarScene):
     def _motion(self, times: Array) -> Trajectory:
         pose, twist, _ = self._bodies(self._angles(times))
         forces = self.four_bar.forces(
-            self.start + self.rate * times, self.rate, 0.0, self.assembly, self.density, self.gravity
+            self.start + self.rate * times, self.rate, 0.0, self.branch, self.density, self.gravity
         )
         return Trajectory(times, pose, twist, np.concatenate([*forces[:4], forces.torque[:, None]], axis=-1))
 
     def _angles(self, times: Array) -> BarAngles:
         theta = self.start + self.rate * times
-        motion = self.four_bar.kinematics(theta, self.rate, 0.0, self.assembly)
+        motion = self.four_bar.kinematics(theta, self.rate, 0.0, self.branch)
         return BarAngles(
             np.stack([theta, motion.beta, motion.phi], axis=-1),
             np.stack([np.full_like(theta, self.rate), motion.beta_dot, motion.phi_dot], axis=-1),
@@ -164,7 +162,7 @@ class FreeFourBar(FourBarScene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._curve.start(self.start, self.rate, self.assembly)
+        self._curve.start(self.start, self.rate, self.branch)
 
     @property
     def horizon(self) -> float:  # type: ignore[override]
@@ -181,17 +179,17 @@ class FreeFourBar(FourBarScene):
         pose, twist, acceleration = self._bodies(self._angles(times))
         return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
 
-    def own_error(self, t: ArrayLike) -> float:
-        """The truth's own error up to the times t: the largest change [m, rad, m/s, rad/s] in poses and twists when it
-        is computed again with steps half as long and stages of another number; rounding to double is a part of it."""
+    def truth_error(self, t: ArrayLike) -> Array:
+        """The truth's own error (times,): the largest change [m, rad, m/s, rad/s] of a pose or twist when it is
+        computed again with steps half as long and stages of another number; rounding to double is a part of it."""
         times = self.times(t)
         first, second = self._angles(times), self._angles(times, LONGEST_STEP / 2, STAGES - 2)
         pairs = zip(self._bodies(first)[:2], self._bodies(second)[:2], strict=True)
-        return max(float(np.max(np.abs(one - other))) for one, other in pairs)
+        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in pairs], axis=0)
 
     def _angles(self, times: Array, longest: float = LONGEST_STEP, stages: int = STAGES) -> BarAngles:
         curve = self._curve
-        start = curve.start(self.start, self.rate, self.assembly)
+        start = curve.start(self.start, self.rate, self.branch)
         order, where = np.unique(times, return_inverse=True)
         try:
             states = curve.states(start, order, longest * self._time_scale, stages)

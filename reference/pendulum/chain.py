@@ -21,7 +21,8 @@ from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
 from reference.memory import require_room
 from reference.numerics.integration import error_of, integrate
-from reference.pendulum.link import across, direction_of
+from reference.pendulum.link import direction_of
+from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
 from reference.validation import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ class Chain(Valid):
         """
         leading = angle.shape[:-1]
         half = 0.5 * self._length[:, None] * direction_of(angle)
-        normal = across(half)
+        normal = perpendicular(half)
         outer = normal[..., :, None] * normal[..., None, :] / self.inertia[:, None, None]
         light = np.eye(2) / self._mass[:, None, None]
         near, far = light + outer, outer - light  # acceleration of one end from a force on the same, on the other end
@@ -95,9 +96,9 @@ class Chain(Valid):
         banded[2, ..., 1:, 0] = far[..., :-1, 1, 0]
         banded[1, ..., 1:, 0], banded[1, ..., 1:, 1] = far[..., :-1, 0, 0], far[..., :-1, 1, 1]
         banded[0, ..., 1:, 1] = far[..., :-1, 0, 1]
-        swing = rate[..., None] ** 2 * half
-        right = -swing
-        right[..., 1:, :] -= swing[..., :-1, :]
+        centripetal = rate[..., None] ** 2 * half
+        right = -centripetal
+        right[..., 1:, :] -= centripetal[..., :-1, :]
         right[..., 0, 1] += self.gravity  # gravity is the same on both sides of every other joint
         if max(self.masses) <= UNEVEN * min(self.masses):
             solution = solveh_banded(
@@ -125,8 +126,8 @@ class Chain(Valid):
         below = np.zeros_like(forces)
         below[..., :-1, :] = forces[..., 1:, :]
         centre = (forces - below) / self._mass[:, None]
-        turning = -np.sum(across(half) * (forces + below), axis=-1) / self.inertia
-        lever = turning[..., None] * across(half) - np.asarray(rate, dtype=np.longdouble)[..., None] ** 2 * half
+        alpha = -np.sum(perpendicular(half) * (forces + below), axis=-1) / self.inertia
+        lever = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), alpha, half)
         out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
         out[..., 1:, :] -= (centre + lever)[..., :-1, :]
         out[..., 0, 1] -= self.gravity
@@ -141,7 +142,7 @@ class Chain(Valid):
     def _accelerations(self, angle: Array, rate: Array) -> Array:
         forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
-        normal = across(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
+        normal = perpendicular(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
         return (-np.sum(normal * forces, axis=-1) / self.inertia).astype(float)
 
     def rates(self, state: Array) -> Array:
@@ -203,16 +204,16 @@ class Chain(Valid):
         """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
         self._refuse_other_shapes(angle, rate, acceleration)
         half = 0.5 * self._length[:, None] * direction_of(angle)
-        speed = rate[..., None] * across(half)
-        change = acceleration[..., None] * across(half) - rate[..., None] ** 2 * half
 
         def centres(steps: Array) -> Array:
             return 2 * np.cumsum(steps, axis=-2) - steps
 
         return (
             np.concatenate([centres(half), (angle - math.pi / 2)[..., None]], axis=-1),
-            np.concatenate([centres(speed), rate[..., None]], axis=-1),
-            np.concatenate([centres(change), acceleration[..., None]], axis=-1),
+            np.concatenate([centres(rotation_velocity(rate, half)), rate[..., None]], axis=-1),
+            np.concatenate(
+                [centres(rotation_acceleration(rate, acceleration, half)), acceleration[..., None]], axis=-1
+            ),
         )
 
     @validated
@@ -253,45 +254,10 @@ class Chain(Valid):
         return float(t[first]), float(np.polyfit(t[first:], np.log(growth[first:]), 1)[0])
 
     @validated
-    def error(self, angle: Array, rate: Array, t: Times) -> Array:
+    def truth_error(self, angle: Array, rate: Array, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
         return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
 
     def _start(self, angle: Array, rate: Array) -> Array:
         self._refuse_other_shapes(angle, rate)
         return np.concatenate([angle, rate])
-
-
-@dataclass(frozen=True)
-class TwoPoints:
-    """What problems 18.5.1 and 18.5.2 ask for, each (2,) in m/s or m/s^2: of A, of B relative to A, and of B."""
-
-    a: Array
-    b_relative_to_a: Array
-    b: Array
-
-
-@validated
-def velocities(length: Positive, angles: tuple[float, float], rates: tuple[float, float]) -> TwoPoints:
-    """Problem 18.5.1: A and B are the lower ends of the two bars of a double pendulum, each of `length` [m].
-
-    The angles phi are from the downward vertical, counter-clockwise: r_A = l (sin phi1, -cos phi1).
-    """
-    first, second = (
-        length * rate * across(direction_of(np.asarray(phi))) for phi, rate in zip(angles, rates, strict=True)
-    )
-    return TwoPoints(first, second, first + second)
-
-
-@validated
-def accelerations(
-    length: Positive, angles: tuple[float, float], rates: tuple[float, float], second_rates: tuple[float, float]
-) -> TwoPoints:
-    """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), B/A
-    likewise.
-    """
-    first, second = (
-        length * (turning * across(direction_of(np.asarray(phi))) - rate**2 * direction_of(np.asarray(phi)))
-        for phi, rate, turning in zip(angles, rates, second_rates, strict=True)
-    )
-    return TwoPoints(first, second, first + second)

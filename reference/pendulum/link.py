@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validation import NonNegative, Positive, Valid, validated
@@ -132,11 +133,6 @@ def direction_of(angle: NDArray[Any]) -> Any:
     return np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
 
 
-def across(direction: Array) -> Array:
-    """k x direction (..., 2): a quarter turn counter-clockwise."""
-    return np.stack([-direction[..., 1], direction[..., 0]], axis=-1)
-
-
 @dataclass(frozen=True)
 class BarPendulum(Scene):
     """A uniform bar on a fixed pin at the origin: length [m], mass [kg], gravity [m/s^2], start angle [rad], rate
@@ -144,7 +140,6 @@ class BarPendulum(Scene):
     """
 
     name: ClassVar[str] = "pendulum_1"
-    page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum (1 link)"
     length: Positive = 1.0
     mass: Positive = 1.0
@@ -168,11 +163,13 @@ class BarPendulum(Scene):
 
     def _bar(self, t: Array) -> tuple[Array, Array, Array]:
         """Pose, twist and acceleration of the centre of mass (times, 3)."""
-        angle, rate, acceleration = (value[:, None] for value in self.pendulum.motion(t))
-        arm = self.length / 2 * direction_of(angle[:, 0])
-        pose = np.concatenate([arm, angle - math.pi / 2], axis=-1)
-        twist = np.concatenate([rate * across(arm), rate], axis=-1)
-        return pose, twist, np.concatenate([acceleration * across(arm) - rate**2 * arm, acceleration], axis=-1)
+        angle, rate, acceleration = self.pendulum.motion(t)
+        arm = self.length / 2 * direction_of(angle)
+        return (
+            np.column_stack([arm, angle - math.pi / 2]),
+            np.column_stack([rotation_velocity(rate, arm), rate]),
+            np.column_stack([rotation_acceleration(rate, acceleration, arm), acceleration]),
+        )
 
     def _motion(self, times: Array) -> Trajectory:
         pose, twist, acceleration = self._bar(times)

@@ -37,7 +37,6 @@ class LinkPendulum(Scene):
     """
 
     name: ClassVar[str] = "pendulum_2"
-    page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
     reach: ClassVar[float] = 2.0  # a chaotic truth: by then a pendulum of two links has lost half of its digits
     links: Count = 2
@@ -63,9 +62,9 @@ class LinkPendulum(Scene):
         state = _integrated(self.chain, self.angle, self.rate, until)(times)
         return state[:, : self.links], state[:, self.links :]
 
-    def error(self, t: ArrayLike) -> Array:
+    def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) [rad, rad/s]."""
-        return self.chain.error(np.full(self.links, self.angle), np.full(self.links, self.rate), self.times(t))
+        return self.chain.truth_error(np.full(self.links, self.angle), np.full(self.links, self.rate), self.times(t))
 
     def mechanism(self) -> Mechanism:
         angle, rate = np.full(self.links, self.angle), np.full(self.links, self.rate)

@@ -32,17 +32,16 @@ NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
 
 @dataclass(frozen=True)
 class OneFoot(Scene):
-    """Standing on the left foot: `weight` [kg] of the whole person, `height` [m], gravity [m/s^2].
+    """Standing on the left foot: `mass` [kg] of the whole person, `height` [m], gravity [m/s^2].
 
     Angles [rad] at the start, from rest, of the upward lines ankle-knee, knee-hip and hip-shoulder from the upward
     vertical, and of the lifted leg's hip-knee and knee-ankle from the downward vertical; all counter-clockwise.
     """
 
     name: ClassVar[str] = "person_one_foot"
-    page: ClassVar[str] = "person"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
     reach: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
-    weight: Positive = 75.0
+    mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
     left_shank: float = -0.02
@@ -90,7 +89,7 @@ class OneFoot(Scene):
     @cached_property
     def masses(self) -> Array:
         """(5,) [kg]."""
-        return np.array([segment.mass * self.weight for segment in self.segments])
+        return np.array([segment.mass * self.mass for segment in self.segments])
 
     @cached_property
     def inertias(self) -> Array:
@@ -151,7 +150,7 @@ class OneFoot(Scene):
         half = state.shape[-1] // 2
         return state[:, :half], state[:, half:]
 
-    def error(self, t: ArrayLike) -> Array:
+    def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) in u and u', by two tolerances."""
         return error_of(self.rates, np.concatenate([self.start, np.zeros(len(self.start))]), self.times(t))
 
@@ -174,8 +173,8 @@ class OneFoot(Scene):
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
-        pose, twist, change = self.placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, change))
+        pose, twist, acceleration = self.placement(times)
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     @cached_property
     def _mechanism(self) -> Mechanism:
@@ -187,8 +186,9 @@ class OneFoot(Scene):
         step = 1e-100
         pose, tangent = self.tangent(coordinates)
         _, moved = self.tangent(coordinates + 1j * step * rates)
-        change = tangent @ self.accelerations(coordinates, rates)[..., None] + moved.imag @ rates[..., None] / step
-        return pose, (tangent @ rates[..., None]).reshape(pose.shape), change.reshape(pose.shape)
+        along, bias = self.accelerations(coordinates, rates), moved.imag @ rates[..., None] / step
+        acceleration = tangent @ along[..., None] + bias
+        return pose, (tangent @ rates[..., None]).reshape(pose.shape), acceleration.reshape(pose.shape)
 
 
 @lru_cache(maxsize=8)

@@ -101,7 +101,7 @@ class TwoFeet(OneFoot):
         return bearing + self.knees * ankle, bearing - self.knees * hip
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
         """+1 where both knees bend to the left of their legs, -1 where both bend to the right, 0 otherwise."""
         pose = np.asarray(pose)
         left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))

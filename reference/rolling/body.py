@@ -48,15 +48,15 @@ class RollingBody(Valid):
         return (self.rolling.theta, self.start_rate)
 
     @validated
-    def growth(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+    def angular_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """theta'' (...) [rad/s^2] at rotations [rad] and rates [rad/s] (...)."""
         contact = self.rolling.contact(theta)
         arm = contact.arm
         inertia = self.inertia + self.mass * np.sum(arm**2, axis=-1)
-        # d(r^2)/dtheta / 2 = -s' r . e_t: turning keeps r, only the advance of the contact changes it.
-        change = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
+        # M'/2 = m r r', and r r' = -s' r . e_t: turning keeps r, only the advance of the contact changes it.
+        half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
-        return (pull - change * np.asarray(rate) ** 2) / inertia
+        return (pull - half_slope * np.asarray(rate) ** 2) / inertia
 
     @validated
     def energy(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -67,7 +67,7 @@ class RollingBody(Valid):
         return 0.5 * inertia * np.asarray(rate) ** 2 - self.mass * (place @ np.asarray(self.gravity))
 
     def _rates(self, state: Array) -> Array:
-        return np.stack([state[..., 1], self.growth(state[..., 0], state[..., 1])], axis=-1)
+        return np.stack([state[..., 1], self.angular_acceleration(state[..., 0], state[..., 1])], axis=-1)
 
     @cached_property
     def _known(self) -> list[tuple[float, Integrated]]:
@@ -83,7 +83,7 @@ class RollingBody(Valid):
         states = self._known[0][1](t)
         return states[:, 0], states[:, 1]
 
-    def error(self, t: ArrayLike) -> Array:
+    def truth_error(self, t: ArrayLike) -> Array:
         """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
         return error_of(self._rates, self.start, sample_times("rolling body", t))
 
@@ -92,7 +92,7 @@ class RollingBody(Valid):
         theta, rate = self.states(t)
         contact = self.rolling.contact(theta)
         force = self.mass * (
-            self.rolling.acceleration(theta, rate, self.growth(theta, rate)) - np.asarray(self.gravity)
+            self.rolling.acceleration(theta, rate, self.angular_acceleration(theta, rate)) - np.asarray(self.gravity)
         )
         return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1)
 
@@ -133,7 +133,7 @@ class RollingBody(Valid):
         low, high = near - within, near + within
 
         def pull(theta: float) -> float:
-            return float(self.growth(theta, 0.0))
+            return float(self.angular_acceleration(theta, 0.0))
 
         if pull(low) * pull(high) > 0:
             raise InvalidMechanism(

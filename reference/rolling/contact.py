@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.curves.curve import Array
 
@@ -44,15 +42,3 @@ class Contact:
         """(curvature_A + curvature_B) / max(|curvature|) (...): 1 on flat ground, 0 when the curves fit each other."""
         largest = np.maximum(np.abs(self.ground_curvature), np.abs(self.body_curvature))
         return (self.ground_curvature + self.body_curvature) / largest
-
-
-def quarter_turned(vector: NDArray[Any]) -> NDArray[Any]:
-    """k x vector (..., 2)."""
-    return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
-
-
-def turned(theta: Array, vector: Array) -> Array:
-    cosine, sine = np.cos(theta), np.sin(theta)
-    return np.stack(
-        [cosine * vector[..., 0] - sine * vector[..., 1], sine * vector[..., 0] + cosine * vector[..., 1]], axis=-1
-    )

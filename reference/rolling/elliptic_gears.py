@@ -14,6 +14,7 @@ from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
 from reference.kinds import from_to
 from reference.mechanism import Body, Mechanism, Triple
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.row_system import undetermined
@@ -40,7 +41,6 @@ class EllipticGears(Scene):
     """
 
     name: ClassVar[str] = "elliptic_gears"
-    page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66), between two moving bodies"
 
     major: Positive = 0.3  # m, semi-axis a
@@ -76,27 +76,26 @@ class EllipticGears(Scene):
     def second_rate(self, first: ArrayLike) -> tuple[Array, Array]:
         """theta_2' and theta_2'' (...) [rad/s, rad/s^2]: minus the ratio of the contact's distances, and its rate."""
         first = np.asarray(first, dtype=float)
-        e, bend = self.eccentricity, self.major * (1 - self.eccentricity**2)
-        near = bend / (1 - e * np.cos(first))
+        e, semi_latus_rectum = self.eccentricity, self.major * (1 - self.eccentricity**2)
+        near = semi_latus_rectum / (1 - e * np.cos(first))
         far = 2 * self.major - near
-        receding = -(near**2) * e * np.sin(first) / bend * self.turning_rate
+        receding = -(near**2) * e * np.sin(first) / semi_latus_rectum * self.turning_rate
         return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
 
     @validated
     def kinematics(self, t: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2, 3)."""
         first = self.start_angle + self.turning_rate * t
-        rate, growth = self.second_rate(first)
+        rate, angular_acceleration = self.second_rate(first)
         pose, twist, acceleration = np.empty((3, len(t), 2, 3))
         for gear, pin, angle, omega, alpha in (
             (0, 0.0, first, np.full(t.shape, self.turning_rate), np.zeros(t.shape)),
-            (1, 2 * self.major, self.second_angle(first), rate, growth),
+            (1, 2 * self.major, self.second_angle(first), rate, angular_acceleration),
         ):
             arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-            across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
             pose[:, gear] = np.column_stack([arm[:, 0] + pin, arm[:, 1], angle])
-            twist[:, gear] = np.column_stack([omega[:, None] * across, omega])
-            acceleration[:, gear] = np.column_stack([alpha[:, None] * across - omega[:, None] ** 2 * arm, alpha])
+            twist[:, gear] = np.column_stack([rotation_velocity(omega, arm), omega])
+            acceleration[:, gear] = np.column_stack([rotation_acceleration(omega, alpha, arm), alpha])
         return pose, twist, acceleration
 
     def mechanism(self) -> Mechanism:

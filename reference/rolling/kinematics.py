@@ -10,11 +10,12 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.curves.circles_lines import Line, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
-from reference.curves.round import Line, Ring, Side
 from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
-from reference.rolling.contact import Contact, quarter_turned, turned
+from reference.plane import rotated, rotation_acceleration, rotation_velocity
+from reference.rolling.contact import Contact
 from reference.validation import InvalidMechanism, Valid, validated
 
 # The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
@@ -30,7 +31,7 @@ def _hole(curve: Curve) -> tuple[Array, float] | None:
     inner = _hole(curve.curve) if isinstance(curve, Placed) else None
     if inner is None or not isinstance(curve, Placed):
         return None
-    return turned(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
+    return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
 
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]
@@ -204,7 +205,7 @@ class Rolling(Valid):
             ground_arc=ground_arc,
             body_arc=body_arc,
             point=self.ground.point_of(ground),
-            arm=-turned(theta, self.body.point_of(body_parameter)),
+            arm=-rotated(theta, self.body.point_of(body_parameter)),
             tangent_angle=self.ground.angle_of(ground),
             ground_curvature=self.ground.curvature_of(ground),
             body_curvature=self.body.curvature_of(body_parameter),
@@ -244,9 +245,9 @@ class Rolling(Valid):
         contact = self._contact_at(theta, self._body_parameter(theta))
         origin = contact.point + contact.arm
         if other is self.body:
-            world = turned(theta[..., None], rim) + origin[..., None, :]
+            world = rotated(theta[..., None], rim) + origin[..., None, :]
         else:
-            world = turned(-theta[..., None], rim - origin[..., None, :])
+            world = rotated(-theta[..., None], rim - origin[..., None, :])
         excess = np.linalg.norm(world - centre, axis=-1).max(axis=-1) - radius
         if np.any(excess > 1e-9 * radius):
             worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
@@ -279,7 +280,7 @@ class Rolling(Valid):
 
     def _arm(self, contact: Contact, point: Vector | ArrayLike) -> Array:
         """r_{P/C} (..., 2) [m] of a point P of the body, in its own frame."""
-        return contact.arm + turned(contact.theta, np.asarray(point, dtype=float))
+        return contact.arm + rotated(contact.theta, np.asarray(point, dtype=float))
 
     @validated
     def position(self, theta: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
@@ -290,7 +291,7 @@ class Rolling(Valid):
     @validated
     def velocity(self, theta: ArrayLike, rate: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """(18.66) v = omega x r_{P/C} (..., 2) [m/s] of a point of the body at the rate omega (...) [rad/s]."""
-        return np.asarray(rate)[..., None] * quarter_turned(self._arm(self.contact(theta), point))
+        return rotation_velocity(rate, self._arm(self.contact(theta), point))
 
     @validated
     def contact_velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -300,11 +301,10 @@ class Rolling(Valid):
 
     @validated
     def pinned_acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)
+        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
     ) -> Array:
         """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration as if the body were pinned at C."""
-        arm = self._arm(self.contact(theta), point)
-        return np.asarray(growth)[..., None] * quarter_turned(arm) - np.asarray(rate)[..., None] ** 2 * arm
+        return rotation_acceleration(rate, angular_acceleration, self._arm(self.contact(theta), point))
 
     @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -313,6 +313,9 @@ class Rolling(Valid):
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 
     @validated
-    def acceleration(self, theta: ArrayLike, rate: ArrayLike, growth: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
-        """Accelerations (..., 2) [m/s^2] of a point at the rate omega [rad/s] and its growth alpha [rad/s^2] (...)."""
-        return self.pinned_acceleration(theta, rate, growth, point) + self.rolling_acceleration(theta, rate)
+    def acceleration(
+        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
+    ) -> Array:
+        """Accelerations (..., 2) [m/s^2] of a point at rates [rad/s] and angular accelerations [rad/s^2] (...)."""
+        pinned = self.pinned_acceleration(theta, rate, angular_acceleration, point)
+        return pinned + self.rolling_acceleration(theta, rate)

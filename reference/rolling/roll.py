@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.curves.curve import Vector
+from reference.plane import components, rotation_velocity
 from reference.rolling.kinematics import Rolling
 from reference.validation import Name, Valid
 
@@ -65,17 +66,14 @@ class Roll(Valid):
             return contact.point, contact.arm, contact.tangent_angle
         step = 1j * np.imag(theta)
         advance = (step * contact.rate)[..., None] * contact.tangent
-        across = np.stack([-contact.arm[..., 1], contact.arm[..., 0]], axis=-1)
         angle = contact.tangent_angle + step * contact.ground_curvature * contact.rate
-        return contact.point + advance, contact.arm + step[..., None] * across - advance, angle
+        return contact.point + advance, contact.arm + rotation_velocity(step, contact.arm) - advance, angle
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Second body minus where rolling would put it at its rotation, along e_t and e_n (..., 2) [m]."""
         point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
-        cosine, sine = np.cos(first[..., 2]), np.sin(first[..., 2])
-        x, y = point[..., 0] + arm[..., 0], point[..., 1] + arm[..., 1]
-        open_x = second[..., 0] - first[..., 0] - (cosine * x - sine * y)
-        open_y = second[..., 1] - first[..., 1] - (sine * x + cosine * y)
+        x, y = components(first[..., 2], point[..., 0] + arm[..., 0], point[..., 1] + arm[..., 1])
+        open_x, open_y = second[..., 0] - first[..., 0] - x, second[..., 1] - first[..., 1] - y
         along, across = np.cos(angle + first[..., 2]), np.sin(angle + first[..., 2])
         return np.stack([along * open_x + across * open_y, across * open_x - along * open_y], axis=-1)
 

@@ -11,9 +11,9 @@ from typing import ClassVar
 import numpy as np
 
 from reference.curves.cam import Cam
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring
 from reference.mechanism import Body, Mechanism
 from reference.rolling.body import GRAVITY, RollingBody
 from reference.rolling.kinematics import Rolling
@@ -27,7 +27,6 @@ from reference.validation import Positive
 class RollingScene(Scene):
     """A body on fixed ground: subclasses give the two curves; the centre of mass is the origin of the body's curve."""
 
-    page: ClassVar[str] = "rolling"
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
     reach: ClassVar[float] = 2.0  # the contact is searched for at every step, and bodies roll ever faster downhill

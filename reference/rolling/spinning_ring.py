@@ -32,7 +32,6 @@ class SpinningRing(Scene):
     """
 
     name: ClassVar[str] = "spinning_ring"
-    page: ClassVar[str] = "pendulum"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: the simplest with many links"
     links: Annotated[int, from_to(3, LARGEST_COUNT)] = 100
     length: Positive = 0.1

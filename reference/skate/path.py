@@ -14,6 +14,7 @@ from reference.joints import Vector
 from reference.kinds import of_shape
 from reference.mechanism import Triple
 from reference.numerics.antiderivative import Antiderivative
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.validation import Complexes, InvalidMechanism, Positive, Valid, sample_times, validated
 
 Array = NDArray[np.float64]
@@ -145,8 +146,8 @@ class SkatePath(Valid):
         """v_G = v_C i' + theta_dot k x r_G/C (times, 2) [m/s]; `point` is G from C in the frame of i', j' [m]."""
         times = sample_times("skate path", t)
         along, arm = self._arm(times, point)
-        turning = self._given("turning_rate", times)[:, None]
-        return self._given("speed", times)[:, None] * along + turning * _left_of(arm)
+        own = self._given("speed", times)[:, None] * along
+        return own + rotation_velocity(self._given("turning_rate", times), arm)
 
     @validated
     def acceleration(self, t: ArrayLike, point: Vector = (0.0, 0.0)) -> Array:
@@ -157,13 +158,6 @@ class SkatePath(Valid):
         """
         times = sample_times("skate path", t)
         along, arm = self._arm(times, point)
-        speed, turning = self._given("speed", times)[:, None], self._given("turning_rate", times)[:, None]
-        speeding = self._rate_of("speed", times)[:, None]
-        turning_up = self._rate_of("turning_rate", times)[:, None]
-        of_c = speeding * along + speed * turning * _left_of(along)
-        return of_c + turning_up * _left_of(arm) - turning**2 * arm
-
-
-def _left_of(vector: Array) -> Array:
-    """k x vector (..., 2)."""
-    return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
+        speed, turning_rate = self._given("speed", times), self._given("turning_rate", times)
+        of_c = self._rate_of("speed", times)[:, None] * along + rotation_velocity(speed * turning_rate, along)
+        return of_c + rotation_acceleration(turning_rate, self._rate_of("turning_rate", times), arm)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.link import Pendulum
+from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.skate.path import pinned_pose
 from reference.trajectory import Trajectory
@@ -31,7 +32,6 @@ class PinnedBody(Scene):
     """
 
     name: ClassVar[str] = "pinned_body"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eqs. 18.62-18.63"
 
     mass: Positive = 2.0
@@ -73,9 +73,8 @@ class PinnedBody(Scene):
         angle, rate, acceleration = self._turning(times)
         pose = pinned_pose(angle, self.pin, self.point)
         arm = pose[:, :2] - np.array(self.pin)
-        across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-        twist = np.concatenate([rate[:, None] * across, rate[:, None]], axis=-1)
-        pull = acceleration[:, None] * across - rate[:, None] ** 2 * arm - np.array(self.gravity)
+        twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
+        pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
         return Trajectory(times, pose[:, None, :], twist[:, None, :], self.mass * pull)
 
 

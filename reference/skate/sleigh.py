@@ -35,7 +35,6 @@ class ChaplyginSleigh(Scene):
     """
 
     name: ClassVar[str] = "sleigh"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eqs. 18.64-18.65; ideal wheels and skates, looking down"
 
     mass: Positive = 2.0

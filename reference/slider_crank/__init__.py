@@ -2,5 +2,14 @@
 
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
 
-__all__ = ["DrivenSliderCrank", "FreeSliderCrank", "MovingSliderCrank", "SliderCrank"]
+__all__ = [
+    "DrivenSliderCrank",
+    "FreeSliderCrank",
+    "MovingSliderCrank",
+    "PushedSliderCrank",
+    "RodEndInSlot",
+    "SliderAtDeadCentre",
+    "SliderCrank",
+]

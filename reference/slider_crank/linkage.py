@@ -3,7 +3,7 @@ force.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
 angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta). The
-two assemblies are cos(beta) > 0 (+1) and cos(beta) < 0 (-1). A loop that the chapter calls "difficult or impossible to
+two branches are cos(beta) > 0 (+1) and cos(beta) < 0 (-1). A loop that the chapter calls "difficult or impossible to
 express with formulas"; this one isn't.
 """
 
@@ -23,15 +23,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class SliderCrank(Valid):
-    """Crank and rod [m], the slot's height `offset` [m], and the assembly, +1 or -1.
+    """Crank and rod [m], the slot's height `offset` [m], and the `branch`, +1 or -1.
 
-    Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank: at equality the assemblies meet.
+    Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank: at equality the branches meet.
     """
 
     crank: Positive
     rod: Positive
     offset: float = 0.0
-    assembly: Sign = 1
+    branch: Sign = 1
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -48,13 +48,13 @@ class SliderCrank(Valid):
 
     def _rod(self, theta: Any) -> tuple[Any, Any]:
         sine = self.rod_sine(theta)
-        return sine, self.assembly * np.sqrt((1 - sine) * (1 + sine))
+        return sine, self.branch * np.sqrt((1 - sine) * (1 + sine))
 
     @validated
     def rod_angle(self, theta: ArrayLike) -> Array:
         """beta (...) [rad], from the crank pin to the slider, continuous in theta."""
         sine = self.rod_sine(np.asarray(theta))
-        return np.arcsin(sine) if self.assembly == 1 else math.pi - np.arcsin(sine)
+        return np.arcsin(sine) if self.branch == 1 else math.pi - np.arcsin(sine)
 
     @validated
     def rod_rates(self, theta: Complexes) -> tuple[Any, Any]:
@@ -85,7 +85,7 @@ class SliderCrank(Valid):
         """
         stretched = math.asin(self.offset / (self.rod + self.crank))
         folded = math.pi + math.asin(self.offset / (self.rod - self.crank))
-        if self.assembly == 1:
+        if self.branch == 1:
             return stretched, folded
         return math.pi - stretched, 3 * math.pi - folded
 
@@ -131,26 +131,26 @@ class MovingSliderCrank(Valid):
             + rod_inertia * b1**2
             + self.slider_mass * x1**2
         )
-        change = 2 * (self.rod_mass * (cx1 * cx2 + cy1 * cy2) + rod_inertia * b1 * b2 + self.slider_mass * x1 * x2)
-        return value, change
+        slope = 2 * (self.rod_mass * (cx1 * cx2 + cy1 * cy2) + rod_inertia * b1 * b2 + self.slider_mass * x1 * x2)
+        return value, slope
 
     @validated
     def potential(self, theta: Complexes) -> tuple[Any, Any]:
         """V(theta) [J] and its derivative; the slider keeps its height."""
-        weight = self.gravity * self.shape.crank * (self.crank_mass + self.rod_mass) / 2
-        return weight * np.sin(theta), weight * np.cos(theta)
+        moment = self.gravity * self.shape.crank * (self.crank_mass + self.rod_mass) / 2
+        return moment * np.sin(theta), moment * np.cos(theta)
 
     @validated
     def acceleration(self, theta: Complexes, rate: Complexes) -> Any:
         """theta'' (...) [rad/s^2] when nothing drives it: J theta'' + J' theta'^2 / 2 + V' = 0."""
-        inertia, change = self.inertia(theta)
-        return -(change * rate**2 / 2 + self.potential(theta)[1]) / inertia
+        inertia, inertia_slope = self.inertia(theta)
+        return -(inertia_slope * rate**2 / 2 + self.potential(theta)[1]) / inertia
 
     @validated
     def torque(self, theta: Complexes, rate: Complexes, acceleration: Complexes) -> Any:
         """What the drive must give the crank (...) [N m] for this motion."""
-        inertia, change = self.inertia(theta)
-        return inertia * acceleration + change * rate**2 / 2 + self.potential(theta)[1]
+        inertia, inertia_slope = self.inertia(theta)
+        return inertia * acceleration + inertia_slope * rate**2 / 2 + self.potential(theta)[1]
 
     @validated
     def guide_force(self, theta: Complexes, rate: Complexes, acceleration: Complexes) -> Any:
@@ -165,11 +165,11 @@ class MovingSliderCrank(Valid):
         _, (cx2, cy2) = self._centre_of_rod(theta)
         (cx1, cy1), _ = self._centre_of_rod(theta)
         ax, ay = cx2 * rate**2 + cx1 * acceleration, cy2 * rate**2 + cy1 * acceleration
-        spin = b2 * rate**2 + b1 * acceleration
+        rod_acceleration = b2 * rate**2 + b1 * acceleration
         slider = x2 * rate**2 + x1 * acceleration
         arm_x, arm_y = shape.rod * cosine, shape.rod * sine
         moment = (
-            self.rod_mass * shape.rod**2 / 12 * spin
+            self.rod_mass * shape.rod**2 / 12 * rod_acceleration
             + self.rod_mass * (arm_x / 2 * (ay + self.gravity) - arm_y / 2 * ax)
             + self.slider_mass * (arm_x * self.gravity - arm_y * slider)
         )

@@ -43,13 +43,12 @@ class DrivenSliderCrank(Scene):
     """
 
     name: ClassVar[str] = "driven_slider_crank"
-    page: ClassVar[str] = "slider_crank"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a slider-crank"
     driven: ClassVar[bool] = True
     crank: Positive = 0.3
     rod: Positive = 1.0
     offset: float = 0.0
-    assembly: Sign = 1
+    branch: Sign = 1
     crank_mass: Positive = 0.3
     rod_mass: Positive = 1.0
     slider_mass: Positive = 0.5
@@ -66,7 +65,7 @@ class DrivenSliderCrank(Scene):
 
     @cached_property
     def moving(self) -> MovingSliderCrank:
-        shape = SliderCrank(self.crank, self.rod, self.offset, self.assembly)
+        shape = SliderCrank(self.crank, self.rod, self.offset, self.branch)
         return MovingSliderCrank(shape, self.crank_mass, self.rod_mass, self.slider_mass, self.gravity)
 
     def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
@@ -127,7 +126,7 @@ class DrivenSliderCrank(Scene):
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     @validated
-    def branch(self, pose: Poses) -> NDArray[np.int_]:
+    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
         """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
         pin = 2 * np.asarray(pose)[..., 0, 0]  # the crank's centre is halfway out to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)
@@ -147,6 +146,6 @@ class FreeSliderCrank(DrivenSliderCrank):
         state = _integrated(self.moving, self.angle, self.rate, until)(t)
         return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
 
-    def error(self, t: ArrayLike) -> Array:
+    def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) [rad, rad/s], by two tolerances."""
         return error_of(lambda state: _rates(self.moving, state), [self.angle, self.rate], self.times(t))

@@ -6,4 +6,13 @@ from reference.wheels.casters import Casters
 from reference.wheels.tractrix import Tow
 from reference.wheels.trailers import CarWithTrailers, Convoy, Tricycle, towed
 
-__all__ = ["CarAndTrailer", "CarWithTrailers", "Cart", "Casters", "Convoy", "Tow", "Tricycle", "towed"]
+__all__ = [
+    "CarAndTrailer",
+    "CarWithTrailers",
+    "Cart",
+    "Casters",
+    "Convoy",
+    "Tow",
+    "Tricycle",
+    "towed",
+]

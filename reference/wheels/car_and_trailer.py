@@ -43,7 +43,6 @@ class CarAndTrailer(Scene):
     """
 
     name: ClassVar[str] = "car_and_trailer"
-    page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
     masses: tuple[Positive, Positive] = (2.0, 1.0)
@@ -169,9 +168,9 @@ class CarAndTrailer(Scene):
         turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # the headings' own rates along the way
         bending = np.imag(self._per_way(turning)) / COMPLEX_STEP
         mass = np.sum(self._weights * per_way**2, axis=(-2, -1))
-        slowing = -np.sum(self._weights * per_way * bending, axis=(-2, -1)) / mass * speed**2
+        speed_rate = -np.sum(self._weights * per_way * bending, axis=(-2, -1)) / mass * speed**2
         speeds = speed[:, None, None]
-        acceleration = bending * speeds**2 + per_way * slowing[:, None, None]
+        acceleration = bending * speeds**2 + per_way * speed_rate[:, None, None]
         half = 0.5 * self.curvature * way
         chord, middle = way * np.sinc(half / np.pi), self.pose[2] + half
         axle = np.array(self.pose[:2]) + np.stack([chord * np.cos(middle), chord * np.sin(middle)], axis=-1)

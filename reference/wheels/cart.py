@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Joint, Pin, Skate
 from reference.mechanism import Body, Mechanism, Triple
+from reference.plane import components
 from reference.validation import Positive
 from reference.wheels.casters import Casters
 from reference.wheels.coasting import CoastingScene
@@ -29,7 +30,6 @@ class Cart(CoastingScene):
     """
 
     name: ClassVar[str] = "cart"
-    page: ClassVar[str] = "wheels"
     source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
 
     mass: Positive = 2.0
@@ -79,21 +79,21 @@ class Cart(CoastingScene):
         columns = []
         for speed, turning in ((1.0, 0.0), (0.0, 1.0)):
             own = self.casters.turning_rates(directions - heading[..., None], speed, turning)
-            parts = [*_velocity(heading, speed, self.centre * turning), turning + 0 * heading]
+            parts = [*components(heading, speed, self.centre * turning), turning + 0 * heading]
             for index, (x, y) in enumerate(self.casters.places):
-                kingpin = _velocity(heading, speed - y * turning, x * turning)
-                swung = _velocity(directions[..., index], 0.0, -self.caster_centre * own[..., index])
+                kingpin = components(heading, speed - y * turning, x * turning)
+                swung = components(directions[..., index], 0.0, -self.caster_centre * own[..., index])
                 parts += [kingpin[0] + swung[0], kingpin[1] + swung[1], own[..., index]]
             columns.append(np.stack(parts, axis=-1))
         return np.stack(columns, axis=-1)
 
     def poses(self, coordinates: Array) -> Array:
         heading = coordinates[..., 2]
-        ahead = _velocity(heading, self.centre, 0.0)
+        ahead = components(heading, self.centre, 0.0)
         out = [np.stack([coordinates[..., 0] + ahead[0], coordinates[..., 1] + ahead[1], heading], axis=-1)]
         for index, (x, y) in enumerate(self.casters.places):
-            kingpin = _velocity(heading, x, y)
-            behind = _velocity(coordinates[..., 3 + index], self.caster_centre, 0.0)
+            kingpin = components(heading, x, y)
+            behind = components(coordinates[..., 3 + index], self.caster_centre, 0.0)
             place = [coordinates[..., axis] + kingpin[axis] - behind[axis] for axis in (0, 1)]
             out.append(np.stack([*place, coordinates[..., 3 + index]], axis=-1))
         return np.stack(out, axis=-2)
@@ -118,9 +118,3 @@ class Cart(CoastingScene):
             joints.append(Pin(f"{name}'s kingpin", "cart", name, (x - self.centre, y), (self.caster_centre, 0.0)))
             joints.append(Skate(f"{name}'s wheel", None, name, (self.caster_centre - self.trail, 0.0)))
         return Mechanism(bodies, tuple(joints))
-
-
-def _velocity(heading: Any, along: Any, left: Any) -> tuple[Any, Any]:
-    """World components of a vector given along and to the left of a heading."""
-    cosine, sine = np.cos(heading), np.sin(heading)
-    return along * cosine - left * sine, along * sine + left * cosine

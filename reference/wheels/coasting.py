@@ -68,8 +68,8 @@ class CoastingScene(Scene):
         allowed, changing = np.real(stepped), np.imag(stepped) / COMPLEX_STEP
         weighted = np.swapaxes(allowed * self.inertias[:, None], -1, -2)
         centripetal = changing @ nu[..., None]
-        speeding: Array = np.asarray(np.linalg.solve(weighted @ allowed, -(weighted @ centripetal)), dtype=np.float64)
-        return speeding[..., 0], (allowed @ nu[..., None])[..., 0], (allowed @ speeding + centripetal)[..., 0]
+        nu_rate: Array = np.asarray(np.linalg.solve(weighted @ allowed, -(weighted @ centripetal)), dtype=np.float64)
+        return nu_rate[..., 0], (allowed @ nu[..., None])[..., 0], (allowed @ nu_rate + centripetal)[..., 0]
 
     @cached_property
     def _integrated(self) -> Integrated:

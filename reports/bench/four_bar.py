@@ -34,7 +34,7 @@ def pylinkage_ratio(count: int = 1_000_000) -> dict[str, Any]:
 
     # A fresh linkage for each run: the path leaves the linkage where it ended.
     def other() -> Callable[[], Any]:
-        beta, _ = four_bar.angles(scene.start, scene.assembly)
+        beta, _ = four_bar.angles(scene.start, scene.branch)
         joint = scene.crank * np.exp(1j * scene.start) + scene.coupler * np.exp(1j * beta)
         ground, far = pl.Ground(0.0, 0.0, name="A"), pl.Ground(*scene.ground, name="D")
         crank = pl.Crank(anchor=ground, radius=scene.crank, angular_velocity=step, initial_angle=scene.start, name="B")
@@ -49,7 +49,7 @@ def pylinkage_ratio(count: int = 1_000_000) -> dict[str, Any]:
 
     theirs, (position, _, _) = _least_time(other)
     theta = scene.start + step * np.arange(1, count + 1)
-    ours, motion = _least_time(lambda: lambda: four_bar.kinematics(theta, scene.rate, 0.0, scene.assembly))
+    ours, motion = _least_time(lambda: lambda: four_bar.kinematics(theta, scene.rate, 0.0, scene.branch))
     corner = scene.crank * np.exp(1j * theta) + scene.coupler * np.exp(1j * motion.beta)
     distance = np.abs(corner[:timed] - (position[:, 3, 0] + 1j * position[:, 3, 1]))
     theirs *= count / timed
@@ -69,7 +69,7 @@ def floor_ratio(count: int = 1_000_000) -> dict[str, Any]:
     scene = DrivenFourBar()
     four_bar: FourBar = scene.four_bar
     theta = scene.start + 2 * np.pi / count * np.arange(count)
-    ours, _ = _least_time(lambda: lambda: four_bar.kinematics(theta, scene.rate, 0.0, scene.assembly))
+    ours, _ = _least_time(lambda: lambda: four_bar.kinematics(theta, scene.rate, 0.0, scene.branch))
 
     def floor() -> Any:
         half = np.tan(0.5 * theta)

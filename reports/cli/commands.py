@@ -39,8 +39,10 @@ def list_command() -> None:
     from engines.registry import ENGINES
     from reference.scenes import SCENES
     from reports.grid.running import support
+    from reports.pages.catalogue import page_of
 
-    scenes = [(scene.name, scene.page, scene.source, f"{scene.duration:.4g}") for scene in SCENES]
+    taught = {scene: page.name if (page := page_of(scene)) else "" for scene in SCENES}
+    scenes = [(scene.name, taught[scene], scene.source, f"{scene.duration:.4g}") for scene in SCENES]
     print_table(console, "Scenes", ["scene", "page", "source", "duration [s]"], scenes, 3)
     console.print()
     print_table(
@@ -75,7 +77,7 @@ def run(
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
     cells = choose_cells(
-        choose_scenes(scene or (), SCENES),
+        choose_scenes(scene or (), SCENES, PAGES),
         choose_engines(engine, variant, known_engines(PAGES)),
         PAGES,
         full,
@@ -131,8 +133,9 @@ def show(
 ) -> None:
     """Print a scene's stored numbers."""
     from reference.scenes import SCENES
+    from reports.pages.catalogue import PAGES
 
-    chosen = choose_scenes([scene], SCENES)
+    chosen = choose_scenes([scene], SCENES, PAGES)
     command = with_folder(f"crosscheck run {scene}", results)
     nothing = BadInput(f"{results} holds nothing for {scene!r} and the present sources: {command}")
     if not (results / STORE).exists():
@@ -140,7 +143,6 @@ def show(
     from reports.grid.cells import FULL, sweep_cells
     from reports.grid.convergence import judged, sweeps
     from reports.grid.quantities import QUANTITIES
-    from reports.pages.catalogue import PAGES
     from reports.text.tables import ERROR_HEADER, error_rows, order_rows
 
     with Store.read(results / STORE) as store:
@@ -166,10 +168,11 @@ def bench(
     from engines.registry import ENGINES
     from reference.scenes import SCENES
     from reports.bench.loops import loop_costs
+    from reports.pages.catalogue import PAGES
     from reports.text.provenance import machine, versions
     from reports.text.tables import number
 
-    for one in choose_scenes(scene or (), SCENES):
+    for one in choose_scenes(scene or (), SCENES, PAGES):
         costs = loop_costs(ENGINES, one.mechanism(), one.spacing / 10, one.samples, 10)
         body = [
             (f"{c.engine.name} {c.engine.variant}", number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")

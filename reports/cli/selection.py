@@ -27,14 +27,16 @@ def nearest(kind: str, word: str, known: Iterable[str]) -> BadInput:
     return BadInput(f"unknown {kind} {word!r}: {hint}")
 
 
-def choose_scenes(words: Sequence[str], scenes: Sequence[Scene]) -> tuple[Scene, ...]:
+def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:
     """The scenes of these names, or of the pages of these names; all of them for no word. Raises BadInput."""
     if not words:
         return tuple(scenes)
+    taught = {scene: [page.name for page in pages if page.teaches(scene)] for scene in scenes}
+    known = dict.fromkeys([*(scene.name for scene in scenes), *(name for names in taught.values() for name in names)])
     for word in words:
-        if not any(word in (scene.name, scene.page) for scene in scenes):
-            raise nearest("scene", word, [*(s.name for s in scenes), *(s.page for s in scenes)])
-    return tuple(scene for scene in scenes if scene.name in words or scene.page in words)
+        if word not in known:
+            raise nearest("scene", word, known)
+    return tuple(scene for scene in scenes if {scene.name, *taught[scene]} & set(words))
 
 
 def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
@@ -79,7 +81,7 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
     """Of these engines those that the scene's page compares; the variants of every scene where no page teaches it."""
     from engines.registry import VARIANTS
 
-    compared = next((page.engines_of(scene) for page in pages if page.name == scene.page), VARIANTS)
+    compared = next((page.engines_of(scene) for page in pages if page.teaches(scene)), VARIANTS)
     return tuple(engine for engine in engines if engine in compared)
 
 
@@ -108,11 +110,8 @@ def choose_cells(
     cells: list[Cell] = []
     for scene in scenes:
         cells += sweep_cells((scene,), grid_engines(scene, engines, pages), FULL if full else QUICK)
-    taught = {scene.page for scene in scenes}
     for page in pages:
-        # A page without scenes of its own belongs to those that its cells are about.
-        about = {page.name} if page.scenes else {cell.scene.page for cell in page.extra_cells()}
-        if about & taught:
+        if any(page.is_run_with(scene) for scene in scenes):
             cells += [
                 cell
                 for cell in page.extra_cells()

@@ -80,6 +80,6 @@ def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float
 
 def branch_flips(scene: Scene, truth: Trajectory, trajectory: Trajectory) -> int:
     """How often the assembly mode changes when the truth's does not (or the other way round)."""
-    agreement = scene.branch(trajectory.pose) * scene.branch(truth.pose)
+    agreement = scene.branch_of(trajectory.pose) * scene.branch_of(truth.pose)
     agreement = np.concatenate([[1], agreement[agreement != 0]])
     return int(np.sum(agreement[1:] != agreement[:-1]))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
+from reference.scene import Scene
 from reports.pages.centrodes import page as centrodes
 from reports.pages.errata import page as errata
 from reports.pages.four_bar import page as four_bar
@@ -28,3 +31,13 @@ PAGES: tuple[Page, ...] = (
     centrodes.PAGE,
     errata.PAGE,
 )
+
+
+def page_of(scene: Scene, pages: Sequence[Page] = PAGES) -> Page | None:
+    """The page that teaches a scene; None for a scene from elsewhere."""
+    return next((page for page in pages if page.teaches(scene)), None)
+
+
+def untaught(scenes: Iterable[Scene], pages: Sequence[Page] = PAGES) -> tuple[str, ...]:
+    """The names of the scenes that no page teaches."""
+    return tuple(scene.name for scene in scenes if page_of(scene, pages) is None)

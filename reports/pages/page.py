@@ -93,6 +93,8 @@ def no_words(material: Material) -> dict[str, Any]:
 class Page:
     """One mechanism's page: `name`.md in the results, from the template of the same name beside this file.
 
+    scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
+    own cells are run too; for a page without scenes.
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
@@ -106,6 +108,7 @@ class Page:
     lesson: str  # one sentence for the index
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
+    companions: tuple[Scene, ...] = ()
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything
@@ -115,6 +118,14 @@ class Page:
     words: Callable[[Material], Mapping[str, Any]] = no_words
     orders: Promises = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
+
+    def teaches(self, scene: Scene) -> bool:
+        """Whether the scene has its place here: by its name, so that it may have other numbers."""
+        return scene.name in {each.name for each in self.scenes}
+
+    def is_run_with(self, scene: Scene) -> bool:
+        """Whether the cells of failures and maps are run with the scene."""
+        return scene.name in {each.name for each in (*self.scenes, *self.companions)}
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""

@@ -24,8 +24,8 @@ from pymunk.constraints import PivotJoint
 
 from engines import Unsupported
 from engines.pymunk.contacts import Touch
+from reference.curves.circles_lines import Circle, Line
 from reference.curves.curve import Curve, Placed, Vector
-from reference.curves.round import Circle, Line
 from reference.kinds import from_to
 from reference.rolling.roll import Roll
 from reference.validation import Fraction, NonNegative, Valid

@@ -12,7 +12,7 @@ from reference.centrodes import Centrodes
 from reference.curves.curve import Array
 from reference.joints import Pin
 from reference.mechanism import Mechanism
-from reference.rolling.contact import turned
+from reference.plane import rotated
 from reports.charts.drawings import draw_ground, draw_pose
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 
@@ -35,7 +35,7 @@ def draw_centrodes(
                     line = np.stack([np.asarray(joint.first_point), centre])
                     panel.plot(*line.T, color=theme.grid, linewidth=1.2, zorder=0)
             panel.plot(*curves.space.T, color=theme.pymunk, linewidth=2, zorder=1)
-            moved = turned(np.asarray(pose[body, 2]), curves.body) + pose[body, :2]
+            moved = rotated(np.asarray(pose[body, 2]), curves.body) + pose[body, :2]
             panel.plot(*moved.T, color=theme.mujoco, linewidth=2, linestyle="--", zorder=2)
             draw_ground(panel, mechanism, theme)
             draw_pose(panel, mechanism, pose, color=theme.ink, linewidth=2, marker="o", markersize=4.5,

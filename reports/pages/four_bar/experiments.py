@@ -9,8 +9,8 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.scene import Scene
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Observation, StabilityMap

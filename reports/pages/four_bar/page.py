@@ -9,8 +9,7 @@ import numpy as np
 
 from engines import mujoco, pymunk
 from engines.registry import ENGINES
-from reference.four_bar.scenes import DrivenFourBar
-from reference.scenes import SCENES
+from reference.four_bar import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reports.charts import drawings
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
@@ -20,7 +19,7 @@ from reports.pages.page import Material, Page
 from reports.text.lookups import told
 
 NAME = "four_bar"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
 
 # The nine poses of Fig. 18.66 stand at the ends of eight equal parts: the last is the first again.
 PARTS = 8
@@ -52,7 +51,7 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     return {
-        **told(material, SCENES_HERE),
+        **told(material, SCENES),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
@@ -63,7 +62,7 @@ PAGE = Page(
     name=NAME,
     title="The four-bar linkage",
     lesson="Three bars and four pins: the loop that the chapter closes exactly and an engine closes by forces.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=ENGINES,
     failures=FAILURES,
     maps=MAPS,

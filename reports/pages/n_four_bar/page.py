@@ -8,7 +8,6 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.scenes import SCENES
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.grid.outcomes import Outcome
@@ -20,7 +19,7 @@ from reports.text.lookups import told
 from reports.text.unmeasured import UNMEASURED
 
 NAME = "n_four_bar"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (NFourBar(), TenFourBars(), FortyFourBars())
 
 
 def figures(material: Material) -> dict[str, str]:
@@ -39,7 +38,7 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
     soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
     """
-    lookups = told(material, SCENES_HERE)
+    lookups = told(material, SCENES)
 
     def failed(scene: str, engine: str, variant: str) -> Any:
         outcomes = lookups["ended"](scene, engine, variant)
@@ -63,12 +62,12 @@ PAGE = Page(
     name=NAME,
     title="N four-bars side by side",
     lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: there an engine may go on wrongly.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,
     figures=figures,
     words=words,
-    orders={**CLOSED, **from_rest(scene.name for scene in SCENES_HERE)},
+    orders={**CLOSED, **from_rest(scene.name for scene in SCENES)},
     known=KNOWN,
 )

@@ -8,9 +8,7 @@ from typing import Any
 
 from engines import mujoco
 from engines.registry import VARIANTS
-from reference.pendulum.link import BarPendulum, PointPendulum
-from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.scenes import SCENES
+from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.gate.promises import Promise
@@ -21,7 +19,7 @@ from reports.pages.pendulum.experiments import FAILURES, MAPS, SOLVED
 from reports.text.lookups import told
 
 NAME = "pendulum"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())
 
 # Every joint an equality on bodies that are free in the plane: what the coordinates alone are worth.
 FREE = (replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"), SOLVED)
@@ -44,14 +42,14 @@ def figures(material: Material) -> dict[str, str]:
 def words(material: Material) -> Mapping[str, Any]:
     """Rows by method, and how often the point pendulum swings to and fro."""
     point = PointPendulum()
-    return {**told(material, SCENES_HERE), "periods": round(point.duration / point.pendulum.period)}
+    return {**told(material, SCENES), "periods": round(point.duration / point.pendulum.period)}
 
 
 PAGE = Page(
     name=NAME,
     title="Pendulums of 1, 2, 10 and 100 links",
     lesson="Open chains: joints that a tree of coordinates gives for nothing, and that pymunk finds by iteration.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,
     maps=MAPS,
@@ -62,7 +60,7 @@ PAGE = Page(
         **OPEN,
         "mujoco default, free coordinates": Promise(1),
         "mujoco extended, free, sparse Newton": Promise(4),
-        **from_rest(scene.name for scene in SCENES_HERE),
+        **from_rest(scene.name for scene in SCENES),
     },
     known=KNOWN,
 )

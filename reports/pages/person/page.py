@@ -7,10 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.person.one_foot import OneFoot
-from reference.person.swaying import SwayingOnOneFoot, modes_upright
-from reference.person.two_feet import TwoFeet
-from reference.scenes import SCENES
+from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.charts.stroboscope import Points, Strip, stroboscope
 from reports.charts.theme import svg
 from reports.pages.chain_orders import CLOSED, EXTRAPOLATED, OPEN, from_rest
@@ -21,7 +18,7 @@ from reports.text.lookups import told
 
 NAME = "person"
 ONE_FOOT = ("person_swaying", "person_one_foot")
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 
 def ends(person: OneFoot) -> dict[str, Points]:
@@ -43,16 +40,16 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Rows, and freedoms by rank."""
-    freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in SCENES_HERE}
+    freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in SCENES}
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
-    return {**told(material, SCENES_HERE), "freedoms": freedoms, "knee": knee}
+    return {**told(material, SCENES), "freedoms": freedoms, "knee": knee}
 
 
 PAGE = Page(
     name=NAME,
     title="A person on one foot and on two",
     lesson="Five segments and no muscle: an open chain on one foot, a loop on two; unheld, the knee buckles.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,
@@ -62,9 +59,9 @@ PAGE = Page(
         **CLOSED,
         # On one foot nothing is closed.
         **{(scene, method): promise for scene in ONE_FOOT for method, promise in OPEN.items()},
-        **from_rest(scene.name for scene in SCENES_HERE),
+        **from_rest(scene.name for scene in SCENES),
         # Observed on all three: an error of the fifth power is left.
-        **{(scene.name, "pymunk extended"): replace(EXTRAPOLATED, order=5) for scene in SCENES_HERE},
+        **{(scene.name, "pymunk extended"): replace(EXTRAPOLATED, order=5) for scene in SCENES},
     },
     known=KNOWN,
 )

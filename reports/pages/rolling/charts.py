@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reference.curves.circles_lines import Line
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Line
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingScene
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes

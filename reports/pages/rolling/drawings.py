@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.ellipse import Ellipse
 from reference.curves.open import Catenary, Parabola
-from reference.curves.round import Circle, Line, Ring, Side
-from reference.rolling.contact import turned
+from reference.plane import rotated
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
@@ -108,7 +108,7 @@ def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
 
 def placed(points: Array, pose: Array) -> Array:
     """Points (n, 2) of a body in the world, for one pose (3,)."""
-    return turned(np.asarray(pose[2]), points) + pose[:2]
+    return rotated(np.asarray(pose[2]), points) + pose[:2]
 
 
 def draw_roulettes(chosen: Sequence[Roulette], theme: Theme = LIGHT, columns: int = 2) -> Figure:

@@ -11,8 +11,8 @@ from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.rolling.limits import DiscInHole, SquareOnCatenaries
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
+from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell

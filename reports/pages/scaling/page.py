@@ -12,11 +12,12 @@ from typing import Any
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
-from reference.pendulum.long import LongPendulum
+from reference.pendulum.many_links import LongPendulum
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.scaling_fit import Series, cost_exponent, error_exponent, series_of
 from reports.pages.page import Material, Page
+from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.reference_method import BandedChain
 from reports.text.tables import NOTHING, markdown, number
@@ -186,16 +187,16 @@ def words(material: Material) -> Mapping[str, Any]:
         "swept": at(SWEPT, 100),
         "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
-        "own": own_error(),
+        "own": truth_error(),
         "step": STEP,
         "duration": LongPendulum().duration,
     }
 
 
 @cache
-def own_error() -> float:
+def truth_error() -> float:
     """The largest error [rad] of the truth of the longest chain that is run to the end."""
-    return float(LongPendulum(max(LARGE)).error([LongPendulum().duration])[0])
+    return float(LongPendulum(max(LARGE)).truth_error([LongPendulum().duration])[0])
 
 
 def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None:
@@ -215,6 +216,7 @@ PAGE = StudyPage(
     lesson="One link to a thousand: coordinates, sweeps and exact multipliers, and what each costs at the large end.",
     scenes=(),
     engines=(),
+    companions=pendulum.SCENES,
     figures=figures,
     words=words,
     studied=CELLS,

@@ -12,8 +12,8 @@ from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.limits import HeldBySkates, SkateOnSlope
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.pages.observing import observe

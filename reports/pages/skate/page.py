@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from engines import Engine
 from engines.registry import VARIANTS
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.skate import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.parking import commutator_displacement
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.charts import work_precision as charts
 from reports.charts.plane_panels import Blades, Panel, Path, paths
@@ -34,7 +33,7 @@ from reports.text.lookups import nearest_step
 from reports.text.unmeasured import UNMEASURED
 
 NAME = "skate"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH = ChaplyginSleigh()
 
 # The step at which constructions are compared [s]: about that of a user who has refined once.
@@ -182,7 +181,7 @@ def words(material: Material) -> Mapping[str, Any]:
     commutator = commutator_displacement(0.1, 0.1)
     return {
         "constructions": constructions(rows),
-        "counted": counted(SCENES_HERE),
+        "counted": counted(SCENES),
         "at": at,
         "least": least,
         "finest": finest,
@@ -196,7 +195,7 @@ PAGE = Page(
     name=NAME,
     title="The skate",
     lesson="It forbids velocities but no position: what stands for it in engines that have no such joint.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=(*VARIANTS, *CONSTRUCTIONS),
     failures=FAILURES,
     maps=MAPS,

@@ -9,8 +9,8 @@ from dataclasses import replace
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.scene import Scene
-from reference.slider_crank.limits import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
 from reference.validation import InvalidMechanism
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Observation, StabilityMap

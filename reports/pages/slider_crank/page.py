@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.scenes import SCENES
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.pages.chain_orders import CLOSED, prescribed
@@ -18,18 +17,18 @@ from reports.pages.slider_crank.experiments import FAILURES, MAPS
 from reports.text.lookups import told
 
 NAME = "slider_crank"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (DrivenSliderCrank(), FreeSliderCrank())
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Stroboscopic pictures of the truth: in line, offset, and the other assembly."""
+    """Stroboscopic pictures of the truth: in line, offset, and the other branch."""
     driven = DrivenSliderCrank()
     offset = DrivenSliderCrank(offset=0.4, crank=0.4)
     strips = (
         Strip(driven, "Driven", 13),
         Strip(FreeSliderCrank(), "Let go", 13, end=0.6),
         Strip(offset, "Slot 0.4 m above the pivot", 13),
-        Strip(DrivenSliderCrank(assembly=-1), "The other assembly", 13),
+        Strip(DrivenSliderCrank(branch=-1), "The other branch", 13),
     )
     return {"stroboscope": svg(stroboscope(strips), "Slider-cranks in motion")}
 
@@ -39,14 +38,14 @@ def words(material: Material) -> Mapping[str, Any]:
     shape = DrivenSliderCrank().moving.shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
-    return {**told(material, SCENES_HERE), **formulas}
+    return {**told(material, SCENES), **formulas}
 
 
 PAGE = Page(
     name=NAME,
     title="The slider-crank",
     lesson="A slot and three pins: a loop that slides, and a groove whose impulse is right only at a centre of mass.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,

@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 
 from engines.registry import VARIANTS
-from reference.scenes import SCENES
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
+from reference.wheels import CarAndTrailer, Cart
 from reports.charts.plane_panels import paths
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
@@ -24,7 +22,7 @@ from reports.pages.wheels.experiments import FAILURES
 from reports.text.unmeasured import UNMEASURED
 
 NAME = "wheels"
-SCENES_HERE = tuple(scene for scene in SCENES if scene.page == NAME)
+SCENES = (CarAndTrailer(), Cart())
 
 OVERLAID: dict[str, tuple[str, Any]] = {
     "pymunk default": ("pymunk", "--"),
@@ -56,22 +54,22 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """`counted`: the freedoms' table; `least(scene, engine, variant)`: the row with the least position error."""
-    rows = material.sweep(SCENES_HERE)
+    rows = material.sweep(SCENES)
 
     def least(scene: str, engine: str, variant: str) -> Any:
         own = (row for row in rows if row.scene == scene)
         return best_of(own, engine, variant, "position") or UNMEASURED
 
-    shown = (*SCENES_HERE, CarAndTrailer(redundant=True), Cart(redundant=True))
+    shown = (*SCENES, CarAndTrailer(redundant=True), Cart(redundant=True))
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
-    return {"counted": counted(shown, (*(scene.name for scene in SCENES_HERE), *doubled)), "least": least}
+    return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled)), "least": least}
 
 
 PAGE = Page(
     name=NAME,
     title="Ideal wheels",
     lesson="Cars, trailers and carts: pins and skates together, coasting in the ways that the wheels still allow.",
-    scenes=SCENES_HERE,
+    scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
     quantity="position",

@@ -16,9 +16,9 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
-from reference.curves.round import Circle, Line, Ring
 from reference.rolling.roll import Roll
 
 RoundShape = Literal["sphere", "cylinder"]

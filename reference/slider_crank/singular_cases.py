@@ -44,7 +44,7 @@ class RodEndInSlot(DrivenSliderCrank):
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     @validated
-    def branch(self, pose: Poses) -> Any:
+    def branch_of(self, pose: Poses) -> Any:
         """+1 where the rod points to the right, -1 to the left."""
         return np.sign(np.cos(np.asarray(pose)[..., 1, 2])).astype(int)
 
@@ -79,7 +79,7 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
     @cached_property
     def moving(self) -> MovingSliderCrank:
-        shape = SliderCrank(self.crank, self.rod, self.offset, self.assembly)
+        shape = SliderCrank(self.crank, self.rod, self.offset, self.branch)
         return PushedSliderCrank(shape, self.crank_mass, self.rod_mass, self.slider_mass, self.gravity)
 
     @cached_property

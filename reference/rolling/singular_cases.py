@@ -10,9 +10,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from scipy.integrate import quad
 
+from reference.curves.circles_lines import Circle, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.curves.open import Catenary
-from reference.curves.round import Circle, Ring, Side
 from reference.kinds import Rule
 from reference.rolling.body import RollingBody
 from reference.rolling.kinematics import Rolling

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.four_bar.limits import OverdrivenFourBar, Parallelogram
 from reference.four_bar.linkage import Unreachable
+from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.validation import InvalidMechanism
 
 
@@ -15,7 +15,7 @@ def test_the_parallel_motion_closes_the_joints_through_both_change_points():
     mechanism, truth = scene.mechanism(), scene.motion(np.linspace(0, scene.duration, 101))
     assert np.max(np.abs(mechanism.gap(truth.pose, truth.t))) < 1e-14
     assert np.max(np.abs(mechanism.slip(truth.pose, truth.twist))) < 1e-13
-    assert set(scene.branch(truth.pose)) >= {-1, 1}
+    assert set(scene.branch_of(truth.pose)) >= {-1, 1}
 
 
 def test_the_crossed_motion_closes_the_joints_too_so_the_position_does_not_decide():
@@ -36,7 +36,7 @@ def test_a_freedom_appears_where_the_bars_are_in_line():
     assert np.all(np.isnan(in_line.reaction))
 
 
-def test_the_parallelograms_reactions_agree_with_the_closed_form_where_the_assembly_is_the_same():
+def test_the_parallelograms_reactions_agree_with_the_closed_form_where_the_branch_is_the_same():
     scene = Parallelogram()
     t = np.linspace(0.01, 0.13, 7)  # theta from pi/2 up to before pi
     forces = scene.four_bar.forces(scene.start + scene.rate * t, scene.rate)

@@ -18,21 +18,20 @@ from reference.validation import InvalidMechanism, Positive
 
 @dataclass(frozen=True)
 class SkateOnSlope(Scene):
-    """A body with its skate under the centre of mass on an incline that pulls down (-y) with `slope` [m/s^2].
+    """A body with its skate under the centre of mass on an incline: `gravity` [m/s^2] is g's part along it, to -y.
 
-    Nothing turns it, so theta = heading + turning_rate t, and along the blade u' = -slope sin theta: in closed form a
+    Nothing turns it, so theta = heading + turning_rate t, and along the blade u' = -gravity sin theta: in closed form a
     cycloid, which gains no height and loses none (Neimark and Fufaev). With turning_rate 0 and the blade across the
     slope (heading 0) it rests for ever, its force being all of m g. mass [kg], inertia [kg m^2], speed [m/s] along the
     blade at t = 0. Raises InvalidMechanism for numbers not finite, or masses not positive.
     """
 
     name: ClassVar[str] = "skate_on_slope"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, eq. 18.64, under gravity"
 
     mass: Positive = 2.0
     inertia: Positive = 0.3
-    slope: float = 1.0
+    gravity: float = 1.0
     heading: float = 0.0
     speed: float = 0.0
     turning_rate: float = 0.0
@@ -43,7 +42,7 @@ class SkateOnSlope(Scene):
         start = self.motion(0.0)
         pose, twist = start.pose[0, 0].tolist(), start.twist[0, 0].tolist()
         body = Body("skate", self.mass, self.inertia, tuple(pose), tuple(twist))
-        return Mechanism((body,), (Skate("blade", None, "skate", (0.0, 0.0)),), (0.0, -self.slope))
+        return Mechanism((body,), (Skate("blade", None, "skate", (0.0, 0.0)),), (0.0, -self.gravity))
 
     def _motion(self, times: Floats) -> Trajectory:
         t = times
@@ -51,16 +50,16 @@ class SkateOnSlope(Scene):
         angle, half = first + rate * t, 0.5 * rate * t
         # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
         chord = t * np.sinc(half / math.pi)
-        speed = self.speed - self.slope * chord * np.sin(first + half)
+        speed = self.speed - self.gravity * chord * np.sin(first + half)
         x, y = self._way(t)
         pose = np.stack([x, y, angle], axis=-1)
         twist = np.stack([speed * np.cos(angle), speed * np.sin(angle), np.full_like(t, rate)], axis=-1)
-        force = self.mass * (speed * rate + self.slope * np.cos(angle))
+        force = self.mass * (speed * rate + self.gravity * np.cos(angle))
         return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
 
     def _way(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
-        first, rate, pull = self.heading, self.turning_rate, self.slope
+        first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
             # The closed form divides by the rate's square. Within a radian a few nodes are as exact as rounding.
             nodes, weights = np.polynomial.legendre.leggauss(12)
@@ -85,19 +84,18 @@ class HeldBySkates(Scene):
     """A body on skates whose axles do not meet in one point: no freedom of velocity is left, and it stays, on a slope.
 
     Two skates always leave one freedom (their axles meet in a point, the centre of rotation, or are parallel); so it
-    takes a third, elsewhere. points [m] from the centre of mass, angles [rad] of the blades against the body; `slope`
-    [m/s^2] pulls down (-y). Raises InvalidMechanism unless the skates hold the body.
+    takes a third, elsewhere. points [m] from the centre of mass, angles [rad] of the blades against the body; `gravity`
+    [m/s^2] is g's part along the incline, to -y. Raises InvalidMechanism unless the skates hold the body.
     """
 
     name: ClassVar[str] = "held_by_skates"
-    page: ClassVar[str] = "skate"
     source: ClassVar[str] = "box 18.3, degrees of freedom by rank"
 
     mass: Positive = 2.0
     inertia: Positive = 0.3
     points: tuple[Vector, ...] = ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4))
     angles: tuple[float, ...] = (0.5, -0.5, 1.5)
-    slope: float = 1.0
+    gravity: float = 1.0
     pose: Triple = (0.0, 0.0, 0.3)
     duration: Positive = 3.0
     horizon: Positive = 3.0
@@ -121,7 +119,7 @@ class HeldBySkates(Scene):
             Skate(f"skate {index + 1}", None, "body", point, angle)
             for index, (point, angle) in enumerate(zip(self.points, self.angles, strict=True))
         )
-        return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.slope))
+        return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.gravity))
 
     def _motion(self, times: Floats) -> Trajectory:
         pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()

@@ -25,7 +25,7 @@ class Parallelogram(DrivenFourBar):
     """Crank and rocker equal, coupler and ground equal: twice a revolution all bars lie in line.
 
     There two motions satisfy the joints, parallel bars and crossed ones. The truth is the one that is smooth: the
-    coupler stays parallel to the ground. `assembly` can't express it, as C passes from one side of B -> D to the other.
+    coupler stays parallel to the ground. `branch` can't express it, as C passes from one side of B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"

@@ -1,7 +1,7 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations, block by block in the cache.
 
 In the frame whose x axis points from A to D, with d = |AD|, theta' = theta - arg(D), and the mirror image taken for the
-other assembly, the triangle B C D has the side s = |DB| and, as exact differences that keep their relative accuracy,
+other branch, the triangle B C D has the side s = |DB| and, as exact differences that keep their relative accuracy,
 
     s^2               = (l1 - d)^2              + 4 l1 d sin^2(theta'/2)
     U = (l2+l3)^2-s^2 = (l2+l3)^2 - (l1+d)^2    + 4 l1 d cos^2(theta'/2)
