@@ -9,7 +9,7 @@ about a time constant times the missing acceleration, and converges with the fir
 
 from __future__ import annotations
 
-import math
+from cmath import rect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -20,7 +20,7 @@ from engines import Unsupported
 from engines.mujoco.construction import Building, Callback, Hooks
 from engines.mujoco.joints.roll.shapes import RoundShape, add_shapes
 from engines.mujoco.stiffness import STIFFEST, Shipped
-from engines.rolling_table import RollTable
+from engines.rolling_table import rolled
 from reference.rolling.roll import Roll
 from reference.validation import InvalidMechanism, Positive, Valid
 
@@ -143,7 +143,7 @@ def _add_pair(
 
 def _missing(building: Building, roll: Roll, address: Sequence[int]) -> Callable[[Any, Any], complex]:
     """-(dJ/dt) v of rolling as a function of (qpos, qvel): what J a should be in the world, x + i y [m/s^2]."""
-    table = RollTable(roll.rolling)
+    table = rolled(roll.rolling)
     links = {link.body: link for link in building.tree.links}
     angles = []
     for name in (roll.first, roll.second):
@@ -164,7 +164,7 @@ def _missing(building: Building, roll: Roll, address: Sequence[int]) -> Callable
         turned, omega = base + position[first], velocity[first]
         rate = velocity[second] - omega
         place, once, twice = table.place(start + position[second] - turned)
-        way = complex(math.cos(turned), math.sin(turned))
+        way = rect(1.0, turned)
         return way * (twice * rate**2 + 2j * omega * rate * once - omega**2 * place)
 
     return over_body
