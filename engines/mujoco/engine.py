@@ -12,10 +12,11 @@ from typing import Literal
 import mujoco
 
 from engines import Size, Softness, Unsupported
+from engines.mujoco.joints.drive import DriveBy
 from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE, SkateBy
 from engines.mujoco.joints.slot import SlotBy
-from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
+from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver
 from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
@@ -128,28 +129,25 @@ class MuJoCo(Valid):
         refuse_wrong_version(mujoco.__version__)
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
-        disable = mujoco.mjtDisableBit.mjDSBL_CONTACT
-        if not self.islands:
-            disable |= mujoco.mjtDisableBit.mjDSBL_ISLAND
-        model = build_model(
-            mechanism,
-            dt,
-            options={
-                "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
-                "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
-                "iterations": self.iterations,
-                "tolerance": self.tolerance,
-            },
-            disable=int(disable),
-            stiffness=self.stiffness,
-            coordinates=self.coordinates,
-            drive=self.drive,
-            armature=self.armature,
-            servo_gain=self.servo_gain,
-            slots=self.slots,
-            skates=self.skates,
-            rolls=self.rolls,
+        options = {
+            "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
+            "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
+            "iterations": self.iterations,
+            "tolerance": self.tolerance,
+        }
+        settings = Settings(
+            options,
+            self.islands,
+            self.stiffness,
+            self.coordinates,
+            self.drive,
+            self.armature,
+            self.servo_gain,
+            self.slots,
+            self.skates,
+            self.rolls,
         )
+        model = build_model(mechanism, dt, settings)
         choose_solver(model, self.solvers)
         return model
 
