@@ -195,6 +195,28 @@ def test_real_contact_without_the_term_is_wrong_by_a_millionfold(monkeypatch: py
     assert angle_error(COMPLETED, ELLIPSE, dt=1e-3) > 1e-3
 
 
+@pytest.mark.parametrize(("cone", "rates"), [("pyramidal", {20.0}), ("elliptic", {20.0, 500.0})])
+def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone: str, rates: set[float]) -> None:
+    model = mujoco.MjModel.from_xml_string(
+        f"""
+        <mujoco>
+          <option cone="{cone}"/>
+          <worldbody>
+            <geom name="ground" type="plane" size="1 1 1"/>
+            <body pos="0 0 0.0999"><freejoint/><geom name="ball" size="0.1"/></body>
+          </worldbody>
+          <contact>
+            <pair geom1="ground" geom2="ball" condim="3" solref="-100 -20" solreffriction="-1e-9 -500"/>
+          </contact>
+        </mujoco>
+        """
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    # MuJoCo divides both dampings by dmax, 0.95 as shipped.
+    assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
+
+
 def test_convex_on_convex_is_as_exact_as_the_search_for_their_contact() -> None:
     scene = EllipseOnHill()
     assert angle_error(COMPLETED, scene, dt=1e-3) < 1e-8

@@ -32,7 +32,11 @@ Factorisation = Literal["auto", "dense", "sparse"]
 
 
 def refuse_wrong_version(version: str) -> None:
-    """Raise Unsupported for the releases that are known to give wrong motions without a warning."""
+    """Raise Unsupported for the releases that are known to give wrong motions without a warning.
+
+    Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
+    `engines.mujoco.factorisation` measures it.
+    """
     numbers = tuple(int(part) for part in version.split(".")[:3] if part.isdigit())
     if numbers < (3, 7):
         raise Unsupported(
@@ -41,7 +45,8 @@ def refuse_wrong_version(version: str) -> None:
         )
     if numbers == (4, 0, 0):
         raise Unsupported(
-            "MuJoCo 4.0.0 factorises the inertia of some branching trees wrongly and says nothing; take 4.0.1 or later"
+            "MuJoCo 4.0.0 factorises the Hessian of its Newton solver wrongly where the Jacobian of the constraints is "
+            "sparse, for some trees that branch, and says nothing; take 4.0.1 or later"
         )
 
 
@@ -53,7 +58,8 @@ class MuJoCo(Valid):
     coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
     it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
-    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, as users do. `solvers` are tried at
+    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver is not told
+    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at
     the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
     `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
     integrator otherwise, since four stages of the same stale row cost more and gain nothing.

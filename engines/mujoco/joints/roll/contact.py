@@ -36,9 +36,10 @@ CONVEX = 1e-14
 class RollContact(Valid):
     """Collision and friction: public settings only, the shipped ones unless said otherwise.
 
-    `friction`: the coefficient. `steps`: the contact's time constant in steps (MuJoCo clamps it at two) with its
-    impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator allows, at the
-    rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo has it in the elliptic cone only. `round_shape`: what a circle is.
+    `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped as `engines.mujoco.stiffness`
+    says) with its impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator
+    allows, at the rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo reads `solreffriction` with the elliptic cone only (a
+    test in `tests/test_mujoco_rolls.py` asks it). `round_shape`: what a circle is.
     """
 
     friction: Positive = 1.0
