@@ -40,10 +40,10 @@ NOT_MADE_BY_USERS = {
     ),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.Size"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
-    *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
-    *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.pymunk.boundaries.Straight"),
-    *("engines.pymunk.boundaries.Round", "engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings"),
-    *("engines.pymunk.model.Model", "engines.pymunk.running.Recording"),
+    *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
+    *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
+    *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint"),
+    *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 
