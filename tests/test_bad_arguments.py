@@ -33,12 +33,10 @@ TRIED = 2000
 NOT_MADE_BY_USERS = {
     *("reference.errata.catalogue.WordSlip", "reference.errata.erratum.Values", "reference.errata.erratum.Erratum"),
     *("reference.errata.pendulum.BarState", "reference.four_bar.closed_form.Constants", "reference.kinds.Rule"),
-    *(
-        "reference.kinds.Kind",
-        "reference.numerics.integration.Integrated",
-        "reference.pendulum.double_pendulum.TwoPoints",
-    ),
-    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.Size"),
+    *("reference.kinds.Kind", "reference.numerics.integration.Integrated"),
+    *("reference.pendulum.double_pendulum.TwoPoints", "engines.altered.Altered", "engines.contract.Size"),
+    *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
+    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
     *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),

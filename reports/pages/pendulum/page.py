@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from engines import mujoco
+from engines import Promise, mujoco
 from engines.registry import VARIANTS
 from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
-from reports.gate.promises import Promise
 from reports.pages.chain_orders import OPEN, from_rest
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
