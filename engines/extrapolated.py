@@ -8,7 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Run, Size
+from engines import Engine, Holder, Promise, Run, Size, Unpromised
+from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
@@ -63,6 +64,53 @@ class Extrapolated(Valid):
     def name(self) -> str:
         """The name of the engine inside."""
         return self.engine.name
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """Those of the engine inside."""
+        return self.engine.packages
+
+    @property
+    def family(self) -> str:
+        """That of the engine inside."""
+        return self.engine.family
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """The power after those removed; rounding grows by the sum of the weights' sizes.
+
+        Reactions that are a change of velocity over a step are read over the steps of the finest run. Their error has
+        powers of its own beside those of the motion, so only twice the inner order is promised of them.
+        """
+        inner = self.engine.order(mechanism)
+        if isinstance(inner, Unpromised):
+            return inner
+        if inner.order != self.powers[0]:
+            return Unpromised(
+                f"the engine inside has an error of order {inner.order:g} here, and this removes powers "
+                f"from {self.powers[0]} on"
+            )
+        # Powers rise evenly: by one, or by two for a method that is symmetric in time.
+        rises = [high - low for low, high in pairwise(self.powers)]
+        return Promise(
+            self.powers[-1] + (rises[-1] if rises else 1),
+            reaction=2 * inner.order if inner.differences else None,
+            differences=inner.differences * self.levels[-1],
+            amplified=float(np.abs(extrapolation_weights(self.levels, self.powers)).sum()),
+        )
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """All steps of all levels [s]."""
+        return sum(self.levels) * self.engine.step_cost(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Whoever holds it in the runs that are combined."""
+        return self.engine.holder(joint, mechanism)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> None:
+        """Nothing is declared: a softness that is tied to the step is extrapolated too."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:

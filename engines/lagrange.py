@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, solve_ivp
 from scipy.linalg import get_lapack_funcs
 
-from engines import Size, Softness
+from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
+from engines.motions import is_prescribed, over_three
+from reference.joints import Joint
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
@@ -30,6 +32,7 @@ Integrator = Literal["euler", "rk4", "dop853"]
 Stabilisation = Literal["none", "baumgarte", "projection"]
 Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 to below 1")]
 
+ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
 # Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
 BAUMGARTE_STEPS = 5.0
 PROJECTION_ITERATIONS = 8
@@ -172,9 +175,44 @@ class Lagrange(Valid):
         return "lagrange"
 
     @property
-    def step_cost(self) -> float:
-        """About what a step costs [s] with three bodies: the grid's fixed estimate, from evaluations of the rows."""
-        return {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3}[self.integrator]
+    def packages(self) -> tuple[str, ...]:
+        return ("numpy", "scipy")
+
+    @property
+    def family(self) -> str:
+        return "lagrange"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """The integrator's; a projection leaves no gap, and all of the motion is its own where nothing is free.
+
+        Baumgarte's spring is tied to the step, and turns a gap into an acceleration divided by the step squared: that
+        costs two orders, and the reactions all.
+        """
+        if self.tolerance is not None:
+            return Unpromised("its steps are its own: the error is that of its tolerance, whatever the step asked for")
+        order = ORDERS[self.integrator]
+        match self.stabilisation:
+            case "projection":
+                return Promise(EXACT) if is_prescribed(mechanism) else Promise(order, gap=EXACT, slip=EXACT)
+            case "baumgarte" if order == 1:
+                prescribed = Promise(2, rate=1, slip=1, energy=1, reaction=1)
+                return prescribed if is_prescribed(mechanism) else Promise(1, gap=2)
+            case "baumgarte" if order == 4:
+                return Promise(2, rate=1, slip=1, energy=1, reaction=0)
+            case "baumgarte":
+                return Promise(order - 2)
+        return Promise(order)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s], from how often the rows are evaluated."""
+        return {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3}[self.integrator] * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """This engine is nothing but the ideal constraint."""
+        return "engine"
 
     @property
     def variant(self) -> str:

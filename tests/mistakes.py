@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from engines import Engine, Run
+from engines import Engine
+from engines.altered import Altered
 from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
 from reference.joints import Drive, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
@@ -199,24 +200,16 @@ def _mistakes(mechanism: Mechanism) -> Iterator[Mistake]:
 
 
 @dataclass(frozen=True)
-class Mistaken:
-    """An engine in the sense of `engines.Engine` with one mistake in every model that it builds.
+class Made:
+    """The change of a mechanism that makes this mistake, so large."""
 
-    It goes by the name and variant of the engine that it wraps, so that it is held against the same promises.
-    """
-
-    engine: Engine
     mistake: Mistake
     relative: float
 
-    @property
-    def name(self) -> str:
-        return self.engine.name
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        return self.mistake.made(mechanism, self.relative)
 
-    @property
-    def variant(self) -> str:
-        return self.engine.variant
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Raises whatever the engine raises."""
-        return self.engine.build(self.mistake.made(mechanism, self.relative), dt)
+def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
+    """An engine with one mistake in every model that it builds, held to the promises of the right one."""
+    return Altered(engine, Made(mistake, relative))

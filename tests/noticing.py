@@ -18,7 +18,7 @@ from reports.grid.measure import Measurement, measure
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES
 from reports.pages.catalogue import PAGES
-from tests.mistakes import Mistake, Mistaken
+from tests.mistakes import Mistake, mistaken
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def sightings(trial: Trial, judge: Prediction) -> Mapping[Mistake, Sighting]:
         rights.append(right)
         held = {(check.name, check.quantity) for check in checks(case, rights, judge) if check.passed}
         for mistake, before in tuple(waiting.items()):
-            wrong = measure(replace(cell, engine=Mistaken(engine, mistake, trial.relative)), repeat=False)
+            wrong = measure(replace(cell, engine=mistaken(engine, mistake, trial.relative)), repeat=False)
             wrongs[mistake].append(wrong)
             waiting[mistake] = before.after(every, right, wrong)
             told = [check for check in checks(case, wrongs[mistake], judge) if (check.name, check.quantity) in held]

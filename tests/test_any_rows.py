@@ -33,6 +33,7 @@ from reports.pages.wheels import experiments as wheels_failures
 from reports.text.rendering import environment, render_index, render_page, render_readme
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
+from tests.toys import Plain
 
 SUBSETS = 16  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
@@ -235,7 +236,7 @@ def test_an_engine_that_fails_while_a_page_is_written_costs_its_own_line_alone(r
 
 def test_a_referee_that_fails_is_named_and_the_others_rule():
     @dataclass(frozen=True)
-    class Broken:
+    class Broken(Plain):
         name: str = "broken"
         variant: str = "engine"
 

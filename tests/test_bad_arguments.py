@@ -34,12 +34,13 @@ NOT_MADE_BY_USERS = {
     *("reference.errata.catalogue.WordSlip", "reference.errata.erratum.Values", "reference.errata.erratum.Erratum"),
     *("reference.errata.pendulum.BarState", "reference.four_bar.sweep.Constants", "reference.kinds.Rule"),
     *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.pendulum.chain.TwoPoints"),
-    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.Size"),
+    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy", "engines.contract.Size"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
     *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.pymunk.boundaries.Straight"),
     *("engines.pymunk.boundaries.Round", "engines.pymunk.drives.Crank", "engines.pymunk.model.Settings"),
-    *("engines.pymunk.model.Model", "engines.pymunk.recorder.Recording"),
+    *("engines.pymunk.model.Model", "engines.pymunk.recorder.Recording", "engines.altered.Altered"),
+    *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 

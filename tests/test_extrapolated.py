@@ -12,10 +12,11 @@ from engines.extrapolated import Extrapolated, combine, extrapolation_weights
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from tests.mechanisms import pendulum
+from tests.toys import Plain
 
 
 @dataclass(frozen=True)
-class Toy:
+class Toy(Plain):
     """Its pose is cos t plus coefficient * t * dt^power for every term; twist and reaction err by multiples of it."""
 
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})

@@ -65,6 +65,9 @@ GRID = Path(__file__).parent / "data" / "grid.bin"
 class Base:
     variant: str = "default"
     name: str = "theirs"
+    packages = ()
+    family = "theirs"
+    order = step_cost = holder = softness = print
 
 @dataclass(frozen=True)
 class Plugin(Base):

@@ -9,14 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from engines import Softness
+from engines import EXACT, Promise, Softness
+from engines.altered import Altered
 from reports.gate.baseline import BadBaseline, Baseline, Old, identity, read_baseline
 from reports.gate.change import change, drift
 from reports.gate.checks import Check, Deviation, complaints, nearest
-from reports.gate.nudged import Nudged, nudge, nudged_cells
+from reports.gate.nudged import Nudge, nudged_cells
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction
-from reports.gate.promises import EXACT, Promise, promised
+from reports.gate.promises import promised
 from reports.gate.table import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, theory
 from reports.gate.verdicts import Case, checks
@@ -284,13 +285,13 @@ def test_a_file_that_is_no_baseline_is_one_line(tmp_path, text):
 
 def test_a_nudged_start_is_another_rounding_of_the_same_and_the_same_for_a_seed():
     mechanism = SCENE.mechanism()
-    spins = {nudge(mechanism, seed).twist[0, 2] for seed in range(20)}
+    spins = {Nudge(seed)(mechanism).twist[0, 2] for seed in range(20)}
     assert len(spins) == 3
     assert max(abs(spin / mechanism.twist[0, 2] - 1) for spin in spins) <= 2.3e-16
-    assert nudge(mechanism, 1) == nudge(mechanism, 1)
+    assert Nudge(1)(mechanism) == Nudge(1)(mechanism)
     cells = nudged_cells(Cell(SCENE, Toy(), 1))
     assert len({cell.key for cell in cells}) == len(cells)
-    assert all(isinstance(cell.engine, Nudged) and cell.label == Cell(SCENE, Toy(), 1).label for cell in cells)
+    assert all(isinstance(cell.engine, Altered) and cell.label == Cell(SCENE, Toy(), 1).label for cell in cells)
 
 
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> Verdict:

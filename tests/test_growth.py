@@ -9,10 +9,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from engines import mujoco, pymunk
+from engines.mujoco import rolls as mujoco_rolls
+from engines.registry import VARIANTS
 from reference.centrodes import Centrodes
+from reference.pendulum.link import BarPendulum
+from reference.pendulum.scenes import HundredLinks, TenLinks
+from reference.skate.sleigh import ChaplyginSleigh
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.grid import timing
-from reports.grid.cells import COST_LIMIT, FULL, QUICK, SWEEP_COST, Cell, estimated_cost, step_cost, sweep_cells
+from reports.grid.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import quantity
 from reports.grid.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
@@ -21,7 +27,7 @@ from reports.pages.centrodes.centrode_check import returned
 from reports.pages.scaling.page import cost_table, crossing
 from reports.pages.skate.page import constructions, nearest_step
 from tests.rows import falling, row_of, table
-from tests.toys import Disc, Toy
+from tests.toys import Disc, Plain, Toy
 
 
 def test_a_power_law_is_found_at_the_large_end_only():
@@ -108,7 +114,7 @@ class Clock:
 
 
 @dataclass(frozen=True)
-class Slow:
+class Slow(Plain):
     """Builds and steps in the times of two lists."""
 
     clock: Clock
@@ -183,45 +189,36 @@ def test_a_cells_step_is_the_duration_over_its_samples_and_steps():
 
 @dataclass(frozen=True)
 class Costly(Toy):
-    """Says what a step costs."""
+    """Says what a step costs [s]."""
 
-    step_cost: float = 3e-3
+    cost: float = 3e-3
 
-
-@dataclass(frozen=True)
-class Wrapped(Toy):
-    """Runs another at three levels."""
-
-    engine: Toy = Costly()
-    levels: tuple = (1, 2, 4)
+    def step_cost(self, mechanism):
+        return self.cost
 
 
-@dataclass(frozen=True)
-class Swept(Toy):
-    """Sweeps eleven times."""
-
-    def sweeps(self, mechanism):
-        return 11
-
-
-@dataclass(frozen=True)
-class Chooses(Toy):
-    """Takes another by the mechanism."""
-
-    def chosen(self, mechanism):
-        return Costly()
-
-
-def test_the_estimated_cost_is_that_of_all_steps_and_grows_with_the_bodies():
-    mechanism = Disc().mechanism()
-    assert step_cost(Costly()) == 3e-3
-    assert step_cost(Wrapped()) == pytest.approx(7 * 3e-3)
-    assert step_cost(Chooses(), mechanism) == 3e-3
-    assert step_cost(Toy()) == 50e-6
-    assert [step_cost(Toy(name=name)) for name in ("pymunk", "mujoco", "lagrange")] == [2e-6, 12e-6, 400e-6]
-    assert step_cost(Swept(), mechanism) == pytest.approx(50e-6 + 11 * SWEEP_COST)
+def test_the_estimated_cost_is_that_of_all_steps():
     assert estimated_cost(Cell(Disc(), Costly(), 7)) == pytest.approx(20 * 7 * 3e-3)
     assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
+
+
+@pytest.mark.parametrize("engine", VARIANTS, ids=lambda engine: f"{engine.name} {engine.variant}")
+def test_a_step_costs_more_with_more_bodies(engine):
+    costs = [engine.step_cost(scene.mechanism()) for scene in (BarPendulum(), TenLinks(), HundredLinks())]
+    assert 0 < 3 * costs[0] < costs[1] and 9 * costs[1] < costs[2]
+
+
+def test_a_step_costs_every_level_and_every_sweep():
+    mechanism = TenLinks().mechanism()
+    assert pymunk.DEFAULT.step_cost(mechanism) == pytest.approx(10 / 3 * 2e-6 + 10 * 10 * 13e-9)
+    swept = replace(pymunk.DEFAULT, iterations=300).step_cost(mechanism) - pymunk.DEFAULT.step_cost(mechanism)
+    assert swept == pytest.approx(10 * 290 * 13e-9)
+    assert pymunk.EXTENDED.step_cost(mechanism) == pytest.approx(23 * pymunk.LEAPFROG.step_cost(mechanism))
+    sleigh = ChaplyginSleigh().mechanism()
+    assert pymunk.EXTENDED.step_cost(sleigh) == pytest.approx(20 * 2e-6)
+    assert mujoco.DEFAULT.step_cost(mechanism) == pytest.approx(10 / 3 * 12e-6)
+    completed = mujoco_rolls.METHODS[-1]
+    assert completed.step_cost(sleigh) == pytest.approx(40e-6)
 
 
 def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
@@ -230,10 +227,10 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
     # 20 samples at 50 us a step: 0.7 s are 700 steps a sample.
     assert [cell.every for cell in cells] == [1, 3, 10, 30, 100, 300]
     assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Toy(), 1000))
-    dear = sweep_cells((Disc(),), (Costly(step_cost=10.0),), FULL)
+    dear = sweep_cells((Disc(),), (Costly(cost=10.0),), FULL)
     assert [cell.every for cell in dear] == [1]
     # The quick steps may take ten times as long: 20 * 10 steps of 30 ms are 6 s.
-    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(step_cost=3e-2),), FULL)] == [1, 3, 10]
+    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(cost=3e-2),), FULL)] == [1, 3, 10]
 
 
 def test_the_row_of_a_step_is_the_nearest_by_ratio():

@@ -17,7 +17,7 @@ from reports.grid.measure import BLOWN, SATURATED, TORN, Measurement, blank, cla
 from reports.grid.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
 from tests.rows import row, row_of
 from tests.test_errors import SCENE, Pair
-from tests.toys import Disc, FailingToy, ImpossibleDisc, Toy
+from tests.toys import Disc, FailingToy, ImpossibleDisc, Plain, Toy
 
 DISC = Disc()
 LENGTH = DISC.mechanism().length_scale
@@ -25,7 +25,7 @@ TIMES = np.linspace(0, 0.2, 21)
 
 
 @dataclass(frozen=True)
-class Given:
+class Given(Plain):
     """An engine whose motion was written down beforehand, and that says so of its model."""
 
     trajectory: Trajectory
@@ -82,7 +82,7 @@ def test_a_blank_row_says_what_its_cell_is():
         "parameters": "Disc(rate=3.0, duration=0.2, horizon=0.2)",
         "engine": "toy",
         "variant": "tuned",
-        "settings": "Toy(variant='tuned', factor=5.0, order=2.0, plateau=0.0, name='toy')",
+        "settings": "Toy(variant='tuned', factor=5.0, power=2.0, plateau=0.0, name='toy')",
         "every": 7,
         "samples": 11,
         "step": 0.2 / 11 / 7,

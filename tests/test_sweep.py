@@ -87,7 +87,7 @@ def test_two_points_never_make_a_plateau_or_a_convergence():
 
 
 def test_measured_cells_give_the_order_and_the_plateau_that_the_engine_was_made_with():
-    engines = [Toy("first", order=1.0), Toy("fourth", order=4.0, factor=1e3), Toy("soft", plateau=1e-5)]
+    engines = [Toy("first", power=1.0), Toy("fourth", power=4.0, factor=1e3), Toy("soft", plateau=1e-5)]
     rows = [measure(Cell(Disc(), engine, every), repeat=False) for engine in engines for every in FULL]
     angle = {sweep.variant: sweep for sweep in sweeps(rows) if sweep.quantity.name == "angle"}
     assert angle["first"].order == pytest.approx(1, abs=1e-3)

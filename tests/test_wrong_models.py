@@ -18,7 +18,7 @@ from reference.scene import Scene
 from reference.scenes import SCENES
 from reports.grid.outcomes import Loss
 from reports.grid.supervisor import supervise, usable_cores
-from tests.mistakes import KINDS, Mistake, Mistaken, mistakes
+from tests.mistakes import KINDS, Mistake, mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
 
 # What has to be noticed: a ten-thousandth by methods that reach rounding, a hundredth by what documented settings give.
@@ -258,7 +258,7 @@ def test_a_mistake_makes_another_mechanism_whose_start_is_closed_again(scene: Sc
 )
 def test_where_the_motion_is_prescribed_a_wrong_load_shows_in_the_reactions_alone(engine, mistake) -> None:
     scene = DrivenFourBar()
-    right, wrong = (each.build(scene.mechanism(), 1e-3)(20, 10) for each in (engine, Mistaken(engine, mistake, 1e-2)))
+    right, wrong = (each.build(scene.mechanism(), 1e-3)(20, 10) for each in (engine, mistaken(engine, mistake, 1e-2)))
     scale = np.abs(right.reaction).max()
     assert np.abs(right.pose - wrong.pose).max() < 1e-8
     # Reactions carry each load in part: well above what the methods leave at this step, 1e-6, and below the mistake.

@@ -11,8 +11,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Size, Unsupported
-from reference.joints import Pin
+from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
+from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -68,21 +68,50 @@ class ToyRun:
         return self._spoil(turning(self._mechanism, t), self._dt)
 
 
+class Plain:
+    """What the contract asks of an engine beside a name and a model, as plainly as can be: for engines of tests."""
+
+    name: str
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def family(self) -> str:
+        return self.name
+
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        return Unpromised("nobody thought about it")
+
+    def step_cost(self, mechanism: Mechanism) -> float:
+        return 50e-6
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return "engine"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        return None
+
+
 @dataclass(frozen=True)
-class Toy:
-    """Angle error `factor` * step ** `order` + `plateau`, reached linearly in time."""
+class Toy(Plain):
+    """Angle error `factor` * step ** `power` + `plateau`, reached linearly in time."""
 
     variant: str = "default"
     factor: float = 1.0
-    order: float = 2.0
+    power: float = 2.0
     plateau: float = 0.0
     name: str = "toy"
+
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        return Promise(self.power)
 
     def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
         return ToyRun(mechanism, dt, self.spoil)
 
     def spoil(self, exact: Trajectory, dt: float) -> Trajectory:
-        exact.pose[:, 0, 2] += (self.factor * dt**self.order + self.plateau) * exact.t / exact.t[-1]
+        exact.pose[:, 0, 2] += (self.factor * dt**self.power + self.plateau) * exact.t / exact.t[-1]
         return exact
 
 

@@ -11,7 +11,9 @@ from typing import Literal
 
 import mujoco
 
-from engines import Size, Softness, Unsupported
+from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines.motions import over_three
+from engines.mujoco import theory
 from engines.mujoco.model import Coordinates, DriveBy, Model, RollBy, build_model
 from engines.mujoco.roll_contact import CompletedContact, RollContact
 from engines.mujoco.roll_rows import RollEquality, RollRows
@@ -20,8 +22,8 @@ from engines.mujoco.skating import STEPWISE, SkateBy
 from engines.mujoco.slots import SlotBy
 from engines.mujoco.solution import choose_solver
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
-from engines.mujoco.tree import spanning_tree
-from reference.joints import Pin, Skate, Slot
+from engines.mujoco.tree import Tree, spanning_tree
+from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
@@ -83,18 +85,39 @@ class MuJoCo(Valid):
             raise InvalidMechanism("MuJoCo: solvers is (); it must be a tuple of at least one of Newton, CG and PGS")
 
     @property
-    def step_cost(self) -> float:
-        """About how long one step takes [s]: a completed contact is read and written entry by entry in every stage."""
-        return 40e-6 if isinstance(self.rolls, CompletedContact) else 12e-6
-
-    @property
     def name(self) -> str:
         return "mujoco"
 
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("mujoco-core",)
+
+    @property
+    def family(self) -> str:
+        return "mujoco"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """See `engines.mujoco.theory`."""
+        return theory.promise(self, mechanism, self._tree(mechanism))
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About how long a step takes [s]: a completed contact is read and written entry by entry in every stage."""
+        return (40e-6 if isinstance(self.rolls, CompletedContact) else 12e-6) * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """See `engines.mujoco.theory`."""
+        return theory.holder(self, joint, self._tree(mechanism))
+
+    def _tree(self, mechanism: Mechanism) -> Tree:
+        pins = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+        return spanning_tree(mechanism, pins if self.coordinates == "tree" else ())
+
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
-        pins = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
-        tree = spanning_tree(mechanism, pins if self.coordinates == "tree" else ())
+        tree = self._tree(mechanism)
         soft = [joint in tree.loops or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
         if not any(soft):
             return None

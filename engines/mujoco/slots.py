@@ -13,6 +13,7 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building
+from engines.mujoco.tree import Link, Tree
 from engines.mujoco.written_rows import Row, State, WrittenJoint
 from reference.joints import Slot
 
@@ -22,12 +23,11 @@ SlotBy = Literal["tendon", "rows"]
 def add_slots(building: Building, slots: Sequence[Slot], by: SlotBy) -> None:
     """Add the slots that the tree doesn't hold. Raises Unsupported where public constructions don't suffice."""
     for slot in slots:
-        body = building.index(slot.second)
-        link = next((link for link in building.tree.links if link.body == body), None)
-        # A point that the body's rotation doesn't move crosses a resting line by a sum of two coordinates, exactly.
-        if slot.first is None and link and link.kind == "free" and not any(slot.second_point):
+        link = resting_line(slot, building.tree)
+        if link is not None:
             _add_tendon(building, slot, link.column)
         elif by == "rows":
+            body = building.index(slot.second)
             stiffness, damping = building.stiffness.gains(building.mechanism, building.dt)
             rows = slot_rows(slot, stiffness, damping)
             building.written.append(WrittenJoint(building.index(slot.first), body, 1, rows))
@@ -36,6 +36,14 @@ def add_slots(building: Building, slots: Sequence[Slot], by: SlotBy) -> None:
                 f"slot {slot.name!r} is neither a slide of MuJoCo's tree nor a resting line for the centre of a free "
                 "body; MuJoCo has no such equality, only rows written in a callback would do"
             )
+
+
+def resting_line(slot: Slot, tree: Tree) -> Link | None:
+    """The slotted body's link where a sum of two of its coordinates is the slot's gap: no rotation moves the point."""
+    link = next((link for link in tree.links if tree.mechanism.bodies[link.body].name == slot.second), None)
+    if slot.first is None and link is not None and link.kind == "free" and not any(slot.second_point):
+        return link
+    return None
 
 
 def _add_tendon(building: Building, slot: Slot, column: int) -> None:

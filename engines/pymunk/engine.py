@@ -8,12 +8,14 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Softness
-from engines.pymunk import blades, rollers, slides
+from engines import Holder, Promise, Softness, Unpromised
+from engines.motions import over_three
+from engines.pymunk import blades, rollers, slides, theory
 from engines.pymunk.contraction import contraction, gain, sweeps
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.outlines import SHIPPED_CONTACT, Contact
 from engines.pymunk.recorder import PymunkRun
+from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, Fraction, Name, Positive, Valid, validated
@@ -31,6 +33,8 @@ def _shipped() -> tuple[int, float]:
 # 10, and 0.9 ** 60: a tenth of the gap is closed in a sixtieth of a second.
 SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
+# CPU time [s] of a step with three bodies, and of one joint in one sweep.
+STEP_COST, SWEEP_COST = 2e-6, 13e-9
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,29 @@ class Pymunk(Valid):
     @property
     def name(self) -> str:
         return "pymunk"
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("pymunk",)
+
+    @property
+    def family(self) -> str:
+        return "pymunk"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """See `engines.pymunk.theory`."""
+        return theory.promise(self, mechanism)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About how long a step takes [s]: the bodies, and every joint in every sweep."""
+        return STEP_COST * over_three(mechanism) + SWEEP_COST * len(mechanism.joints) * self.sweeps(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """See `engines.pymunk.theory`."""
+        return theory.holder(self, joint, mechanism)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How joints give way with steps of dt [s], None where they are set for the pose after the drift.

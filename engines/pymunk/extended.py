@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engines import Run
+from engines import Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import Pymunk
 from engines.pymunk.reflection import Reflected, reflectable
-from reference.joints import Skate
+from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.validation import Name, Positive, Valid, validated
 
@@ -31,9 +31,31 @@ class Extended(Valid):
         return "pymunk"
 
     @property
-    def step_cost(self) -> float:
-        """About what a step costs [s]: of the levels together, which is what the grid is cut by."""
-        return 2e-6 * max(sum(method.levels) for method in (self.single, self.skates, self.pins))
+    def packages(self) -> tuple[str, ...]:
+        return ("pymunk",)
+
+    @property
+    def family(self) -> str:
+        return "pymunk"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """That of the chosen engine."""
+        return self.chosen(mechanism).order(mechanism)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """That of the chosen engine [s]."""
+        return self.chosen(mechanism).step_cost(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """That of the chosen engine."""
+        return self.chosen(mechanism).holder(joint, mechanism)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """That of the chosen engine."""
+        return self.chosen(mechanism).softness(mechanism, dt)
 
     @validated
     def chosen(self, mechanism: Mechanism) -> Extrapolated:

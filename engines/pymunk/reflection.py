@@ -23,11 +23,12 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from engines import Size, Unsupported
+from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.motions import over_three
 from engines.pymunk.blades import along_blade
 from engines.pymunk.contacts import Touch
 from engines.pymunk.recorder import reactions
-from reference.joints import Skate, Vector
+from reference.joints import Joint, Skate, Vector
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
@@ -35,6 +36,7 @@ from reference.validation import Count, Name, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
+STEP_COST = 2e-6  # s, with three bodies
 # Kicks by half a step of gravity (dt [s]), reflects, kicks again: the body's C pointer -> velocities before and after.
 Reflector = Callable[[Any], tuple[Triple, Triple]]
 
@@ -56,6 +58,32 @@ class Reflected(Valid):
     @property
     def name(self) -> str:
         return "pymunk"
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("pymunk",)
+
+    @property
+    def family(self) -> str:
+        return "pymunk"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """What a reflection lacks changes sign with every step, and the energy is kept."""
+        return Promise(2, energy=EXACT, differences=1)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About how long a step takes [s]."""
+        return STEP_COST * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """pymunk moves free bodies here; the joint's impulse is this file's."""
+        return "ours"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> None:
+        """Nothing gives way."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> ReflectedRun:

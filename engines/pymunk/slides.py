@@ -36,7 +36,7 @@ def slide(
 ) -> tuple[list[Constraint], list[Callable[[float], None]]]:
     """Constraints and what to do before each step; points from the engine's origins, `length` [m] of the mechanism."""
     known = first.body_type != pymunk.Body.DYNAMIC
-    if construction == "groove" or (known and groove_is_exact(second, second_point)):
+    if construction == "groove" or (known and groove_is_exact(second_point, turns=not isinf(second.moment))):
         along_x, along_y = REACH * length * cos(joint.line_angle), REACH * length * sin(joint.line_angle)
         back = (first_point[0] - along_x, first_point[1] - along_y)
         front = (first_point[0] + along_x, first_point[1] + along_y)
@@ -45,6 +45,6 @@ def slide(
     return [link.constraint], [link]
 
 
-def groove_is_exact(body: pymunk.Body, point: Vector) -> bool:
-    """Whether every normal is an eigenvector of the body's inverse mass at this point."""
-    return point == (0.0, 0.0) or isinf(body.moment)
+def groove_is_exact(point: Vector, turns: bool) -> bool:
+    """Whether every normal is an eigenvector of a body's inverse mass at this point; `turns`: a push can turn it."""
+    return point == (0.0, 0.0) or not turns

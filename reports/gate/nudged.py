@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engines import Engine, Run
+from engines.altered import Altered
 from reference.mechanism import Mechanism
 from reports.grid.cells import Cell
 
@@ -16,39 +16,25 @@ SEEDS = (1, 2, 3)
 EPSILON = float(np.finfo(float).eps)
 
 
-def nudge(mechanism: Mechanism, seed: int) -> Mechanism:
-    """The mechanism with every number of the start moved by one rounding up or down, or left; the same for a seed."""
-    signs = np.random.default_rng([seed, zlib.crc32(repr(mechanism.row_names).encode())])
-    bodies = []
-    for body in mechanism.bodies:
-        pose, twist = (
-            tuple(float(v * (1 + EPSILON * s)) for v, s in zip(values, signs.integers(-1, 2, 3), strict=True))
-            for values in (body.pose, body.twist)
-        )
-        bodies.append(replace(body, pose=pose, twist=twist))
-    return replace(mechanism, bodies=tuple(bodies))
-
-
 @dataclass(frozen=True)
-class Nudged:
-    """An engine in the sense of `engines.Engine` that starts the other from a nudged mechanism."""
+class Nudge:
+    """Every number of a start moved by one rounding up or down, or left; the same for a seed."""
 
-    engine: Engine
     seed: int
 
-    @property
-    def name(self) -> str:
-        return self.engine.name
-
-    @property
-    def variant(self) -> str:
-        return self.engine.variant
-
-    def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Raises whatever the engine raises."""
-        return self.engine.build(nudge(mechanism, self.seed), dt)
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism from the nudged start."""
+        signs = np.random.default_rng([self.seed, zlib.crc32(repr(mechanism.row_names).encode())])
+        bodies = []
+        for body in mechanism.bodies:
+            pose, twist = (
+                tuple(float(v * (1 + EPSILON * s)) for v, s in zip(values, signs.integers(-1, 2, 3), strict=True))
+                for values in (body.pose, body.twist)
+            )
+            bodies.append(replace(body, pose=pose, twist=twist))
+        return replace(mechanism, bodies=tuple(bodies))
 
 
 def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
     """The same cell from other roundings of its start."""
-    return tuple(replace(cell, engine=Nudged(cell.engine, seed)) for seed in SEEDS)
+    return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from engines import EXACT, Promise
 from reports.gate.checks import Check
-from reports.gate.promises import EXACT, Promise
 from reports.grid.convergence import ENOUGH, Verdict, fit
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome

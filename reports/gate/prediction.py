@@ -15,11 +15,9 @@ from functools import cache
 
 import numpy as np
 
-from engines import Engine, Softness
-from reference.mechanism import Mechanism
+from engines import EXACT, Engine, Softness
 from reference.scene import Scene
 from reports.gate.judge import QUANTITY_NAMES, errors
-from reports.gate.promises import EXACT
 from reports.grid.errors import largest
 from reports.grid.measure import SATURATED, TORN
 
@@ -132,17 +130,11 @@ def _worse(one: Mapping[str, float], other: Mapping[str, float]) -> Mapping[str,
     return out
 
 
-def declared(engine: Engine, mechanism: Mechanism, step: float) -> Softness | None:
-    """What an engine says of how its joints give way; None where it says nothing or they don't."""
-    tell = getattr(engine, "softness", None)
-    return None if tell is None else tell(mechanism, step)
-
-
 def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[Kind]:
     """What the judge has to know of softness to judge these engines in a scene."""
     mechanism, found = scene.mechanism(), set()
     for engine in engines:
-        softness = declared(engine, mechanism, scene.spacing)
+        softness = engine.softness(mechanism, scene.spacing)
         if softness is not None:
             found |= {(softness.rows, True)} if softness.compliance > 0 else set()
             found |= set() if softness.complete else {(softness.rows, False)}

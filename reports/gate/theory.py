@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from engines import Softness
+from engines import EXACT, Promise, Softness
 from reports.gate.checks import Check
 from reports.gate.prediction import Prediction
-from reports.gate.promises import EXACT, Promise
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from engines import Engine
+from engines import Engine, Promise
 from reference.scene import Scene
 from reports.gate.checks import Check, Deviation
 from reports.gate.order_check import order
-from reports.gate.prediction import Prediction, declared, kinds, prediction
-from reports.gate.promises import Promise, promised
+from reports.gate.prediction import Prediction, kinds, prediction
+from reports.gate.promises import promised
 from reports.gate.theory import theory
 from reports.grid.cells import QUICK, Cell, sweep_cells
 from reports.grid.measure import Measurement
@@ -73,6 +73,6 @@ def checks(case: Case, rows: Sequence[Measurement], judge: Prediction | None = N
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]
-    softness = declared(case.engine, case.scene.mechanism(), finest.step)
+    softness = case.engine.softness(case.scene.mechanism(), finest.step)
     found = theory(judge, case.promise, softness, finest, rows[:-1])
     return (*found, *order(case.promise, rows)) if found else ()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.gate.promises import EXACT, Promise, Promises
+from engines import EXACT, Promise
+from reports.gate.promises import Promises
 
 # Impulses at the ends of steps, read as they stand: everything of first order.
 STEPPED = Promise(1, differences=1)

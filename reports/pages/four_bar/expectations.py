@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from engines import EXACT, Promise
 from engines.lagrange import Lagrange
 from engines.registry import ENGINES
 from reports.gate.checks import Deviation
-from reports.gate.promises import EXACT, Promise, Promises
+from reports.gate.promises import Promises
 from reports.pages.chain_orders import CLOSED, from_rest, prescribed
 
 INTEGRATORS = {"euler": 1, "rk4": 4, "dop853": 8}

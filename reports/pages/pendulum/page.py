@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from engines import mujoco
+from engines import Promise, mujoco
 from engines.registry import VARIANTS
 from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes import SCENES
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
-from reports.gate.promises import Promise
 from reports.pages.chain_orders import OPEN, from_rest
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from engines import EXACT, Promise
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import (
     RollingCam,
@@ -12,7 +13,7 @@ from reference.rolling.scenes import (
     RollingOnCircle,
 )
 from reports.gate.checks import Deviation
-from reports.gate.promises import EXACT, Promise, Promises
+from reports.gate.promises import Promises
 from reports.pages.chain_orders import EXTRAPOLATED, STEPPED
 
 ELLIPSE, DISC, CAM = RollingEllipse.name, RollingDisc.name, RollingCam.name

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import Size, Unsupported
-from reference.joints import Pin
+from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
@@ -33,6 +33,31 @@ class BandedChain:
     @property
     def variant(self) -> str:
         return "banded rk4"
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("numpy",)
+
+    @property
+    def family(self) -> str:
+        return "reference"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """Runge-Kutta's, of angles between which no pin can part."""
+        return Promise(4, gap=EXACT, slip=EXACT)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]: most of it is numpy's calls, as many for any chain."""
+        return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return "engine"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> None:
+        """Nothing gives way."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from engines import EXACT, Promise
 from reports.gate.checks import Deviation
-from reports.gate.promises import EXACT, Promise, Promises
+from reports.gate.promises import Promises
 from reports.pages.chain_orders import AMPLIFIED, OPEN, STEPPED
 
 # Every row that is held only at the ends of steps makes a method of first order, whatever the integrator; a reflection

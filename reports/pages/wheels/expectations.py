@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from engines import EXACT, Promise
 from reports.gate.checks import Deviation
-from reports.gate.promises import EXACT, Promise, Promises
+from reports.gate.promises import Promises
 from reports.pages.chain_orders import CLOSING, OPEN, STEPPED
 
 # As for one skate, see `skate_known`; with pins between them pymunk's best is a groove, extrapolated from order 1.

@@ -1,0 +1,134 @@
+"""The contract of an engine under test: what the suite asks of it, and nothing else.
+
+1. An engine is a frozen dataclass; its fields are its settings, printed in the report. `name` and `variant` together
+   name a method there; a variant is a label of the user's choice: any string that is not empty and can be printed.
+   Settings, steps and counts that can't be are refused by a ValueError, not by the engine's own abort:
+   `reference.validation` does it for what inherits from `Valid`, and for `build` and `run` with `validated`.
+2. `packages` are the installed distributions whose versions its numbers depend on; they are printed under the numbers.
+   Engines of one `family` share a colour and a mark in charts: the variants of an engine are one family.
+3. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
+   sentence. It sees no scene, so it can't see the answer.
+4. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
+   again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
+5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
+6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`); both go on.
+7. `order(mechanism)` is what theory promises of its errors, from its settings and the mechanism alone: a Promise, which
+   the gate holds it to, or Unpromised with the reason why nothing can be promised.
+8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
+   a formula and no measurement: the same on every machine.
+9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
+   engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
+10. `softness(mechanism, dt)` says how its joints give way by its own settings: a Softness, or None where they don't.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, Protocol, runtime_checkable
+
+from reference.joints import Joint
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reference.validation import Count, Positive
+
+# The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
+EXACT = math.inf
+
+Holder = Literal["engine", "engine, our rows", "ours"]
+
+
+class Unsupported(Exception):
+    """An engine can't build this mechanism; the message is one sentence that says why."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """What was modelled: to be held against the mechanism's own size."""
+
+    bodies: int  # moving bodies
+    coordinates: int  # position coordinates that the engine integrates
+    rows: int  # scalar constraints that the engine holds by forces
+    solver_rows: int  # rows in the engine's solver, empty ones included
+
+
+@dataclass(frozen=True)
+class Softness:
+    """How joints give way: J a = bias - damping slip - stiffness gap - compliance A reaction.
+
+    stiffness [1/s^2], damping [1/s]; compliance: a share of the row's own inverse inertia A. `rows`: which rows of the
+    mechanism (rows,) are so, the others hold exactly. `complete`: whether `bias`, the term of the velocities, is there.
+    """
+
+    stiffness: float
+    damping: float
+    compliance: float
+    rows: tuple[bool, ...]
+    complete: bool = True
+
+
+@dataclass(frozen=True)
+class Promise:
+    """The power of the step with which each error of a method falls; EXACT for one that no step makes.
+
+    `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
+    costs, where a softness that is tied to the step sets the others. `differences`: reactions are a change of velocity
+    over the step divided by this number; 0 where they are read as forces. `amplified`: how many times the usual
+    rounding of velocities a combination of runs carries.
+    """
+
+    order: float
+    rate: float | None = None
+    gap: float | None = None
+    slip: float | None = None
+    energy: float | None = None
+    reaction: float | None = None
+    integrator: float | None = None
+    differences: int = 0
+    amplified: float = 1.0
+
+    def of(self, quantity: str) -> float:
+        """The order of a quantity: angle, position, rate, velocity, gap, slip, energy or reaction."""
+        name = {"angle": "order", "position": "order", "velocity": "rate"}.get(quantity, quantity)
+        own = getattr(self, name)
+        return self.order if own is None else own
+
+    def step(self, quantity: str) -> float:
+        """The order of what the step alone costs."""
+        if self.integrator is None or self.of(quantity) != self.order:
+            return self.of(quantity)
+        return self.integrator
+
+
+@dataclass(frozen=True)
+class Unpromised:
+    """No order can be promised; `reason` is one sentence that says why. All checks but those of an order remain."""
+
+    reason: str
+
+
+class Run(Protocol):
+    """A built model, ready to be stepped once."""
+
+    @property
+    def size(self) -> Size: ...
+    def __call__(self, samples: Count, every: Count) -> Trajectory: ...
+
+
+@runtime_checkable
+class Engine(Protocol):
+    """See the module's numbered contract."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def variant(self) -> str: ...
+    @property
+    def packages(self) -> tuple[str, ...]: ...
+    @property
+    def family(self) -> str: ...
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised: ...
+    def step_cost(self, mechanism: Mechanism) -> float: ...
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder: ...
+    def softness(self, mechanism: Mechanism, dt: Positive) -> Softness | None: ...
+    def build(self, mechanism: Mechanism, dt: Positive) -> Run: ...

@@ -1,0 +1,32 @@
+"""What kind of motion a mechanism makes, by its joints, loads and start alone: orders of methods depend on it."""
+
+from __future__ import annotations
+
+from reference.joints import Drive, Pin
+from reference.mechanism import Mechanism
+from reference.validation import validated
+
+
+@validated
+def starts_at_rest(mechanism: Mechanism) -> bool:
+    """Whether no body moves at t = 0."""
+    return not mechanism.twist.any()
+
+
+@validated
+def is_prescribed(mechanism: Mechanism) -> bool:
+    """Whether joints and drives leave no freedom, so that forces have no say in the motion."""
+    return mechanism.degrees_of_freedom()[1] == 0
+
+
+@validated
+def turns_steadily(mechanism: Mechanism) -> bool:
+    """Whether nothing changes any body's rate: without gravity, and with no joint but pins and drives to the ground."""
+    grounded = all(isinstance(joint, Pin | Drive) and None in (joint.first, joint.second) for joint in mechanism.joints)
+    return grounded and not any(mechanism.gravity)
+
+
+@validated
+def over_three(mechanism: Mechanism) -> float:
+    """Bodies in threes, at least one: what the cost of a step with three bodies is multiplied by."""
+    return max(1.0, len(mechanism.bodies) / 3)

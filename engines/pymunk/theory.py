@@ -1,0 +1,89 @@
+"""What theory promises of pymunk's impulses, and which of its joints are its own: by settings and mechanism alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from engines import EXACT, Holder, Promise, Unpromised
+from engines.motions import is_prescribed, starts_at_rest, turns_steadily
+from engines.pymunk.drives import find_cranks, find_turned
+from engines.pymunk.slides import groove_is_exact
+from reference.joints import Joint, Roll, Skate, Slot
+from reference.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from engines.pymunk.engine import Pymunk
+
+# Impulses at the ends of steps, read as they stand: everything of first order.
+STEPPED = Promise(1, differences=1)
+# All of a gap is closed in every step, so that only what one drift opens is left: second order.
+CLOSING = Promise(1, gap=2, differences=1)
+# The row of the pose after the drift, found in one solve: no slip is left of it, and there is no gap to close.
+HELD = Promise(1, gap=2, slip=EXACT, differences=1)
+# From rest the missing half kick is a delay, which the kick in the last step makes up for in the velocities.
+FROM_REST = Promise(1, rate=2, gap=2, slip=1, differences=1)
+# A prescribed motion has no kick to miss: what is left of a pose is its gap.
+PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
+# Nothing but the pin pulls at a body that turns steadily: its kick is across the way, and keeps the energy.
+STEADY = Promise(2, rate=1, slip=1, reaction=1, differences=1)
+# Half a kick ahead: every step is symmetric in time.
+LEAPFROG = Promise(2, differences=1)
+# A pivot at the contact that is, instead of the one that will be, keeps half of the first order's error, but closes its
+# gap all the same; in a prescribed motion what a stale contact lacks is in the forces alone.
+STALE_PIVOT = Promise(1, gap=2, slip=2, differences=1)
+STALE_PRESCRIBED = Promise(2, reaction=1, differences=1)
+
+
+def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
+    """See `Promise`; of what a user gets wrong in a joint's construction no order can be promised."""
+    skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
+    if engine.slot == "groove" and any(_is_rewritten(joint, mechanism) for joint in mechanism.joints):
+        return Unpromised(
+            "a groove off the centre of mass of a body that turns settles at a wrong impulse, at any step"
+        )
+    closing = isinstance(engine.error_bias, str) or engine.error_bias == 0
+    if rolling and engine.roll == "contact":
+        return STEPPED
+    if skating:
+        # A row of the end of a step makes a method of first order, from half a kick ahead too.
+        if engine.skate not in ("projection", "groove"):
+            return STEPPED
+        if len(mechanism.joints) == 1:
+            return HELD
+        return CLOSING if closing else STEPPED
+    if not closing:
+        return STEPPED
+    if rolling and engine.roll == "stale pivot":
+        return STALE_PRESCRIBED if is_prescribed(mechanism) else STALE_PIVOT
+    if engine.leapfrog:
+        return LEAPFROG
+    if is_prescribed(mechanism):
+        return PRESCRIBED
+    if turns_steadily(mechanism):
+        return STEADY
+    return FROM_REST if starts_at_rest(mechanism) else CLOSING
+
+
+def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
+    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared."""
+    match joint:
+        case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):
+            return "engine, our rows"
+        case Skate() if engine.skate in ("centre", "point", "projection"):
+            return "ours"
+        case Skate() if engine.skate in ("groove", "stale groove"):
+            return "engine, our rows"
+        case Roll() if engine.roll != "contact":
+            return "engine, our rows"
+    return "engine"
+
+
+def _is_rewritten(joint: Joint, mechanism: Mechanism) -> bool:
+    """Whether a slot's exact row is a link that is aimed before every step, because no groove would be exact."""
+    if not isinstance(joint, Slot):
+        return False
+    cranks, turned = find_cranks(mechanism), find_turned(mechanism)
+    known = joint.first is None or joint.first in cranks
+    origin = cranks[joint.second].own_point if joint.second in cranks else (0.0, 0.0)
+    point = (joint.second_point[0] - origin[0], joint.second_point[1] - origin[1])
+    return not (known and groove_is_exact(point, turns=joint.second not in turned))

@@ -1,0 +1,34 @@
+"""Who holds a mechanism's joints in a method, in a few words: a reader must not take our rows for an engine's own."""
+
+from __future__ import annotations
+
+from engines import Engine, Holder
+from reference.mechanism import Mechanism
+
+NOTHING_HELD = "no joints"
+
+
+def held_by(engine: Engine, mechanism: Mechanism) -> str:
+    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
+
+    Joints are named by kind; where those of one kind differ, by their own names.
+    """
+    found: dict[Holder, list[str]] = {}
+    kinds: dict[str, set[Holder]] = {}
+    for joint in mechanism.joints:
+        holder = engine.holder(joint, mechanism)
+        kinds.setdefault(_kind(joint), set()).add(holder)
+        found.setdefault(holder, [])
+    if len(found) <= 1:
+        return next(iter(found), NOTHING_HELD)
+    for joint in mechanism.joints:
+        name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
+        holders = found[engine.holder(joint, mechanism)]
+        if name not in holders:
+            holders.append(name)
+    others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
+    return "; ".join(["engine", *others] if "engine" in found else others)
+
+
+def _kind(joint: object) -> str:
+    return type(joint).__name__.lower()
