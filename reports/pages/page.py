@@ -12,8 +12,9 @@ from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
 from reports.gate.promises import Promises
-from reports.grid.cells import Cell
+from reports.grid.cells import Cell, Purpose
 from reports.grid.measure import Measurement
+from reports.grid.usual_steps import FEATURED
 
 
 @dataclass(frozen=True)
@@ -62,15 +63,19 @@ class Material:
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
         """The sweep rows of some scenes, in the order of the grid."""
+        return self._of(scenes, "sweep")
+
+    def usual(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The rows of some scenes at steps between those of the sweep that people use."""
+        return self._of(scenes, "usual")
+
+    def _of(self, scenes: Iterable[Scene], purpose: Purpose) -> list[Measurement]:
         names = {scene.name for scene in scenes}
-        return [row for cell, row in self.rows.items() if cell.purpose == "sweep" and cell.scene.name in names]
+        return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]
 
     def of(self, cells: Iterable[Cell]) -> list[Measurement]:
         """The rows of these cells, those that were run."""
         return [self.rows[cell] for cell in cells if cell in self.rows]
-
-
-FEATURED = ("default", "tuned", "extended")
 
 
 def usual_series(row: Measurement) -> bool:
