@@ -7,12 +7,12 @@ but linear relations of positions is put in: the end of a bar is twice as far fr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from engines import Engine, Unsupported, mujoco, pymunk
+from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.errata import pendulum
 from reference.errata.erratum import Array, Values
@@ -23,8 +23,13 @@ from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.chain import Chain
+from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.scenes import RollingOnCircle
 from reference.skate.sleigh import ChaplyginSleigh
+from reports.grid.cells import step_cost
+from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Answer, Task
+from reports.grid.tasks import Values as Kept
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
@@ -128,19 +133,43 @@ def _four_bar(window: Window) -> dict[int, Values]:
 
 @dataclass(frozen=True)
 class Question:
-    """A mechanism, and what its motion says of which slips."""
+    """A mechanism, the page of its scenes, and what its motion says of which slips."""
 
     mechanism: Callable[[], Mechanism]
+    page: str
     read: Reading
-    about: str
 
 
-QUESTIONS = (
-    Question(lambda: RollingOnCircle().mechanism(), _rolling, "a disc rolls off a round hill"),
-    Question(lambda: ChaplyginSleigh().mechanism(), _skate, "a sleigh on one skate coasts"),
-    Question(lambda: DrivenFourBar().mechanism(), _four_bar, "the crank of sample 18.15 turns at 10 rad/s"),
-    Question(double_pendulum, _pendulum, "the double pendulum falls"),
-)
+# By what happens in the motion.
+QUESTIONS: dict[str, Question] = {
+    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, RollingOnCircle.page, _rolling),
+    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, ChaplyginSleigh.page, _skate),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, DrivenFourBar.page, _four_bar),
+    "the double pendulum falls": Question(double_pendulum, LinkPendulum.page, _pendulum),
+}
+
+
+@dataclass(frozen=True)
+class Refereed(Task):
+    """The last POINTS samples of an engine's motion of the mechanism of a question."""
+
+    question: str
+    engine: Engine
+
+    @property
+    def cost(self) -> float:
+        return SAMPLES * step_cost(self.engine)
+
+    @property
+    def label(self) -> str:
+        return f"{self.engine.name} {self.engine.variant}: {self.question}"
+
+    def run(self) -> Kept:
+        motion = self.engine.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
+        return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
+
+
+TASKS = tuple(Refereed(question, engine) for question in QUESTIONS for engine in REFEREES)
 
 
 @dataclass(frozen=True)
@@ -153,26 +182,22 @@ class Ruling:
     values: Values
 
 
-def rulings(referees: Iterable[Engine] = REFEREES, lost: list[str] | None = None) -> tuple[Ruling, ...]:
+def rulings(answers: Mapping[Task, Answer], lost: list[str] | None = None) -> tuple[Ruling, ...]:
     """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
 
-    Whatever else an engine raises becomes a sentence in `lost`, if that is given.
+    What became of an engine that failed, or whose motion can't be read, becomes a sentence in `lost`, if that is given.
     """
     found: list[Ruling] = []
-    referees = tuple(referees)
-    for question in QUESTIONS:
-        mechanism = question.mechanism()
-        for engine in referees:
-            method = f"{engine.name} {engine.variant}"
-            try:
-                motion = engine.build(mechanism, SPACING)(SAMPLES, 1)
-                said = question.read(Window(motion.pose[-POINTS:], motion.twist[-POINTS:]))
-            except Unsupported:
-                continue
-            except Exception as reason:
-                if lost is None:
-                    raise
-                lost.append(f"{method} failed where {question.about}: {type(reason).__name__}: {reason}")
-                continue
-            found += [Ruling(number, method, question.about, values) for number, values in said.items()]
+    lost = [] if lost is None else lost
+    for task, answer in answers.items():
+        if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
+            continue
+        method = f"{task.engine.name} {task.engine.variant}"
+        try:
+            said = QUESTIONS[task.question].read(Window(answer.array("pose"), answer.array("twist")))
+        except Exception as reason:
+            why = answer.told if not answer.finished else f"its motion can't be read: {type(reason).__name__}: {reason}"
+            lost.append(f"{method} where {task.question}: {why}")
+            continue
+        found += [Ruling(number, method, task.question, values) for number, values in said.items()]
     return tuple(sorted(found, key=lambda ruling: ruling.number))
