@@ -36,11 +36,10 @@ def errata(
         from reports.text.tables import number as short
 
         found = dict(run_tasks(TASKS))
-        answers = {task: found[task] for task in TASKS}
         lost: list[str] = []
         said = [
             (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
-            for r in rulings(answers, lost)
+            for r in rulings(((task, found[task]) for task in TASKS), lost)
             if r.number in (number or known)
         ]
         wide.print()

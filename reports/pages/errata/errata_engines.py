@@ -7,7 +7,7 @@ but linear relations of positions is put in: the end of a bar is twice as far fr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -154,11 +154,15 @@ class Refereed(Task):
     """The last POINTS samples of an engine's motion of the mechanism of a question."""
 
     question: str
-    engine: Engine
+    referee: Engine
+
+    @property
+    def engine(self) -> Engine:
+        return self.referee
 
     @property
     def cost(self) -> float:
-        return SAMPLES * step_cost(self.engine)
+        return SAMPLES * step_cost(self.referee)
 
     @property
     def label(self) -> str:
@@ -182,14 +186,14 @@ class Ruling:
     values: Values
 
 
-def rulings(answers: Mapping[Task, Answer], lost: list[str] | None = None) -> tuple[Ruling, ...]:
+def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = None) -> tuple[Ruling, ...]:
     """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
 
     What became of an engine that failed, or whose motion can't be read, becomes a sentence in `lost`, if that is given.
     """
     found: list[Ruling] = []
     lost = [] if lost is None else lost
-    for task, answer in answers.items():
+    for task, answer in answers:
         if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
             continue
         method = f"{task.engine.name} {task.engine.variant}"

@@ -52,7 +52,7 @@ def table(erratum: Erratum, values: Values, said: Iterable[Ruling]) -> str:
 def words(material: Material) -> Mapping[str, Any]:
     """Values of the formulas, which are computed at once, and what engines say, from their stored motions."""
     lost: list[str] = []
-    said = rulings(material.answers, lost)
+    said = rulings(material.answers.items(), lost)
     told = [
         Told(
             erratum,
