@@ -135,8 +135,7 @@ def choose_tasks(
         for page in pages
         if any(page.is_run_with(scene) for scene in scenes)
         for task in page.all_tasks()
-        if (task.engine is None or task.engine in engines)
-        and (full or task.cost <= QUICK_CELL)
+        if (task.engine is None or task.engine in engines) and (full or task.cost <= QUICK_CELL)
     )
     return tuple(dict.fromkeys(found))
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
+from reports.grid.errors import usable_samples
 from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Motion, trajectory_of
 from reports.pages.page import Material, Observation
@@ -20,8 +21,15 @@ def observe(material: Material, cell: Cell, setting: str, say: Callable[[Traject
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
         return ()
-    try:
-        told = say(trajectory_of(answer)) if answer.finished else answer.told
-    except Exception as reason:
-        told = f"can't be read: {type(reason).__name__}: {reason}"
+    told = _read(trajectory_of(answer), say) if answer.finished else answer.told
     return (Observation(f"{cell.engine.name} {cell.engine.variant}", setting, told),)
+
+
+def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:
+    count = usable_samples(run)
+    if count < len(run.t):
+        return f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
+    try:
+        return say(run)
+    except Exception as reason:
+        return f"can't be read: {type(reason).__name__}: {reason}"

@@ -132,6 +132,7 @@ PAGE = Page(
     lesson="Every plane motion is one curve rolling on another, and the instant centre shows errors of velocity.",
     scenes=(),
     engines=(),
+    companions=(DrivenFourBar(),),
     figures=figures,
     words=words,
     tasks=tuple(map(Motion, CELLS)),

@@ -25,6 +25,7 @@ from reference.mechanism import Body, Mechanism
 from reference.pendulum.chain import Chain
 from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.scenes import RollingOnCircle
+from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
 from reports.grid.cells import step_cost
 from reports.grid.outcomes import Outcome
@@ -133,19 +134,19 @@ def _four_bar(window: Window) -> dict[int, Values]:
 
 @dataclass(frozen=True)
 class Question:
-    """A mechanism, the page of its scenes, and what its motion says of which slips."""
+    """A mechanism, what its motion says of which slips, and the scene with which it is run."""
 
     mechanism: Callable[[], Mechanism]
-    page: str
     read: Reading
+    companion: Scene
 
 
 # By what happens in the motion.
 QUESTIONS: dict[str, Question] = {
-    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, RollingOnCircle.page, _rolling),
-    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, ChaplyginSleigh.page, _skate),
-    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, DrivenFourBar.page, _four_bar),
-    "the double pendulum falls": Question(double_pendulum, LinkPendulum.page, _pendulum),
+    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, _rolling, RollingOnCircle()),
+    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, _skate, ChaplyginSleigh()),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar, DrivenFourBar()),
+    "the double pendulum falls": Question(double_pendulum, _pendulum, LinkPendulum()),
 }
 
 
@@ -189,7 +190,7 @@ class Ruling:
 def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = None) -> tuple[Ruling, ...]:
     """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
 
-    What became of an engine that failed, or whose motion can't be read, becomes a sentence in `lost`, if that is given.
+    What became of an engine that failed, or whose motion is not finite, becomes a sentence in `lost`, if that is given.
     """
     found: list[Ruling] = []
     lost = [] if lost is None else lost
@@ -197,11 +198,13 @@ def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = Non
         if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
             continue
         method = f"{task.engine.name} {task.engine.variant}"
-        try:
-            said = QUESTIONS[task.question].read(Window(answer.array("pose"), answer.array("twist")))
-        except Exception as reason:
-            why = answer.told if not answer.finished else f"its motion can't be read: {type(reason).__name__}: {reason}"
-            lost.append(f"{method} where {task.question}: {why}")
+        if not answer.finished:
+            lost.append(f"{method} where {task.question}: {answer.told}")
             continue
+        window = Window(answer.array("pose"), answer.array("twist"))
+        if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
+            lost.append(f"{method} where {task.question}: its motion is not finite")
+            continue
+        said = QUESTIONS[task.question].read(window)
         found += [Ruling(number, method, task.question, values) for number, values in said.items()]
     return tuple(sorted(found, key=lambda ruling: ruling.number))

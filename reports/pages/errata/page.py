@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
 from reference.errata.rolling import rolling_acceleration
-from reports.pages.errata.errata_engines import CONFIRMED, TASKS, Ruling, rulings
+from reports.pages.errata.errata_engines import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
 from reports.pages.page import Material, Page
 from reports.text.tables import markdown, number
 
@@ -79,6 +79,7 @@ PAGE = Page(
     lesson="The chapter's printed slips, each decided by a derivative, by engines, and by a few lines to run.",
     scenes=(),
     engines=(),
+    companions=tuple(question.companion for question in QUESTIONS.values()),
     words=words,
     tasks=TASKS,
 )
