@@ -321,5 +321,6 @@ def test_a_referee_that_fails_is_named_and_the_others_rule():
     found = referees.rulings([(first, Answer(Outcome.ABORTED, "no such thing")), (second, still(second))], lost)
     assert lost == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
     assert {ruling.about for ruling in found} == {"the double pendulum falls"}
-    assert referees.rulings([(first, still(first, True)), (second, Answer(Outcome.UNSUPPORTED, "no joint"))], lost) == ()
+    unsupported = Answer(Outcome.UNSUPPORTED, "no such joint")
+    assert referees.rulings([(first, still(first, lost=True)), (second, unsupported)], lost) == ()
     assert lost[1:] == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]

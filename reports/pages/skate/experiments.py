@@ -83,7 +83,6 @@ def backwards(material: Material) -> list[Observation]:
 
 
 def _grown(t: np.ndarray, rate: np.ndarray) -> str:
-    rate = np.where(np.isfinite(rate), rate, 0.0)
     grows = growth_of(t, rate)
     if np.isnan(grows):
         return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"

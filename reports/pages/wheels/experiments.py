@@ -77,7 +77,6 @@ def folding(material: Material) -> list[Observation]:
 
 def _folded(t: np.ndarray, pose: np.ndarray) -> str:
     bend = pose[:, 1, 2] - pose[:, 0, 2]
-    bend = np.where(np.isfinite(bend), bend, 0.0)
     when = crossing(t, bend, FOLDED)
     return f"{when:.4f} s" if when is not None else f"never folds: bent by at most {np.abs(bend).max():.3f} rad"
 
