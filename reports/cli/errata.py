@@ -31,7 +31,7 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.grid.pool import run_tasks
+        from reports.grid.task_pool import run_tasks
         from reports.pages.errata.errata_engines import TASKS, rulings
         from reports.text.tables import number as short
 
