@@ -31,7 +31,7 @@ def report(
         raise nothing
     from reports.cli.known import registered, with_remembered
     from reports.cli.selection import page_cells
-    from reports.grid.running import missing, trajectories
+    from reports.grid.running import missing
     from reports.pages.page import Material
     from reports.text.rendering import render_all, render_readme
 
@@ -39,8 +39,10 @@ def report(
     with Store.read(results / STORE) as store:
         # What is published is of what is registered; a report of one's own shows what else was run.
         known = own if publish else with_remembered(own, store.remembered())
-        whole = tuple({cell: None for page in own.pages for cell in page_cells(page)})
-        material = {page: Material(store.get(page_cells(page)), trajectories) for page in known.pages}
+        whole = tuple({item: None for page in own.pages for item in (*page_cells(page), *page.all_tasks())})
+        material = {
+            page: Material(store.get(page_cells(page)), store.answers(page.all_tasks())) for page in known.pages
+        }
         left = len(missing(whole, store))
     names = {page.name for page in own.pages}
     # A scene that is only remembered, and whose sources have changed since, has nothing to show.

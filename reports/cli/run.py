@@ -16,6 +16,7 @@ from reports.grid.cells import Cell
 from reports.grid.ending import BadInput
 from reports.grid.measure import Measurement
 from reports.grid.store import Store
+from reports.grid.tasks import Task
 
 
 def run(
@@ -32,43 +33,43 @@ def run(
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
     known, names, given = with_words(registered(), scene or (), engine, settings or ())
-    cells = choose_cells(
-        choose_scenes(names, known.scenes, known.pages),
-        choose_engines(None if given else engine, variant, given or known.engines),
-        known.pages,
-        full,
-        every or (),
-        step or (),
-    )
+    scenes = choose_scenes(names, known.scenes, known.pages)
+    engines = choose_engines(None if given else engine, variant, given or known.engines)
+    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or ())
+    # Steps that are named are asked of the grid alone.
+    items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     console = Terminal(140)
     with Store(results / STORE) as store:
         if store.notice:
             print(f"crosscheck: {store.notice}", file=sys.stderr)
         store.remember(each.text() for each in known.given)
-        count = run_interruptible(console, store, cells, fresh, limit)
+        count = run_interruptible(console, store, items, fresh, limit)
         print_summary(console, list(store.get(cells).values()))
     following = with_folder("crosscheck report", results)
-    console.say(f"{count} of {len(cells)} cells run, the others were stored. Next: {following}")
+    console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
 
 
-def run_interruptible(console: Terminal, store: Store, cells: Sequence[Cell], fresh: bool, limit: float) -> int:
-    """Run cells with a bar of progress; how many were run. Raises KeyboardInterrupt, having said what is stored."""
+def run_interruptible(console: Terminal, store: Store, items: Sequence[Cell | Task], fresh: bool, limit: float) -> int:
+    """Run cells and tasks with a bar of progress; how many were run.
+
+    Raises KeyboardInterrupt, having said what is stored.
+    """
     from reports.grid.running import missing, run_into
 
     with kept() as check:
-        waiting = len(cells) if fresh else len(missing(cells, store, limit))
+        waiting = len(items) if fresh else len(missing(items, store, limit))
         try:
             with progress(console, waiting, check) as (done, watch):
-                count = run_into(store, cells, fresh, limit, done=done, watch=watch)
+                count = run_into(store, items, fresh, limit, done=done, watch=watch)
             check()
         except KeyboardInterrupt:
-            stored = len(cells) - len(missing(cells, store, limit))
-            console.say(f"Stopped: {stored} of {len(cells)} cells are stored; the next run goes on from there.")
+            stored = len(items) - len(missing(items, store, limit))
+            console.say(f"Stopped: {stored} of {len(items)} cells are stored; the next run goes on from there.")
             raise
     return count
 

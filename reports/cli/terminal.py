@@ -13,7 +13,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from reports.grid.cells import Cell
 from reports.grid.ending import FileTrouble
 
 PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
@@ -68,8 +67,8 @@ def print_table(console: Console, title: str, header: Sequence[str], rows: Seque
 @contextmanager
 def progress(
     console: Console, total: int, check: Callable[[], None]
-) -> Iterator[tuple[Callable[[object], None], Callable[[list[Cell]], None]]]:
-    """(done, watch): call done with each row, and watch with the cells that are running; both `check` for Ctrl-C.
+) -> Iterator[tuple[Callable[[object], None], Callable[[list[Any]], None]]]:
+    """(done, watch): call done with each result, and watch with what is running; both `check` for Ctrl-C.
 
     A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
     """
@@ -88,8 +87,8 @@ def progress(
     with bar:
         task = bar.add_task("cells", total=total, running="starting")
 
-        def watch(cells: list[Cell]) -> None:
-            bar.update(task, running=" | ".join(cell.label for cell in cells))
+        def watch(running: list[Any]) -> None:
+            bar.update(task, running=" | ".join(item.label for item in running))
             check()
 
         def done(row: object) -> None:
@@ -101,12 +100,12 @@ def progress(
 
 def _lines(
     console: Console, total: int, check: Callable[[], None]
-) -> tuple[Callable[[object], None], Callable[[list[Cell]], None]]:
+) -> tuple[Callable[[object], None], Callable[[list[Any]], None]]:
     """(done, watch) of `progress`, which print what is done, and what runs, at most once in PULSE seconds."""
     start = last = monotonic()
     count = 0
 
-    def watch(cells: list[Cell]) -> None:
+    def watch(cells: list[Any]) -> None:
         nonlocal last
         now = monotonic()
         if now - last >= PULSE:

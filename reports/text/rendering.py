@@ -41,6 +41,7 @@ class Told:
     observations: str
     remark: str
     picture: str = ""
+    unrun: bool = False  # whether there is something to run, and nothing of it was
 
 
 def environment(folder: Path = TEMPLATES) -> Environment:
@@ -155,7 +156,8 @@ def _compared(rows: list[Measurement], quantity: str) -> dict[str, str]:
 
 def _told_failure(failure: Failure, material: Material) -> Told:
     rows = material.of(failure.cells)
-    seen = failure.observations() if failure.observations else ()
+    seen = failure.observations(material) if failure.observations else ()
+    run = rows or any(task in material.answers for task in failure.tasks)
     observations = tables.markdown(
         ["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3
     )
@@ -167,6 +169,7 @@ def _told_failure(failure: Failure, material: Material) -> Told:
         tables.outcome_table(rows) if any(row.sentence for row in rows) else "",
         observations if seen else "",
         failure.remark,
+        unrun=not run and bool(failure.cells or failure.tasks),
     )
 
 
