@@ -63,7 +63,7 @@ def test_the_page_tells_parameters_errors_failures_models_and_how_it_was_made(fi
     for word in ("# Discs", "duration", "it has no pins", "**torn**", "by hand", "0.02 rad", "the command", "numpy"):
         assert word in page
     assert "mass is -1; it must be greater than zero" in page
-    assert "stays at **" in page
+    assert "plateau **" in page
 
 
 def test_every_picture_of_a_page_is_among_the_files_and_the_other_way_round(files):

@@ -99,6 +99,7 @@ class Page:
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.grid.quantities`.
+    advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
     orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
     method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
     """
@@ -113,6 +114,7 @@ class Page:
     maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything
     quantity: str = "angle"
+    advised: str = ""
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
@@ -126,6 +128,16 @@ class Page:
     def is_run_with(self, scene: Scene) -> bool:
         """Whether the cells of failures and maps are run with the scene."""
         return scene.name in {each.name for each in (*self.scenes, *self.companions)}
+
+    @property
+    def advised_scene(self) -> Scene | None:
+        """The scene for which the page says which setting gives which accuracy; None on a page without scenes."""
+        return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
+
+    @property
+    def data_page(self) -> str:
+        """The file beside the page that has all of its numbers."""
+        return f"{self.name}_data.md"
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""
