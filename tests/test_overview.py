@@ -16,8 +16,8 @@ from reports.pages.page import Failure, Material, Observation, Page
 from reports.text.lookups import told
 from reports.text.overview import BEGIN, END, overview, with_overview
 from reports.text.rendering import render_all, render_index, render_page, render_readme
-from reports.text.told_scene import parameters
 from reports.text.tables import number
+from reports.text.told_scene import parameters
 from reports.text.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
@@ -228,7 +228,7 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
     assert "sound" not in one
     assert "| mujoco sound | 0.1 | **finished** | 5.3e-3 |" in two
     assert "|" not in three
-    lines = [line for line in files["base.md"].split("## Where methods fail")[1].split("\n- ")]
+    lines = files["base.md"].split("## Where methods fail")[1].split("\n- ")
     assert [line.split("**")[1] for line in lines[1:]] == [
         f"[{name}](base_data.md#{name.lower()})" for name in ("First", "Second", "Third")
     ]

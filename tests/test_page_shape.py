@@ -1,4 +1,4 @@
-"""The shape of each mechanism's page: five minutes long, all numbers beside it, and lines of code that run as printed."""
+"""The shape of each mechanism's page: five minutes long, all numbers beside it, code that runs as it is printed."""
 
 from __future__ import annotations
 

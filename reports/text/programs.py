@@ -2,7 +2,8 @@
 
 A program is a file `programs/<method>.py` in the page's folder, with other characters than letters and digits as "_".
 It says its `duration`, within the scene's horizon, and `steps`, and ends with the place and angle of one body in `end`,
-which it prints. The tests run each as it is printed and hold it against the method's own run; a method without a file is told by its settings.
+which it prints. The tests run each as it is printed and hold it against the method's own run. A method without a file
+is told by its settings.
 """
 
 from __future__ import annotations
@@ -36,9 +37,7 @@ class Setting:
     exact: str = ""  # "x = ... m, y = ... m, angle = ... rad" of the body at the end
 
 
-def advised_settings(
-    page: str, scene: Scene, found: Iterable[Advice], engines: Mapping[str, Any]
-) -> list[Setting]:
+def advised_settings(page: str, scene: Scene, found: Iterable[Advice], engines: Mapping[str, Any]) -> list[Setting]:
     """The methods of some advice, each once, as they are to be copied; `engines` by method. `page`: whose programs are
     for this scene; empty where there are none."""
     rows: dict[str, list[tuple[Measurement, Sequence[float]]]] = {}

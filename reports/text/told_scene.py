@@ -59,4 +59,3 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, A
         "errors": tables.error_table(rows, held),
         "unsupported": [(row.method, row.sentence) for row in unsupported if row.every == coarsest],
     }
-
