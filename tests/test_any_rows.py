@@ -8,28 +8,33 @@ import random
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cache
 
+import numpy as np
 import pytest
 
-from engines import Unsupported
 from reports.charts import theme
 from reports.cli.selection import page_cells
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
-from reports.pages import observing
+from reports.grid.tasks import Answer, Motion, Task
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
+from reports.pages.observing import observe
 from reports.pages.page import Material, Page
+from reports.pages.pendulum.neighbours import Neighbours
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
 from reports.pages.scaling import page as scaling
 from reports.pages.skate import experiments as skate_failures
+from reports.pages.skate import page as skate
 from reports.pages.wheels import experiments as wheels_failures
+from reports.pages.wheels import page as wheels
+from reports.pages.wheels.folding import Folding
 from reports.text.rendering import environment, render_index, render_page, render_readme
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
@@ -122,7 +127,7 @@ def pictures_of_the_truth(page: Page) -> Mapping[str, str]:
 
 
 def cheap(page: Page) -> Page:
-    """A page without what needs no rows and takes long: methods that are no engines, pictures of the truth alone."""
+    """A page without what needs no rows and takes long: what its tasks tell, pictures of the truth alone."""
     quiet = tuple(replace(failure, observations=None) for failure in page.failures)
     if page.name in DRAWN_FROM_ROWS:
         return replace(page, failures=quiet)
@@ -189,7 +194,8 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         return "" if MARK in clause else clause
 
     monkeypatch.setitem(FILTERS, "if_measured", kept)
-    assert complaints(page.name, written(cheap(page), whole(page))) == []
+    material = Material(whole(page), {task: still(task) for task in page.all_tasks()})
+    assert complaints(page.name, render_page(cheap(page), material, "the command")) == []
     assert vanished == []
 
 
@@ -225,31 +231,101 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
     assert without_marks(environment().from_string(template).render(given)) == said
 
 
-@pytest.mark.parametrize("raised", [RuntimeError("no such thing"), Unsupported("no such joint")])
-def test_an_engine_that_fails_while_a_page_is_written_costs_its_own_line_alone(raised, monkeypatch):
-    def fails(cell):
-        raise raised
+def still(task: Task, lost: bool = False) -> Answer:
+    """An invented answer: a body that stays where it started, or whose numbers are lost half-way."""
+    match task:
+        case Motion(cell=cell):
+            mechanism, times = cell.scene.mechanism(), cell.sample_count + 1
+            t = np.linspace(0, cell.scene.duration, times)
+            pose, twist = (np.tile(values, (times, 1, 1)) for values in (mechanism.pose, 0 * mechanism.twist))
+            values = {"t": t, "pose": pose, "twist": twist, "reaction": np.zeros((times, mechanism.row_count))}
+        case referees.Refereed():
+            mechanism = referees.QUESTIONS[task.question].mechanism()
+            pose, twist = (np.tile(values, (referees.POINTS, 1, 1)) for values in (mechanism.pose, mechanism.twist))
+            values = {"pose": pose, "twist": twist}
+        case Folding():
+            mechanism, t = task.scene.mechanism(), np.linspace(0, task.scene.duration, 30)
+            values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
+        case Neighbours():
+            values = {"growth": np.ones(len(task.times))}
+        case _:
+            values = {"error": np.asarray(0.5), "evaluations": np.asarray(7.0), "stopped": "", "when": np.asarray(2.0)}
+    if lost and isinstance(task, (Motion, referees.Refereed)):
+        for name in ("pose", "twist"):
+            values[name][len(values[name]) // 2 :] = np.nan
+    return Answer(Outcome.FINISHED, values=values)
 
-    monkeypatch.setattr(observing, "trajectory_of", fails)
-    for observations in (skate_failures.backwards, skate_failures.slipping, wheels_failures.folding):
-        told = observations()
-        assert [seen for seen in told if "exact" in seen.method or "reference" in seen.method]
-        lost = [seen for seen in told if "failed: RuntimeError: no such thing" in seen.outcome]
-        assert bool(lost) == isinstance(raised, RuntimeError)
+
+def some_answers(page: Page, chance: random.Random) -> dict[Task, Answer]:
+    """To a part of a page's tasks, some of them failed."""
+    found = {}
+    for task in page.all_tasks():
+        match chance.choice(["missing", "failed", "lost", "still", "still"]):
+            case "failed":
+                found[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
+            case "lost" | "still" as kind:
+                found[task] = still(task, kind == "lost")
+    return found
+
+
+WITH_TASKS = [page for page in PAGES if page.all_tasks()]
+
+
+@pytest.mark.parametrize("page", WITH_TASKS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
+    tasks = page.all_tasks()
+    chance = random.Random(page.name)
+    for answers in (
+        {},
+        {task: Answer(Outcome.ABORTED, "a signal") for task in tasks},
+        *(some_answers(page, chance) for _ in range(3)),
+    ):
+        files = render_page(page, Material({}, answers), "the command")
+        told = prose(files[f"{page.name}.md"])
+        assert not re.search(r"\b(nan|None|Unmeasured)\b|\{\{|\{%", told)
+        assert MARK not in told
+        assert WORDS not in told
+
+
+@pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.UNSUPPORTED])
+def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
+    for page, observations in (
+        (skate.PAGE, skate_failures.backwards),
+        (skate.PAGE, skate_failures.slipping),
+        (wheels.PAGE, wheels_failures.folding),
+    ):
+        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in page.all_tasks()}))
+        assert [seen for seen in told if "exact" in seen.method or "closed form" in seen.method]
+        engines = [seen for seen in told if "reference" not in seen.method]
+        lost = [seen for seen in engines if seen.outcome == "**aborted**: no such thing"]
+        assert bool(lost) == (outcome == Outcome.ABORTED)
+
+
+def test_a_motion_that_can_not_be_read_says_so_in_its_line():
+    cell = Motion(skate_failures.TURNING_ROUND[0]).cell
+    material = Material({}, {Motion(cell): still(Motion(cell))})
+    [line] = observe(material, cell, "a step", lambda run: f"{1 / 0}")
+    assert line.outcome == "can't be read: ZeroDivisionError: division by zero"
+    lost = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
+    [line] = observe(lost, cell, "a step", lambda run: "all is well")
+    assert line.outcome == "**diverged**: not finite from 5 s"
+
+
+def test_an_experiment_of_which_no_task_was_run_says_so():
+    page = replace(skate.PAGE, figures=lambda material: {}, maps=())
+    for answers, waiting in (({}, True), ({task: still(task) for task in page.all_tasks()}, False)):
+        text = render_page(page, Material({}, answers), "the command")["skate.md"]
+        section = text.split("### The sleigh run backwards")[1].split("###")[0]
+        assert "exact motion" in section
+        assert ("Not run yet." in section) == waiting
 
 
 def test_a_referee_that_fails_is_named_and_the_others_rule():
-    @dataclass(frozen=True)
-    class Broken(Plain):
-        name: str = "broken"
-        variant: str = "engine"
-
-        def build(self, mechanism, dt):
-            raise RuntimeError("no such thing")
-
+    first, second = referees.TASKS[0], referees.TASKS[-1]
     lost: list[str] = []
-    assert referees.rulings((Broken(),), lost) == ()
-    assert len(lost) == len(referees.QUESTIONS)
-    assert lost[0] == "broken engine failed where a disc rolls off a round hill: RuntimeError: no such thing"
-    with pytest.raises(RuntimeError, match="no such thing"):
-        referees.rulings((Broken(),))
+    found = referees.rulings([(first, Answer(Outcome.ABORTED, "no such thing")), (second, still(second))], lost)
+    assert lost == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
+    assert {ruling.about for ruling in found} == {"the double pendulum falls"}
+    unsupported = Answer(Outcome.UNSUPPORTED, "no such joint")
+    assert referees.rulings([(first, still(first, lost=True)), (second, unsupported)], lost) == ()
+    assert lost[1:] == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]

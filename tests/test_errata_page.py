@@ -14,8 +14,9 @@ from reference.errata.catalogue import ERRATA, WORD_SLIPS
 from reference.errata.erratum import Values
 from reference.errata.rolling import rolling_acceleration
 from reports import __main__ as command_line
+from reports.grid.tasks import answered
 from reports.pages.errata import errata_engines as referees
-from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, Ruling, Window, rulings
+from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
 from reports.pages.errata.page import PAGE, SNIPPETS, digits, table
 from reports.pages.page import Material
 from reports.text.rendering import TEMPLATES, render_page
@@ -25,7 +26,7 @@ IDS = [str(erratum.number) for erratum in ERRATA]
 
 @pytest.fixture(scope="module")
 def said() -> tuple[Ruling, ...]:
-    return rulings()
+    return rulings((task, answered(task)) for task in TASKS)
 
 
 @pytest.fixture(scope="module")

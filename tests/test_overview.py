@@ -213,7 +213,8 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
         torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
         sound: row_of("mujoco sound", sentence="", angle=1.9e-5, step=0.1),
     }
-    first = Failure("First", "It should turn.", (torn,), lambda: [Observation("by hand", "a setting", "0.02 rad")])
+    by_hand = Observation("by hand", "a setting", "0.02 rad")
+    first = Failure("First", "It should turn.", (torn,), lambda material: [by_hand])
     second = Failure("Second", "So should this.", (sound,), columns=("energy",))
     never = Failure("Third", "Never run.", (Cell(DISC, Toy("never"), 1, "failure"),))
     page = replace(PAGE, scenes=(DISC,), failures=(first, second, never))

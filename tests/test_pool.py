@@ -16,7 +16,7 @@ from reports.grid.cells import Cell
 from reports.grid.measure import measure
 from reports.grid.outcomes import Outcome, describe_exit
 from reports.grid.pool import run_cells, worker_count
-from reports.grid.running import missing, run_into, trajectories
+from reports.grid.running import missing, run_into
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost, usable_cores
 from tests.rough_toys import RoughToy
@@ -116,16 +116,6 @@ def test_lost_workers_are_one_line_and_status_1_at_the_command_line(monkeypatch,
         main(["run", "free_four_bar", "--every", "1", "--results", str(tmp_path)])
     assert end.value.code == 1
     assert capsys.readouterr().err == "crosscheck: 5 worker processes in a row ended while they started: why\n"
-
-
-def test_a_lost_cell_is_no_gap_in_a_picture():
-    with pytest.raises(WorkersLost, match="SIGTERM"):
-        trajectories([Cell(Disc(), RoughToy("terminate"), 1)])
-
-
-def test_motions_for_pictures_leave_out_what_fails():
-    sound, failing = Cell(Disc(), Toy(), 1), Cell(Disc(), RoughToy("abort"), 1)
-    assert set(trajectories([sound, failing])) == {sound}
 
 
 def test_what_is_not_timed_uses_every_processor():

@@ -39,7 +39,7 @@ PAGE = Page(
             "Everything that fails",
             "It should turn.",
             tuple(Cell(Disc(), toy, 1, "failure") for toy in FAST_FAILURES),
-            lambda: [Observation("by hand", "none", "0.02 rad")],
+            lambda material: [Observation("by hand", "none", "0.02 rad")],
         ),
     ),
     maps=(StabilityMap("map", "Step against factor", "factor", MAP),),

@@ -19,7 +19,7 @@ from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reports.grid.cells import Cell
 from reports.grid.measure import measure, stopped_where_it_ends
 from reports.grid.outcomes import Outcome
-from reports.grid.running import trajectory_of
+from reports.grid.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
 from reports.pages.page import Material
 from reports.pages.rolling import page as rolling_page
@@ -31,10 +31,14 @@ def row(scene, engine, every, samples=None):
     return measure(Cell(scene, engine, every, samples=samples), repeat=False)
 
 
+def motion_of(cell):
+    return trajectory_of(answered(Motion(cell)))
+
+
 def run_of(measured, scene, engine, every):
     """What a function of a cell and its whole motion makes of a run."""
     cell = Cell(scene, engine, every)
-    return measured(cell, trajectory_of(cell))
+    return measured(cell, motion_of(cell))
 
 
 @pytest.mark.parametrize("engine", [pymunk.TUNED, mujoco.TUNED], ids=lambda engine: engine.name)
@@ -64,7 +68,7 @@ def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
     assert f"compared until {scene.comparable_until:.4g} s only" in found.sentence
     # Without the stop the same run is a joint torn open, which no method by contact deserves.
     cell = Cell(scene, mujoco.TUNED, 100)
-    whole = trajectory_of(cell)
+    whole = motion_of(cell)
     kept, note = stopped_where_it_ends(scene, whole)
     assert kept.t[-1] <= scene.comparable_until < whole.t[len(kept.t)]
     assert note
@@ -74,10 +78,10 @@ def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
 
 def test_a_reset_after_the_stop_is_no_part_of_the_comparison():
     scene = RollingOnCircle()
-    whole = trajectory_of(Cell(scene, mujoco.EXTENDED, 1))
+    whole = motion_of(Cell(scene, mujoco.EXTENDED, 1))
     for reset, kept in ((1.1, None), (0.5, 0.5)):
         assert stopped_where_it_ends(scene, replace(whole, reset_at=reset))[0].reset_at == kept
-    flat = trajectory_of(Cell(RollingEllipse(), mujoco.EXTENDED, 1))
+    flat = motion_of(Cell(RollingEllipse(), mujoco.EXTENDED, 1))
     assert stopped_where_it_ends(RollingEllipse(), flat) == (flat, "")
 
 
@@ -182,7 +186,7 @@ def test_the_round_trip_and_the_rate_of_the_page_are_as_exact_as_it_says():
 def test_the_centre_tells_engines_apart_by_their_velocities():
     engines = (mujoco.DEFAULT, mujoco.EXTENDED)
     cells = [Cell(centrodes_page.DrivenFourBar(), engine, 1) for engine in engines]
-    material = Material({}, lambda wanted: {cell: trajectory_of(cell) for cell in wanted if cell in cells})
+    material = Material({}, {Motion(cell): answered(Motion(cell)) for cell in cells})
     centre = {cell.engine.variant: error for cell, error, *_ in centrodes_page.measured(material)}
     assert set(centre) == {"default", "extended"}
     assert centre["extended"] < 1e-2 * centre["default"]

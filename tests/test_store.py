@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from reports.grid import store as store_module
+from reports.grid import stored_text
 from reports.grid.cells import Cell
 from reports.grid.ending import FileTrouble
 from reports.grid.measure import blank
@@ -217,7 +218,7 @@ def altered(**changes):
     def change(text):
         values = {**json.loads(text.partition(" ")[2]), **changes}
         new = json.dumps({name: value for name, value in values.items() if value is not None})
-        return f"{store_module._digest(new)} {new}"
+        return f"{stored_text.digest(new)} {new}"
 
     return change
 
@@ -226,8 +227,8 @@ ROWS = {
     "no text": lambda text: b"\xff\xfe\x00",
     "a number": lambda text: 7,
     "cut off": lambda text: text[:-20],
-    "no JSON": lambda text: f"{store_module._digest('{')} {{",
-    "a list": lambda text: f"{store_module._digest('[1]')} [1]",
+    "no JSON": lambda text: f"{stored_text.digest('{')} {{",
+    "a list": lambda text: f"{stored_text.digest('[1]')} [1]",
     "a digit changed": lambda text: text.replace("0.001", "0.002"),
     "a field of a newer version": altered(colour=3.0),
     "a field of a newer version missing": altered(slip=None),

@@ -12,13 +12,14 @@ import typer
 from reports.cli.errata import errata
 from reports.cli.interruption import kept
 from reports.cli.report import FOLDER, STORE, Folder, report, with_folder
-from reports.cli.selection import choose_cells, choose_engines, choose_scenes, grid_engines, known_engines
+from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines, known_engines
 from reports.cli.shapes import shapes
 from reports.cli.terminal import Terminal, print_table, progress, written
 from reports.grid.cells import Cell
 from reports.grid.ending import FINE, STATUSES, BadInput
 from reports.grid.measure import Measurement
 from reports.grid.store import Store
+from reports.grid.tasks import Task
 
 app = typer.Typer(
     help="How far a physics engine's constraints are from ideal ones, on planar mechanisms with an analytic truth.",
@@ -76,36 +77,36 @@ def run(
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
-    cells = choose_cells(
-        choose_scenes(scene or (), SCENES, PAGES),
-        choose_engines(engine, variant, known_engines(PAGES)),
-        PAGES,
-        full,
-        every or (),
-        step or (),
-    )
+    scenes = choose_scenes(scene or (), SCENES, PAGES)
+    engines = choose_engines(engine, variant, known_engines(PAGES))
+    cells = choose_cells(scenes, engines, PAGES, full, every or (), step or ())
+    # Steps that are named are asked of the grid alone.
+    items = cells if every or step else (*cells, *choose_tasks(scenes, engines, PAGES, full))
     with Store(results / STORE) as store:
         if store.notice:
             print(f"crosscheck: {store.notice}", file=sys.stderr)
-        count = run_interruptible(store, cells, fresh, limit)
+        count = run_interruptible(store, items, fresh, limit)
         print_summary(list(store.get(cells).values()))
     following = with_folder("crosscheck report", results)
-    console.say(f"{count} of {len(cells)} cells run, the others were stored. Next: {following}")
+    console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
 
 
-def run_interruptible(store: Store, cells: Sequence[Cell], fresh: bool, limit: float) -> int:
-    """Run cells with a bar of progress; how many were run. Raises KeyboardInterrupt, having said what is stored."""
+def run_interruptible(store: Store, items: Sequence[Cell | Task], fresh: bool, limit: float) -> int:
+    """Run cells and tasks with a bar of progress; how many were run.
+
+    Raises KeyboardInterrupt, having said what is stored.
+    """
     from reports.grid.running import missing, run_into
 
     with kept() as check:
-        waiting = len(cells) if fresh else len(missing(cells, store, limit))
+        waiting = len(items) if fresh else len(missing(items, store, limit))
         try:
             with progress(console, waiting, check) as (done, watch):
-                count = run_into(store, cells, fresh, limit, done=done, watch=watch)
+                count = run_into(store, items, fresh, limit, done=done, watch=watch)
             check()
         except KeyboardInterrupt:
-            stored = len(cells) - len(missing(cells, store, limit))
-            console.say(f"Stopped: {stored} of {len(cells)} cells are stored; the next run goes on from there.")
+            stored = len(items) - len(missing(items, store, limit))
+            console.say(f"Stopped: {stored} of {len(items)} cells are stored; the next run goes on from there.")
             raise
     return count
 

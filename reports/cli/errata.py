@@ -31,13 +31,15 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.pages.errata.errata_engines import rulings
+        from reports.grid.pool import run_tasks
+        from reports.pages.errata.errata_engines import TASKS, rulings
         from reports.text.tables import number as short
 
+        found = dict(run_tasks(TASKS))
         lost: list[str] = []
         said = [
             (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
-            for r in rulings(lost=lost)
+            for r in rulings(((task, found[task]) for task in TASKS), lost)
             if r.number in (number or known)
         ]
         wide.print()

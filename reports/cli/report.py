@@ -41,15 +41,15 @@ def report(
     nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
     if not (results / STORE).exists():
         raise nothing
-    from reports.grid.running import missing, trajectories
+    from reports.grid.running import missing
     from reports.pages.catalogue import PAGES
     from reports.pages.page import Material
     from reports.text.rendering import render_all, render_readme
 
     with Store.read(results / STORE) as store:
-        wanted = {page: page_cells(page) for page in PAGES}
-        whole = tuple({cell: None for cells in wanted.values() for cell in cells})
-        material = {page: Material(store.get(cells), trajectories) for page, cells in wanted.items()}
+        wanted = {page: (page_cells(page), page.all_tasks()) for page in PAGES}
+        whole = tuple({item: None for cells, tasks in wanted.values() for item in (*cells, *tasks)})
+        material = {page: Material(store.get(cells), store.answers(tasks)) for page, (cells, tasks) in wanted.items()}
         left = len(missing(whole, store))
     command = with_folder("crosscheck run --full", results)
     grid = f"{left} of {len(whole)} cells of the full grid are not stored: {command}"

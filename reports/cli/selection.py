@@ -10,6 +10,7 @@ from engines import Engine
 from reference.scene import Scene
 from reports.grid.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.grid.ending import BadInput
+from reports.grid.tasks import Task
 from reports.pages.page import Page
 
 # A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
@@ -73,8 +74,9 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
     from engines.registry import ENGINES
 
-    everywhere = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
-    return tuple(dict.fromkeys([*ENGINES, *everywhere]))
+    compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
+    kept = (task.engine for page in pages for task in page.all_tasks() if task.engine is not None)
+    return tuple(dict.fromkeys([*ENGINES, *compared, *kept]))
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
@@ -119,6 +121,23 @@ def choose_cells(
             ]
     chosen_once = dict.fromkeys(cells)
     return tuple(chosen_once if full else (cell for cell in chosen_once if _quick(cell)))
+
+
+def choose_tasks(
+    scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool
+) -> tuple[Task, ...]:
+    """The tasks of the pages that are run with these scenes, of these engines or of none.
+
+    A quick run leaves out what would take longer than QUICK_CELL.
+    """
+    found = (
+        task
+        for page in pages
+        if any(page.is_run_with(scene) for scene in scenes)
+        for task in page.all_tasks()
+        if (task.engine is None or task.engine in engines) and (full or task.cost <= QUICK_CELL)
+    )
+    return tuple(dict.fromkeys(found))
 
 
 def _quick(cell: Cell) -> bool:

@@ -12,7 +12,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from reports.grid.cells import Cell
 from reports.grid.ending import FileTrouble
 
 
@@ -65,8 +64,8 @@ def print_table(console: Console, title: str, header: Sequence[str], rows: Seque
 @contextmanager
 def progress(
     console: Console, total: int, check: Callable[[], None]
-) -> Iterator[tuple[Callable[[object], None], Callable[[list[Cell]], None]]]:
-    """(done, watch): call done with each row, and watch with the cells that are running; both `check` for Ctrl-C."""
+) -> Iterator[tuple[Callable[[object], None], Callable[[list[Any]], None]]]:
+    """(done, watch): call done with each result, and watch with what is running; both `check` for Ctrl-C."""
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -79,8 +78,8 @@ def progress(
     with bar:
         task = bar.add_task("cells", total=total, running="starting")
 
-        def watch(cells: list[Cell]) -> None:
-            bar.update(task, running=" | ".join(cell.label for cell in cells))
+        def watch(running: list[Any]) -> None:
+            bar.update(task, running=" | ".join(item.label for item in running))
             check()
 
         def done(row: object) -> None:

@@ -1,68 +1,73 @@
-"""Running cells into a store: only those without an answer, each kept as soon as it is done."""
+"""Running cells and tasks into a store: only those without an answer, each kept as soon as it is done."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 
-from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
-from reports.grid.pool import TIME_LIMIT, run_cells, worker_count
+from reports.grid.pool import TIME_LIMIT, run_cells, run_tasks, worker_count
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost, supervise
+from reports.grid.tasks import Answer, Task
+
+Item = TypeVar("Item", bound=Cell | Task)
 
 
-def missing(cells: Iterable[Cell], store: Store, limit: float = TIME_LIMIT) -> tuple[Cell, ...]:
-    """The cells without an answer to a run with this limit [s]: not stored, or timed out within a smaller limit."""
-    cells = tuple(cells)
-    known = store.get(cells)
-    return tuple(cell for cell in cells if cell not in known or not answers(known[cell], limit))
+def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> tuple[Item, ...]:
+    """The cells and tasks without an answer to a run with this limit [s]: not stored, or timed out within a smaller."""
+    items = tuple(items)
+    known = {**store.get(_cells(items)), **store.answers(_tasks(items))}
+    return tuple(item for item in items if item not in known or not holds(known[item], limit))
 
 
-def answers(row: Measurement, limit: float) -> bool:
-    """Whether a run with this limit [s] would say the same as a stored row."""
-    return row.outcome != Outcome.LOST and (row.outcome != Outcome.TIMED_OUT or row.limit >= limit)
+def holds(result: Measurement | Answer, limit: float) -> bool:
+    """Whether a run with this limit [s] would say the same as what is stored."""
+    return result.outcome != Outcome.LOST and (result.outcome != Outcome.TIMED_OUT or result.limit >= limit)
+
+
+def _cells(items: Iterable[Cell | Task]) -> tuple[Cell, ...]:
+    return tuple(item for item in items if isinstance(item, Cell))
+
+
+def _tasks(items: Iterable[Cell | Task]) -> tuple[Task, ...]:
+    return tuple(item for item in items if isinstance(item, Task))
 
 
 def run_into(
     store: Store,
-    cells: Sequence[Cell],
+    items: Sequence[Cell | Task],
     fresh: bool = False,
     limit: float = TIME_LIMIT,
     workers: int | None = None,
-    done: Callable[[Measurement], None] = lambda row: None,
-    watch: Callable[[list[Cell]], None] | None = None,
+    done: Callable[[Measurement | Answer], None] = lambda result: None,
+    watch: Callable[[list[Any]], None] | None = None,
     timed: bool = True,
 ) -> int:
-    """Run what is missing (everything if fresh), store each row as it arrives; how many were run.
+    """Run what is missing (everything if fresh), cells first; store each result as it arrives; how many were run.
 
-    An interruption passes through, with the rows so far stored. Cells whose processes were killed from outside are not
-    stored; when all others are done, WorkersLost is raised, with one line about them.
+    An interruption passes through, with the results so far stored. What was killed from outside is not stored; when all
+    others are done, WorkersLost is raised, with one line about it.
     """
-    waiting = tuple(cells) if fresh else missing(cells, store, limit)  # an old row stays until the new one replaces it
-    lost: list[Measurement] = []
-    for row in run_cells(waiting, limit, workers, watch, timed):
+    waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
+    lost: list[str] = []
+    for row in run_cells(_cells(waiting), limit, workers, watch, timed):
         if row.outcome == Outcome.LOST:
-            lost.append(row)
+            lost.append(f"{row.scene} in {row.method} at {row.step:.1e} s: {row.sentence}")
         else:
             store.put(row)
         done(row)
+    for task, answer in run_tasks(_tasks(waiting), limit, workers, watch):
+        if answer.outcome == Outcome.LOST:
+            lost.append(f"{task.label}: {answer.sentence}")
+        else:
+            store.put_answer(task, answer)
+        done(answer)
     if lost:
-        first = f"{lost[0].scene} in {lost[0].method} at {lost[0].step:.1e} s: {lost[0].sentence}"
-        raise WorkersLost(f"{len(lost)} of {len(waiting)} cells are lost, the others are stored; the first: {first}")
+        raise WorkersLost(f"{len(lost)} of {len(waiting)} cells are lost, the others are stored; the first: {lost[0]}")
     return len(waiting)
-
-
-def trajectory_of(cell: Cell) -> Trajectory:
-    """One cell's motion, for a picture."""
-    return cell.engine.build(cell.scene.mechanism(), cell.step)(cell.sample_count, cell.every)
-
-
-def trajectories(cells: Sequence[Cell]) -> Mapping[Cell, Trajectory]:
-    """The motions of cells, made in supervised processes; cells that fail are left out. Raises WorkersLost."""
-    return {cell: result for cell, result in _untimed(trajectory_of, cells) if not isinstance(result, Loss)}
 
 
 def support_of(cell: Cell) -> str:
@@ -78,14 +83,9 @@ def support_of(cell: Cell) -> str:
 
 def support(cells: Sequence[Cell]) -> Mapping[Cell, str]:
     """Cell -> why it can't be built, in supervised processes; empty if it can. Raises WorkersLost."""
-    return {
-        cell: result.sentence if isinstance(result, Loss) else result for cell, result in _untimed(support_of, cells)
-    }
-
-
-def _untimed(function: Callable[[Cell], Any], cells: Sequence[Cell]) -> Iterator[tuple[Cell, Any]]:
-    """(cell, result or Loss) of work whose CPU time nobody looks at; a lost cell would be a silent gap in a page."""
-    for cell, result, _ in supervise(function, cells, TIME_LIMIT, worker_count(timed=False)):
+    reasons: dict[Cell, str] = {}
+    for cell, result, _ in supervise(support_of, cells, TIME_LIMIT, worker_count(timed=False)):
         if isinstance(result, Loss) and result.outcome == Outcome.LOST:
             raise WorkersLost(f"{cell.label}: {result.sentence}")
-        yield cell, result
+        reasons[cell] = result.sentence if isinstance(result, Loss) else result
+    return reasons

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import shutil
 import sqlite3
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import closing, contextmanager, suppress
-from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TypeVar
 
 from reports.grid.cells import Cell
 from reports.grid.ending import FileTrouble
 from reports.grid.files import folder_for
 from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
+from reports.grid.stored_text import answer_of, row_of, text_of_answer, text_of_row
+from reports.grid.tasks import Answer, Task
 
 SCHEMA = 1  # the file's `user_version`; 0 in a new one, and in those of the first versions, which have the same table
-COLUMNS = ("key", "row")
+COLUMNS = ("key", "row")  # of a cell or of a task
 BESIDE = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
 WAIT = 30.0  # s for another process that is writing
 ELSEWHERE = "give another folder with --results"
@@ -37,7 +35,8 @@ REMEDIES = {
     sqlite3.SQLITE_PERM: "it must be a file that can be read and written; " + ELSEWHERE,
 }
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
-TYPES = {field.name: {"str": str, "int": int, "float": (int, float)}[str(field.type)] for field in fields(Measurement)}
+
+Keyed = TypeVar("Keyed", Cell, Task)
 
 
 class Damaged(Exception):
@@ -45,7 +44,9 @@ class Damaged(Exception):
 
 
 class Store:
-    """Measurements by the key of their cell. A context manager; every `put` is on disk when it returns.
+    """Measurements by the key of their cell, answers by that of their task.
+
+    A context manager; what is put is on disk when `put` returns.
 
     A damaged file is put aside, with what lies beside it, and its readable rows are taken over into a new one; `notice`
     says so (empty otherwise). Raises FileTrouble, here and in every method, where the file can't be used.
@@ -103,50 +104,36 @@ class Store:
 
     def put(self, row: Measurement) -> None:
         """Store a row, replacing an older one of the same cell."""
-        text = _text_of(row)
+        self._put(row.key, text_of_row(row))
+
+    def put_answer(self, task: Task, answer: Answer) -> None:
+        """Store the answer to a task, replacing an older one."""
+        self._put(task.key, text_of_answer(task.key, answer))
+
+    def _put(self, key: str, text: str) -> None:
         with _sentences(self.path), self._connection:
-            self._connection.execute("insert or replace into results values (?, ?)", (row.key, text))
+            self._connection.execute("insert or replace into results values (?, ?)", (key, text))
 
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
         """The stored rows of these cells.
 
         Cells that were never run, whose sources changed since, or whose row can't be read are left out.
         """
-        found: dict[Cell, Measurement] = {}
+        rows = ((cell, row_of(cell.key, text)) for cell, text in self._texts(cells))
+        return {cell: row for cell, row in rows if row is not None}
+
+    def answers(self, tasks: Iterable[Task]) -> dict[Task, Answer]:
+        """The stored answers to these tasks; those not run, stale or unreadable are left out, as with rows."""
+        answers = ((task, answer_of(task.key, text)) for task, text in self._texts(tasks))
+        return {task: answer for task, answer in answers if answer is not None}
+
+    def _texts(self, keyed: Iterable[Keyed]) -> Iterator[tuple[Keyed, str]]:
+        """What is stored under the keys of these cells or tasks."""
         with _sentences(self.path):
-            for cell in cells:
-                answer = self._connection.execute("select row from results where key = ?", (cell.key,)).fetchone()
-                row = _row_of(cell.key, answer[0]) if answer else None
-                if row is not None:
-                    found[cell] = row
-        return found
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode(errors="replace")).hexdigest()[:16]
-
-
-def _text_of(row: Measurement) -> str:
-    """The row as it is stored: a digest, so that a row out of a damaged file can be trusted, and JSON."""
-    text = json.dumps(row.as_dict())
-    return f"{_digest(text)} {text}"
-
-
-def _row_of(key: str, stored: Any) -> Measurement | None:
-    """The row of this key; None unless it is whole and has the fields that rows have now."""
-    digest, _, text = str(stored).partition(" ")
-    if digest != _digest(text):
-        return None
-    try:
-        values = json.loads(text)
-        whole = (
-            values["key"] == key
-            and values.keys() == TYPES.keys()
-            and all(isinstance(value, TYPES[name]) for name, value in values.items())
-        )
-        return Measurement(**{**values, "outcome": Outcome(values["outcome"])}) if whole else None
-    except (ValueError, TypeError, KeyError):
-        return None
+            for one in keyed:
+                found = self._connection.execute("select row from results where key = ?", (one.key,)).fetchone()
+                if found:
+                    yield one, found[0]
 
 
 @contextmanager
@@ -243,6 +230,6 @@ def _readable_rows(aside: Path) -> list[tuple[str, str]]:
             for order in ("", " desc"):
                 with suppress(sqlite3.Error):
                     for key, text in connection.execute(f"select key, row from results order by rowid{order}"):
-                        if _row_of(key, text) is not None:
+                        if row_of(key, text) is not None or answer_of(key, text) is not None:
                             found[key] = text
     return list(found.items())

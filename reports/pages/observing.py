@@ -1,26 +1,35 @@
-"""Lines of a table that an engine's motion gives while a page is written: what is read from it, or why it has none."""
+"""Lines of a table that are read from kept motions: what is seen in each, or why it has none."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from engines import Unsupported
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
-from reports.grid.running import trajectory_of
-from reports.pages.page import Observation
+from reports.grid.errors import usable_samples
+from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Motion, trajectory_of
+from reports.pages.page import Material, Observation
 
 
-def observe(cell: Cell, setting: str, say: Callable[[Trajectory], str]) -> tuple[Observation, ...]:
-    """The line of one engine, with what `say` reads from its motion; none where it has no such joint.
+def observe(material: Material, cell: Cell, setting: str, say: Callable[[Trajectory], str]) -> tuple[Observation, ...]:
+    """The line of one engine, with what `say` reads from its motion; none where it was not run or has no such joint.
 
-    Whatever else an engine raises is what happened, and stands in its line: one engine's fault must not cost the page.
+    Whatever else became of the run stands in its line, and so does a motion that can't be read: one engine's fault must
+    not cost the page.
     """
-    method = f"{cell.engine.name} {cell.engine.variant}"
-    try:
-        told = say(trajectory_of(cell))
-    except Unsupported:
+    answer = material.answers.get(Motion(cell))
+    if answer is None or answer.outcome == Outcome.UNSUPPORTED:
         return ()
+    told = _read(trajectory_of(answer), say) if answer.finished else answer.told
+    return (Observation(f"{cell.engine.name} {cell.engine.variant}", setting, told),)
+
+
+def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:
+    count = usable_samples(run)
+    if count < len(run.t):
+        return f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
+    try:
+        return say(run)
     except Exception as reason:
-        told = f"failed: {type(reason).__name__}: {reason}"
-    return (Observation(method, setting, told),)
+        return f"can't be read: {type(reason).__name__}: {reason}"

@@ -13,11 +13,12 @@ from reports.gate.checks import Deviation
 from reports.gate.promises import Promises
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
+from reports.grid.tasks import Answer, Motion, Task, trajectory_of
 
 
 @dataclass(frozen=True)
 class Observation:
-    """The outcome of something that is not an engine (a method of the reference, say): printed beside the cells'."""
+    """What was found of something that is no cell: a motion that was kept, or a method of the reference."""
 
     method: str
     setting: str
@@ -28,17 +29,19 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    `expected` says what the reference says should happen. `cells` have the purpose "failure". `observations` is called
-    when the page is written, for methods that are not engines. `columns` are the quantities (`reports.grid.quantities`)
-    whose largest errors are told of every cell; without any, a grid of methods and steps tells the angle's.
+    `expected` says what the reference says should happen. `cells` have the purpose "failure". `tasks` are run with
+    them; `observations` reads their answers, and formulas that cost nothing: it steps and integrates nothing.
+    `columns` are the quantities (`reports.grid.quantities`) whose largest errors are told of every cell; without any, a
+    grid of methods and steps tells the angle's.
     """
 
     title: str
     expected: str
     cells: tuple[Cell, ...] = ()
-    observations: Callable[[], Sequence[Observation]] | None = None
+    observations: Callable[[Material], Sequence[Observation]] | None = None
     remark: str = ""  # what the outcomes teach
     columns: tuple[str, ...] = ()
+    tasks: tuple[Task, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -54,10 +57,20 @@ class StabilityMap:
 
 @dataclass(frozen=True)
 class Material:
-    """What there is to write a page from: the stored rows of its cells, and trajectories made on demand."""
+    """What there is to write a page from: the stored rows of its cells, and the stored answers to its tasks."""
 
     rows: Mapping[Cell, Measurement]
-    trajectories: Callable[[Sequence[Cell]], Mapping[Cell, Trajectory]] = lambda cells: {}
+    answers: Mapping[Task, Answer] = field(default_factory=dict)
+
+    def finished(self, task: Task) -> Answer | None:
+        """The answer to a task that was run and finished, else None."""
+        answer = self.answers.get(task)
+        return answer if answer is not None and answer.finished else None
+
+    def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
+        """The kept motions of these cells, those that were run and finished."""
+        found = ((cell, self.finished(Motion(cell))) for cell in cells)
+        return {cell: trajectory_of(answer) for cell, answer in found if answer is not None}
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
         """The sweep rows of some scenes, in the order of the grid."""
@@ -120,6 +133,7 @@ class Page:
     words: Callable[[Material], Mapping[str, Any]] = no_words
     orders: Promises = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
+    tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
 
     def teaches(self, scene: Scene) -> bool:
         """Whether the scene has its place here: by its name, so that it may have other numbers."""
@@ -149,3 +163,7 @@ class Page:
             *(cell for failure in self.failures for cell in failure.cells),
             *(cell for picture in self.maps for _, cell in picture.cells),
         )
+
+    def all_tasks(self) -> tuple[Task, ...]:
+        """The tasks of the page and of its experiments, each once."""
+        return tuple(dict.fromkeys([*self.tasks, *(task for failure in self.failures for task in failure.tasks)]))

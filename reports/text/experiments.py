@@ -26,12 +26,14 @@ class ToldExperiment:
     grid: str
     details: str
     remark: str
+    unrun: bool = False  # whether there is something to run, and nothing of it was
 
 
 def told_experiment(failure: Failure, material: Material, held: Mapping[str, str] | None = None) -> ToldExperiment:
     """What is said of an experiment from what was run of it; `held`: who holds the joints, by method."""
     rows = [compared_only(cell, material.rows[cell]) for cell in failure.cells if cell in material.rows]
-    seen = tuple(failure.observations()) if failure.observations else ()
+    seen = tuple(failure.observations(material)) if failure.observations else ()
+    run = rows or any(task in material.answers for task in failure.tasks)
     grid = tables.cell_table(rows, failure.columns, held) if failure.columns else tables.outcome_grid(rows, held)
     return ToldExperiment(
         failure.title,
@@ -43,6 +45,7 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
         grid if rows else "",
         tables.outcome_table(rows, held) if any(row.sentence for row in rows) else "",
         failure.remark,
+        unrun=not run and bool(failure.cells or failure.tasks),
     )
 
 

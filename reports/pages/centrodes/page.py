@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine
 from engines.registry import VARIANTS
 from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
 from reference.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
+from reports.grid.tasks import Motion
 from reports.pages.centrodes import drawings as centrode_drawings
 from reports.pages.page import Material, Page
 from reports.text.tables import markdown, number
@@ -27,7 +27,7 @@ SAMPLES = 401
 # Away from the arc's ends, where a spline's second derivative loses most.
 INNER = slice(20, -20)
 STEPS = (1, 10)  # per sample of the scene
-COMPARED: tuple[Engine, ...] = VARIANTS
+CELLS = tuple(Cell(DrivenFourBar(), engine, every) for engine in VARIANTS for every in STEPS)
 
 
 def times(count: int) -> np.ndarray:
@@ -75,14 +75,10 @@ def agreement(curves: Centrodes) -> float:
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
     """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each method, where it ran."""
     scene = DrivenFourBar()
-    cells = [Cell(scene, engine, every) for engine in COMPARED for every in STEPS]
-    found = material.trajectories(cells)
+    found = material.motions(CELLS)
     low, high = times(2)
     out = []
-    for cell in cells:
-        if cell not in found:
-            continue
-        run = found[cell]
+    for cell, run in found.items():
         truth = scene.motion(run.t)
         within = (run.t >= low) & (run.t <= high)
         apart = np.abs(run.pose - truth.pose)[within, COUPLER, 2], np.abs(run.twist - truth.twist)[within, COUPLER, 2]
@@ -136,6 +132,8 @@ PAGE = Page(
     lesson="Every plane motion is one curve rolling on another, and the instant centre shows errors of velocity.",
     scenes=(),
     engines=(),
+    companions=(DrivenFourBar(),),
     figures=figures,
     words=words,
+    tasks=tuple(map(Motion, CELLS)),
 )

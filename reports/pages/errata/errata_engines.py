@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import Engine, Unsupported, mujoco, pymunk
+from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.errata import pendulum
 from reference.errata.erratum import Array, Values
@@ -23,8 +23,14 @@ from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.chain import Chain
+from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.scenes import RollingOnCircle
+from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
+from reports.grid.cells import step_cost
+from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Answer, Task
+from reports.grid.tasks import Values as Kept
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 
@@ -128,19 +134,47 @@ def _four_bar(window: Window) -> dict[int, Values]:
 
 @dataclass(frozen=True)
 class Question:
-    """A mechanism, and what its motion says of which slips."""
+    """A mechanism, what its motion says of which slips, and the scene with which it is run."""
 
     mechanism: Callable[[], Mechanism]
     read: Reading
-    about: str
+    companion: Scene
 
 
-QUESTIONS = (
-    Question(lambda: RollingOnCircle().mechanism(), _rolling, "a disc rolls off a round hill"),
-    Question(lambda: ChaplyginSleigh().mechanism(), _skate, "a sleigh on one skate coasts"),
-    Question(lambda: DrivenFourBar().mechanism(), _four_bar, "the crank of sample 18.15 turns at 10 rad/s"),
-    Question(double_pendulum, _pendulum, "the double pendulum falls"),
-)
+# By what happens in the motion.
+QUESTIONS: dict[str, Question] = {
+    "a disc rolls off a round hill": Question(RollingOnCircle().mechanism, _rolling, RollingOnCircle()),
+    "a sleigh on one skate coasts": Question(ChaplyginSleigh().mechanism, _skate, ChaplyginSleigh()),
+    "the crank of sample 18.15 turns at 10 rad/s": Question(DrivenFourBar().mechanism, _four_bar, DrivenFourBar()),
+    "the double pendulum falls": Question(double_pendulum, _pendulum, LinkPendulum()),
+}
+
+
+@dataclass(frozen=True)
+class Refereed(Task):
+    """The last POINTS samples of an engine's motion of the mechanism of a question."""
+
+    question: str
+    referee: Engine
+
+    @property
+    def engine(self) -> Engine:
+        return self.referee
+
+    @property
+    def cost(self) -> float:
+        return SAMPLES * step_cost(self.referee)
+
+    @property
+    def label(self) -> str:
+        return f"{self.engine.name} {self.engine.variant}: {self.question}"
+
+    def run(self) -> Kept:
+        motion = self.engine.build(QUESTIONS[self.question].mechanism(), SPACING)(SAMPLES, 1)
+        return {"pose": motion.pose[-POINTS:], "twist": motion.twist[-POINTS:]}
+
+
+TASKS = tuple(Refereed(question, engine) for question in QUESTIONS for engine in REFEREES)
 
 
 @dataclass(frozen=True)
@@ -153,26 +187,24 @@ class Ruling:
     values: Values
 
 
-def rulings(referees: Iterable[Engine] = REFEREES, lost: list[str] | None = None) -> tuple[Ruling, ...]:
+def rulings(answers: Iterable[tuple[Task, Answer]], lost: list[str] | None = None) -> tuple[Ruling, ...]:
     """Every referee's answer to every question, by number; an engine that has no such joint says nothing.
 
-    Whatever else an engine raises becomes a sentence in `lost`, if that is given.
+    What became of an engine that failed, or whose motion is not finite, becomes a sentence in `lost`, if that is given.
     """
     found: list[Ruling] = []
-    referees = tuple(referees)
-    for question in QUESTIONS:
-        mechanism = question.mechanism()
-        for engine in referees:
-            method = f"{engine.name} {engine.variant}"
-            try:
-                motion = engine.build(mechanism, SPACING)(SAMPLES, 1)
-                said = question.read(Window(motion.pose[-POINTS:], motion.twist[-POINTS:]))
-            except Unsupported:
-                continue
-            except Exception as reason:
-                if lost is None:
-                    raise
-                lost.append(f"{method} failed where {question.about}: {type(reason).__name__}: {reason}")
-                continue
-            found += [Ruling(number, method, question.about, values) for number, values in said.items()]
+    lost = [] if lost is None else lost
+    for task, answer in answers:
+        if not isinstance(task, Refereed) or answer.outcome == Outcome.UNSUPPORTED:
+            continue
+        method = f"{task.engine.name} {task.engine.variant}"
+        if not answer.finished:
+            lost.append(f"{method} where {task.question}: {answer.told}")
+            continue
+        window = Window(answer.array("pose"), answer.array("twist"))
+        if not (np.isfinite(window.pose).all() and np.isfinite(window.twist).all()):
+            lost.append(f"{method} where {task.question}: its motion is not finite")
+            continue
+        said = QUESTIONS[task.question].read(window)
+        found += [Ruling(number, method, task.question, values) for number, values in said.items()]
     return tuple(sorted(found, key=lambda ruling: ruling.number))

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
 from reference.errata.rolling import rolling_acceleration
-from reports.pages.errata.errata_engines import CONFIRMED, Ruling, rulings
+from reports.pages.errata.errata_engines import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
 from reports.pages.page import Material, Page
 from reports.text.tables import markdown, number
 
@@ -50,9 +50,9 @@ def table(erratum: Erratum, values: Values, said: Iterable[Ruling]) -> str:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Everything is computed when the page is written: nothing here comes from stored rows."""
+    """Values of the formulas, which are computed at once, and what engines say, from their stored motions."""
     lost: list[str] = []
-    said = rulings(lost=lost)
+    said = rulings(material.answers.items(), lost)
     told = [
         Told(
             erratum,
@@ -79,5 +79,7 @@ PAGE = Page(
     lesson="The chapter's printed slips, each decided by a derivative, by engines, and by a few lines to run.",
     scenes=(),
     engines=(),
+    companions=tuple(question.companion for question in QUESTIONS.values()),
     words=words,
+    tasks=TASKS,
 )

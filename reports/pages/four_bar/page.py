@@ -13,6 +13,7 @@ from reference.four_bar import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reports.charts import drawings
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
+from reports.grid.tasks import Motion
 from reports.pages.four_bar.expectations import KNOWN, ORDERS
 from reports.pages.four_bar.experiments import FAILURES, MAPS
 from reports.pages.page import Material, Page
@@ -27,19 +28,21 @@ SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
 OVERLAID = {"pymunk default": ("pymunk", "--"), "mujoco default": ("mujoco", ":")}
 
 
+POSED = {
+    f"{engine.name} {engine.variant}": Cell(DrivenFourBar(), engine, 1, samples=PARTS * SAMPLES_A_PART)
+    for engine in ENGINES
+    if f"{engine.name} {engine.variant}" in OVERLAID
+}
+
+
 def figures(material: Material) -> dict[str, str]:
     """The nine configurations, with each engine as shipped overlaid where it differs visibly."""
     scene = DrivenFourBar()
-    cells = {
-        f"{engine.name} {engine.variant}": Cell(scene, engine, 1, samples=PARTS * SAMPLES_A_PART)
-        for engine in ENGINES
-        if f"{engine.name} {engine.variant}" in OVERLAID
-    }
-    found = material.trajectories(tuple(cells.values()))
+    found = material.motions(POSED.values())
     truth = scene.motion(np.arange(PARTS + 1) * scene.duration / PARTS)
     others = {
         f"{name}, step {cell.step:.2g} s": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
-        for name, cell in cells.items()
+        for name, cell in POSED.items()
         if cell in found
     }
     titles = [f"t{i} = {t:.3f} s" for i, t in enumerate(truth.t)]
@@ -71,4 +74,5 @@ PAGE = Page(
     words=words,
     orders=ORDERS,
     known=KNOWN,
+    tasks=tuple(map(Motion, POSED.values())),
 )

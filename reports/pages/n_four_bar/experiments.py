@@ -10,7 +10,7 @@ from engines.lagrange import Lagrange
 from reference.n_four_bar import NFourBar
 from reference.scene import Scene
 from reports.grid.cells import Cell
-from reports.pages.page import Failure, Observation, StabilityMap
+from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.text.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
@@ -26,7 +26,7 @@ SOFT = _cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
 ONCE = NFourBar(duration=1.2, horizon=1.2)  # one singular position, not yet the second
 
 
-def forces_without_a_limit() -> list[Observation]:
+def forces_without_a_limit(material: Material) -> list[Observation]:
     """How the largest reaction grows towards a singular position, with how little the loops are still open."""
     scene = NFourBar()
     first = scene.singular_times(5.0)[0]

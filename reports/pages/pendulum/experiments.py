@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import lru_cache
-
-import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -16,7 +13,8 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
 from reports.grid.cells import Cell
-from reports.pages.page import Failure, Observation, StabilityMap
+from reports.pages.page import Failure, Material, Observation, StabilityMap
+from reports.pages.pendulum.neighbours import Neighbours
 from reports.text.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
@@ -50,16 +48,20 @@ def _cells(
     return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
-@lru_cache
-def divergence() -> tuple[Observation, ...]:
+PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
+
+
+def divergence(material: Material) -> list[Observation]:
     """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
-    start, rest = np.full(BEYOND.links, BEYOND.angle), np.full(BEYOND.links, BEYOND.rate)
-    times = np.array([1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration])
-    growth = BEYOND.chain.divergence(start, rest, times)
-    return tuple(
-        Observation("the reference, by neighbouring starts", f"{t:.3g} s", f"{number(g)} times the difference at 0 s")
-        for t, g in zip(times, growth, strict=True)
-    )
+    if (answer := material.answers.get(PARTING)) is None:
+        return []
+    method = "the reference, by neighbouring starts"
+    if not answer.finished:
+        return [Observation(method, "", answer.told)]
+    return [
+        Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
+        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
+    ]
 
 
 def sweeps(count: int) -> Engine:
@@ -169,6 +171,7 @@ FAILURES: tuple[Failure, ...] = (
             "can be compared; beyond, the same growth takes one digit after another from each, whatever its order."
         ),
         cells=_cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+        tasks=(PARTING,),
         observations=divergence,
         remark=(
             "An error of 1e-12 times the growth is what the best can reach. At 12 s the methods of first order, "

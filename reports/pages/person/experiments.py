@@ -13,7 +13,7 @@ from reference.person.two_feet import TwoFeet
 from reference.scene import Scene
 from reference.validation import InvalidMechanism
 from reports.grid.cells import Cell
-from reports.pages.page import Failure, Observation, StabilityMap
+from reports.pages.page import Failure, Material, Observation, StabilityMap
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -25,7 +25,7 @@ def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tup
     return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
 
 
-def growth() -> list[Observation]:
+def growth(material: Material) -> list[Observation]:
     """The modes of standing upright on one foot."""
     squares, _ = modes_upright(SwayingOnOneFoot())
     found = []
@@ -36,7 +36,7 @@ def growth() -> list[Observation]:
     return found
 
 
-def refusals() -> list[Observation]:
+def refusals(material: Material) -> list[Observation]:
     """What the reference says to stances that can't be."""
     found = []
     for wrong in ({"stance": 2.0}, {"hip_y": 0.95}, {"knees": 0}, {"height": 0.0}):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,8 +17,9 @@ from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
-from reports.grid.running import trajectories
-from reports.pages.page import Failure, Observation, StabilityMap
+from reports.grid.tasks import Motion
+from reports.pages.observing import observe
+from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.text.tables import number
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
@@ -65,11 +67,14 @@ def softness_cells() -> tuple[tuple[float, Cell], ...]:
     )
 
 
-def hill_runs(engines: Iterable[Engine]) -> list[tuple[Cell, Trajectory]]:
-    """Whole motions on the hill, beyond where they may be compared, of methods that ran."""
-    wanted = [Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100)]
-    found = trajectories(wanted)
-    return [(cell, found[cell]) for cell in wanted if cell in found]
+def hill_cells(engines: Iterable[Engine]) -> tuple[Cell, ...]:
+    """Whole motions on the hill, beyond where they may be compared."""
+    return tuple(Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100))
+
+
+STIFF = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
+PARTINGS = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
+CHATTERING = hill_cells((*CONTACTS, *STIFF))
 
 
 def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
@@ -80,17 +85,23 @@ def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
     return float(apart[within].max()), float(apart[-1])
 
 
-def partings() -> list[Observation]:
+def partings(material: Material) -> list[Observation]:
     """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
-    out = []
-    for cell, found in hill_runs((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED)):
-        before, after = parting(cell, found)
-        told = (
-            f"off by {number(before)} m up to {cell.scene.comparable_until:.3f} s, by {number(after)} m at "
-            f"{cell.scene.duration:g} s"
-        )
-        out.append(Observation(f"{cell.engine.name} {cell.engine.variant}", f"step {number(cell.step)} s", told))
-    return out
+
+    def told(cell: Cell, run: Trajectory) -> str:
+        before, after = parting(cell, run)
+        until = cell.scene.comparable_until
+        return f"off by {number(before)} m up to {until:.3f} s, by {number(after)} m at {cell.scene.duration:g} s"
+
+    return observed(material, PARTINGS, told)
+
+
+def observed(material: Material, cells: Iterable[Cell], told: Callable[[Cell, Trajectory], str]) -> list[Observation]:
+    """A line for each cell whose motion was kept."""
+    found: list[Observation] = []
+    for cell in cells:
+        found += observe(material, cell, f"step {number(cell.step)} s", partial(told, cell))
+    return found
 
 
 def absent_contact(cell: Cell, found: Trajectory) -> float:
@@ -102,30 +113,24 @@ def absent_contact(cell: Cell, found: Trajectory) -> float:
     return float(np.mean(np.abs(found.reaction[within, 1]) < 1e-3 * weight))
 
 
-def chatter() -> list[Observation]:
+def chatter(material: Material) -> list[Observation]:
     """How often the contact on the hill is absent while it should press."""
-    stiff = (method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
-    return [
-        Observation(
-            f"{cell.engine.name} {cell.engine.variant}",
-            f"step {number(cell.step)} s",
-            f"absent in {100 * absent_contact(cell, found):.0f} % of samples",
-        )
-        for cell, found in hill_runs((*CONTACTS, *stiff))
-    ]
+    return observed(
+        material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
+    )
 
 
-def refused(scene: RollingScene, setting: str) -> Callable[[], list[Observation]]:
+def refused(scene: RollingScene, setting: str) -> Callable[[Material], list[Observation]]:
     """What the reference says of a motion that can't be."""
 
-    def observe() -> list[Observation]:
+    def refusal(material: Material) -> list[Observation]:
         try:
             scene.motion([scene.duration])
         except ValueError as sentence:
             return [Observation("the reference", setting, f"refuses: {sentence}")]
         raise AssertionError(f"the reference went along with {scene}")
 
-    return observe
+    return refusal
 
 
 FAILURES: tuple[Failure, ...] = (
@@ -229,6 +234,7 @@ FAILURES: tuple[Failure, ...] = (
             "invalid, and it stops."
         ),
         cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
+        tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
         remark=(
             "Up to there the tuned contacts are off by an error that falls with the step; after it they are off by "
@@ -239,6 +245,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Chatter on curved ground",
         expected="The body presses on the hill until it hops, so that its contact carries a force in every sample.",
+        tasks=tuple(map(Motion, CHATTERING)),
         observations=chatter,
         remark=(
             "In each of these runs the contact carries nothing in a part of the samples, at the smaller step too. The "

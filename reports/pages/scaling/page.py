@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
 from itertools import pairwise
 from math import ceil, log, pi, sqrt
 from typing import Any
@@ -20,6 +19,7 @@ from reports.pages.page import Material, Page
 from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.reference_method import BandedChain
+from reports.pages.scaling.truth_error import TruthError
 from reports.text.tables import NOTHING, markdown, number
 from reports.text.unmeasured import UNMEASURED
 
@@ -104,6 +104,7 @@ def cells() -> tuple[Cell, ...]:
 
 
 CELLS = cells()
+OWN = TruthError(LongPendulum(max(LARGE)))  # the longest chain that is run to the end
 
 
 @dataclass(frozen=True)
@@ -187,16 +188,10 @@ def words(material: Material) -> Mapping[str, Any]:
         "swept": at(SWEPT, 100),
         "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
-        "own": truth_error(),
+        "own": own.number("error") if (own := material.finished(OWN)) else UNMEASURED,
         "step": STEP,
         "duration": LongPendulum().duration,
     }
-
-
-@cache
-def truth_error() -> float:
-    """The largest error [rad] of the truth of the longest chain that is run to the end."""
-    return float(LongPendulum(max(LARGE)).truth_error([LongPendulum().duration])[0])
 
 
 def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None:
@@ -220,4 +215,5 @@ PAGE = StudyPage(
     figures=figures,
     words=words,
     studied=CELLS,
+    tasks=(OWN,),
 )

@@ -16,8 +16,9 @@ from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
+from reports.grid.tasks import Motion
 from reports.pages.observing import observe
-from reports.pages.page import Failure, Observation, StabilityMap
+from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.pages.skate.methods import CONSTRUCTIONS, limited, method
 from reports.text.tables import number
 
@@ -63,23 +64,25 @@ def turned_at(t: np.ndarray, rate: np.ndarray) -> float:
     return float(t[int(np.argmax(np.abs(rate)))])
 
 
-def backwards() -> list[Observation]:
-    """The growth of a small turning and the time of turning round, in each method at two steps."""
-    scene = SleighBackwards()
-    t = np.linspace(0, scene.duration, scene.samples + 1)
-    truth = scene.motion(t).twist[:, 0, 2]
+BACKWARDS = SleighBackwards()
+TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *CONSTRUCTIONS))
+
+
+def backwards(material: Material) -> list[Observation]:
+    """The growth of a small turning and the time of turning round, in each method."""
+    t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
+    truth = BACKWARDS.motion(t).twist[:, 0, 2]
     found = [
-        Observation("linearised exact motion", "", f"grows by exp({scene.growth_rate():.4g} t)"),
+        Observation("linearised exact motion", "", f"grows by exp({BACKWARDS.growth_rate():.4g} t)"),
         Observation("exact motion", "", _grown(t, truth)),
     ]
-    for engine in (*ORDINARY, *CONSTRUCTIONS):
-        cell = Cell(scene, engine, 1, "failure")
-        found += observe(cell, f"step {number(cell.step)} s", lambda run: _grown(run.t, run.twist[:, 0, 2]))
+    for cell in TURNING_ROUND:
+        setting = f"step {number(cell.step)} s"
+        found += observe(material, cell, setting, lambda run: _grown(run.t, run.twist[:, 0, 2]))
     return found
 
 
 def _grown(t: np.ndarray, rate: np.ndarray) -> str:
-    rate = np.where(np.isfinite(rate), rate, 0.0)
     grows = growth_of(t, rate)
     if np.isnan(grows):
         return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"
@@ -117,7 +120,7 @@ COUNTED: tuple[tuple[str, Mechanism], ...] = (
 )
 
 
-def counting() -> list[Observation]:
+def counting(material: Material) -> list[Observation]:
     """Freedoms by rank and by brackets, and integrability by Frobenius, of skates on one body."""
     found = []
     for name, mechanism in COUNTED:
@@ -131,27 +134,27 @@ def counting() -> list[Observation]:
     return found
 
 
-def slipping() -> list[Observation]:
+def slipping(material: Material) -> list[Observation]:
     """When the exact lateral force exceeds a friction's limit, and when engines with that limit slip."""
     found = []
-    for limit in FRICTION_LIMITS:
-        exact = first_beyond(SLIDING, limit)
+    for limit, cells in LIMITED.items():
+        exact = first_beyond(BACKWARDS, limit)
         when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
         found.append(Observation("exact lateral force", f"{limit:g} N", when))
-        for engine in limited(limit):
-            found += observe(Cell(SLIDING, engine, 10, "failure"), f"{limit:g} N", _slipped)
+        for cell in cells:
+            found += observe(material, cell, f"{limit:g} N", _slipped)
     return found
 
 
 def _slipped(run: Trajectory) -> str:
-    slip = np.abs(SLIDING.mechanism().slip(run.pose, run.twist)[:, 0])
+    slip = np.abs(BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0])
     over = np.flatnonzero(slip > SLIPS)
     return f"slips by {SLIPS:g} m/s at {run.t[over[0]]:.2f} s, at most {slip.max():.2g}" if over.size else "holds"
 
 
-SLIDING = SleighBackwards()
-PEAK = float(np.abs(SLIDING.lateral_force(np.linspace(0, SLIDING.duration, 10_001))).max())
-FRICTION_LIMITS = (0.1, 0.3, 0.5, 0.7)  # N
+PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 10_001))).max())
+# A friction's limit [N] -> runs with it.
+LIMITED = {limit: tuple(Cell(BACKWARDS, engine, 10) for engine in limited(limit)) for limit in (0.1, 0.3, 0.5, 0.7)}
 SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
 
 NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
@@ -187,6 +190,7 @@ FAILURES: tuple[Failure, ...] = (
             f"exp({SleighBackwards().growth_rate():g} t) until the sleigh has turned round. Measured: growth between "
             f"{GROWING[0]:g} and {GROWING[1]:g} rad/s, and when it turns fastest."
         ),
+        tasks=tuple(map(Motion, TURNING_ROUND)),
         observations=backwards,
         remark=(
             "An engine whose row is a little late has a growth rate that is a little low, and turns round a little "
@@ -244,6 +248,7 @@ FAILURES: tuple[Failure, ...] = (
             f"the limit, on the sleigh that turns round (at most {PEAK:.3f} N). Until then nothing differs from the "
             "ideal skate, after it everything may."
         ),
+        tasks=tuple(Motion(cell) for cells in LIMITED.values() for cell in cells),
         observations=slipping,
         remark=(
             "So the reaction in a run with an ideal skate tells whether a real blade would hold. An engine's friction "

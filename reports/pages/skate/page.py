@@ -23,6 +23,7 @@ from reports.grid.cells import Cell
 from reports.grid.convergence import best_of, by_method, groups, sweeps
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Motion
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN, ORDERS
@@ -79,15 +80,20 @@ def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
     return pose - scene.offset * arm
 
 
-def path_picture(material: Material) -> Figure:
-    """The skate's path in truth and in several methods, forwards and backwards."""
-    panels = []
+PATHS = tuple(
+    (title, scene, {name: Cell(scene, method(name), 1) for name in OVERLAID})
     for title, scene in (
         ("ahead for 3 s, steps of 1e-2 s", SLEIGH),
         ("backwards for 10 s: it turns round", SleighBackwards()),
-    ):
-        cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
-        found = material.trajectories(tuple(cells.values()))
+    )
+)
+
+
+def path_picture(material: Material) -> Figure:
+    """The skate's path in truth and in several methods, forwards and backwards."""
+    panels = []
+    for title, scene, cells in PATHS:
+        found = material.motions(cells.values())
         truth = scene.skate_pose(np.linspace(0, scene.duration, scene.samples + 1))
         lines = [Path(truth[:, :2], "truth", "ink", "-", 3.0)]
         for name, (colour, dashes) in OVERLAID.items():
@@ -209,4 +215,5 @@ PAGE = Page(
     words=words,
     orders=ORDERS,
     known=KNOWN,
+    tasks=tuple(Motion(cell) for _, _, cells in PATHS for cell in cells.values()),
 )

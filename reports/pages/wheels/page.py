@@ -12,6 +12,7 @@ from reference.wheels import CarAndTrailer, Cart
 from reports.charts.plane_panels import paths
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
+from reports.grid.tasks import Motion
 from reports.pages.page import Material, Page
 from reports.pages.skate.methods import method
 from reports.pages.skate.page import counted
@@ -30,15 +31,20 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 }
 
 
-def figures(material: Material) -> dict[str, str]:
-    """Both vehicles coasting, tows, casters, and the trailer that folds."""
-    panels = []
+COASTING = tuple(
+    (title, scene, {name: Cell(scene, method(name), 1) for name in OVERLAID})
     for title, scene in (
         ("car and trailer, 5 s, steps of 1e-2 s", CarAndTrailer()),
         ("cart with two casters, 3 s", Cart()),
-    ):
-        cells = {name: Cell(scene, method(name), 1) for name in OVERLAID}
-        made = material.trajectories(tuple(cells.values()))
+    )
+)
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Both vehicles coasting, tows, casters, and the trailer that folds."""
+    panels = []
+    for title, scene, cells in COASTING:
+        made = material.motions(cells.values())
         truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
         found = {name: (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made}
         panels.append(wheels_pictures.coasting(truth, found, title))
@@ -69,4 +75,5 @@ PAGE = Page(
     words=words,
     orders=ORDERS,
     known=KNOWN,
+    tasks=tuple(Motion(cell) for _, _, cells in COASTING for cell in cells.values()),
 )
