@@ -38,7 +38,6 @@ from reports.pages.wheels.folding import Folding
 from reports.text.rendering import environment, render_index, render_page, render_readme
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
-from tests.toys import Plain
 
 SUBSETS = 16  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
@@ -314,7 +313,7 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
 def test_an_experiment_of_which_no_task_was_run_says_so():
     page = replace(skate.PAGE, figures=lambda material: {}, maps=())
     for answers, waiting in (({}, True), ({task: still(task) for task in page.all_tasks()}, False)):
-        text = render_page(page, Material({}, answers), "the command")["skate.md"]
+        text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
         section = text.split("### The sleigh run backwards")[1].split("###")[0]
         assert "exact motion" in section
         assert ("Not run yet." in section) == waiting

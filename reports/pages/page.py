@@ -10,6 +10,7 @@ from engines import Engine
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
+from reports.gate.declared import soft_tasks
 from reports.gate.promises import Promises
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
@@ -165,5 +166,7 @@ class Page:
         )
 
     def all_tasks(self) -> tuple[Task, ...]:
-        """The tasks of the page and of its experiments, each once."""
-        return tuple(dict.fromkeys([*self.tasks, *(task for failure in self.failures for task in failure.tasks)]))
+        """The tasks of the page, of its experiments, and of what its engines declare, each once."""
+        experiments = [task for failure in self.failures for task in failure.tasks]
+        declared = [task for scene in self.scenes for task in soft_tasks(scene, self.engines_of(scene))]
+        return tuple(dict.fromkeys([*self.tasks, *experiments, *declared]))

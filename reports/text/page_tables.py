@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from reports.gate.theory import ROOM_SOFT
 from reports.grid.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
@@ -21,14 +22,28 @@ TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
 SAME_COST = 1.25
 
 
+# What a method's declared softness costs at a step [s], in the unit of the page's quantity; NaN if not known.
+Declared = Callable[[str, float], float]
+
+
+def undeclared(method: str, step: float) -> float:
+    return math.nan
+
+
 def compared_step(rows: Iterable[Measurement]) -> float:
     """The step [s] of these rows that is nearest to COMPARED, by ratio; NaN without rows."""
     steps = {row.step for row in rows if row.purpose == "sweep"}
     return min(steps, key=lambda step: abs(math.log(step / COMPARED)), default=math.nan)
 
 
-def scene_table(rows: Sequence[Measurement], name: str, held: Mapping[str, str] | None = None) -> str:
-    """A line a method of one scene: its errors and cost at the compared step, and what a smaller step brings."""
+def scene_table(
+    rows: Sequence[Measurement], name: str, held: Mapping[str, str] | None = None, declared: Declared = undeclared
+) -> str:
+    """A line a method of one scene: its errors and cost at the compared step, and what a smaller step brings.
+
+    Where it is known for a method, what its declared softness costs stands beside its error, and a plateau that is
+    larger is marked: it is neither the step's nor declared.
+    """
     step, told = compared_step(rows), quantity(name)
     verdicts = by_method(sweeps(rows), name)
     known = [
@@ -36,15 +51,26 @@ def scene_table(rows: Sequence[Measurement], name: str, held: Mapping[str, str] 
         for q in map(quantity, dict.fromkeys((name, "gap", "slip", "reaction")))
         if q.name == name or any(math.isfinite(getattr(row, q.name)) for row in rows)
     ]
+    methods = {members[0].method: members for members in groups(rows).values()}
+    softness = {method: declared(method, step) for method in methods}
+    soft = any(value > 0 for value in softness.values())
     body = []
     for key, members in groups(rows).items():
         row = next((row for row in members if row.step == step), None)
         errors = [number(getattr(row, q.name)) if row else NOTHING for q in known]
         if row is not None and not Outcome(row.outcome).comparable:
             errors[0] = f"**{row.outcome}**"
+        if soft:
+            errors.insert(1, number(softness[members[0].method]))
         cost = milliseconds(row.cpu) if row and row.cpu > 0 else NOTHING
-        body.append([members[0].method, *errors, cost, as_the_step_shrinks(verdicts[key], members)])
+        smaller = as_the_step_shrinks(verdicts[key], members)
+        finest = min(row.step for row in members)
+        if verdicts[key].plateau > ROOM_SOFT * declared(members[0].method, finest) + told.rounding:
+            smaller += ", **not declared**"
+        body.append([members[0].method, *errors, cost, smaller])
     heads = [f"{q.label} error [{q.unit}]" if q.name not in ("gap", "slip") else f"{q.label} [{q.unit}]" for q in known]
+    if soft:
+        heads.insert(1, f"declared [{told.unit}]")
     header = ["method", *heads, "CPU [ms/s]", f"as the step shrinks, plateau in {told.unit}"]
     return markdown(header, body, left=1, held=held)
 

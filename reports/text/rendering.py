@@ -74,7 +74,9 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
-    scenes = [told_scene(scene, [row for row in rows if row.scene == scene.name], page) for scene in page.scenes]
+    scenes = [
+        told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
+    ]
     given = {
         "page": page,
         "scenes": scenes,

@@ -6,11 +6,12 @@ from dataclasses import fields
 from typing import Any
 
 from reference.scene import Scene
+from reports.gate.declared import declared_error, soft_tasks
 from reports.grid.cells import Cell
 from reports.grid.convergence import sweeps
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
-from reports.pages.page import Page
+from reports.pages.page import Material, Page
 from reports.text import page_tables, tables
 from reports.text.holders import holders
 from reports.text.programs import advised_settings
@@ -30,12 +31,16 @@ def _value(value: Any) -> str:
     return str(value)
 
 
-def told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, Any]:
+def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
     """The scene's words and tables from the judged rows of its sweep; tables are empty without rows.
 
     `table` is the page's, of the methods that it features; the others are the data page's, of all methods.
     """
     engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
+
+    def declared(method: str, step: float) -> float:
+        return declared_error(material.answers, scene, engines[method], page.quantity, step)
+
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
     unsupported = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
     coarsest = min((row.every for row in unsupported), default=0)
@@ -48,8 +53,9 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, A
         "parameters": parameters(scene),
         "missing": not rows,
         "held": held,
+        "declares": any(task in material.answers for task in soft_tasks(scene, tuple(engines.values()))),
         "step": page_tables.compared_step(rows),
-        "table": page_tables.scene_table(featured, page.quantity, held) if featured else "",
+        "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
         "settings": advised_settings(page.name if scene is page.advised_scene else "", scene, advice, engines),
         "work": tables.work_table(rows, page.quantity, held=held) if rows else "",

@@ -27,7 +27,6 @@ from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.scenes import RollingOnCircle
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
-from reports.grid.cells import step_cost
 from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Answer, Task
 from reports.grid.tasks import Values as Kept
@@ -163,7 +162,7 @@ class Refereed(Task):
 
     @property
     def cost(self) -> float:
-        return SAMPLES * step_cost(self.referee)
+        return SAMPLES * self.referee.step_cost(QUESTIONS[self.question].mechanism())
 
     @property
     def label(self) -> str:
