@@ -115,16 +115,13 @@ def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) ->
     found: list[Advice] = []
     for engine in dict.fromkeys(row.engine for row in rows):
         members = {key: own for key, own in groups(rows).items() if key[1] == engine}
-        own: dict[str, list[float]] = {}
-        chosen: dict[str, Measurement | None] = {}
+        own: dict[tuple[str, float] | None, tuple[Measurement | None, list[float]]] = {}
         for target in TARGETS:
             row = _cheapest(members.values(), name, target, place)
-            key = row.key if row else ""
-            chosen[key] = row
-            own.setdefault(key, []).append(target)
-        for key, row in chosen.items():
+            own.setdefault((row.method, row.step) if row else None, (row, []))[1].append(target)
+        for row, targets in own.values():
             sweep = verdicts[row.scene, row.engine, row.variant] if row else None
-            found.append(Advice(engine, tuple(own[key]), row, sweep))
+            found.append(Advice(engine, tuple(targets), row, sweep))
     return tuple(found)
 
 
