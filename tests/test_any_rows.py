@@ -82,13 +82,13 @@ def some(rows: Rows, chance: random.Random) -> Rows:
 
 
 def prose(text: str) -> str:
-    """A page with a word for its lines of code."""
-    return re.sub(r"^```.*?^```$", "CODE", text, flags=re.DOTALL | re.MULTILINE)
+    """A page with a word for its lines of code, and for code among words."""
+    return re.sub(r"`[^`\n]+`", "CODE", re.sub(r"^```.*?^```$", "CODE", text, flags=re.DOTALL | re.MULTILINE))
 
 
 def complaints(page: str, files: Mapping[str, str]) -> list[str]:
-    """What a reader would stumble over on a page."""
-    text = prose(files[f"{page}.md"])
+    """What a reader would stumble over on a page, and on the data page beside it if there is one."""
+    text = "\n".join(prose(files[name]) for name in (f"{page}.md", f"{page}_data.md") if name in files)
     sentences = "\n".join(line for line in text.splitlines() if not line.startswith("|"))
     found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
     found += [match[0] for match in re.finditer(r".*\b(nan|None|Undefined|Unmeasured)\b.*", text)]
@@ -99,8 +99,12 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     drawn = {name for name in files if name.endswith(".svg")}
     found += [f"picture without file: {name}" for name in shown - drawn]
     found += [f"file without picture: {name}" for name in drawn - shown]
-    known = {f"{page.name}.md" for page in PAGES} | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
-    found += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))\)", text)) - known]
+    known = (
+        {f"{page.name}.md" for page in PAGES}
+        | {page.data_page for page in PAGES if page.scenes}
+        | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
+    )
+    found += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))[)#]", text)) - known]
     return found
 
 
@@ -309,7 +313,7 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
 def test_an_experiment_of_which_no_task_was_run_says_so():
     page = replace(skate.PAGE, figures=lambda material: {}, maps=())
     for answers, waiting in (({}, True), ({task: still(task) for task in page.all_tasks()}, False)):
-        text = render_page(page, Material({}, answers), "the command")["skate.md"]
+        text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
         section = text.split("### The sleigh run backwards")[1].split("###")[0]
         assert "exact motion" in section
         assert ("Not run yet." in section) == waiting

@@ -252,14 +252,14 @@ def test_constructions_are_told_at_the_compared_step_best_first():
     assert [line[0] for line in body] == ["pymunk a", "pymunk b", "pymunk d", "pymunk c"]
     assert dict(zip(head, body[1], strict=True)) == {
         "construction": "pymunk b",
-        "outcome": "finished",
         "position [m]": "3.0e-6",
         "slip [m/s]": "4.7e-3",
-        "energy": "5.3e-3",
-        "reaction": "5.9e-3",
+        "energy [relative]": "5.3e-3",
+        "reaction [relative]": "5.9e-3",
         "CPU [ms/s]": "7",
-        "as the step shrinks": "2.00 (±" + body[1][-1].split("±")[1],
+        "as the step shrinks, plateau in m": "2.00 (±" + body[1][-1].split("±")[1],
     }
+    assert body[2][1] == "**torn** 2"
     assert body[2][-1] == "wrong at every step"
     assert body[3][1] == "can't be built"
     assert quantity("position").unit == "m"

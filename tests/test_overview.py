@@ -15,8 +15,9 @@ from reports.grid.outcomes import Outcome
 from reports.pages.page import Failure, Material, Observation, Page
 from reports.text.lookups import told
 from reports.text.overview import BEGIN, END, overview, with_overview
-from reports.text.rendering import parameters, render_all, render_index, render_page, render_readme
+from reports.text.rendering import render_all, render_index, render_page, render_readme
 from reports.text.tables import number
+from reports.text.told_scene import parameters
 from reports.text.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
@@ -144,7 +145,7 @@ def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
 
 
 def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():
-    text = render_page(PAGE, Material(CELLS), "the command")["base.md"]
+    text = render_page(PAGE, Material(CELLS), "the command")["base_data.md"]
     assert not {"saturated", "torn"} & set(re.findall(r"\w+", text))
     titles = ("Work and precision", "Order and plateau", "Reactions", "What was modelled", "All errors")
     parts = {title: text.split(f"## {title}")[1].split("\n## ")[0].split("\n---")[0] for title in titles}
@@ -174,11 +175,11 @@ def test_a_scenes_parameters_are_its_fields():
     ]
 
 
-def test_methods_that_are_not_featured_stand_in_the_table_of_all():
+def test_methods_that_are_not_featured_stand_on_the_data_page_alone():
     page = replace(PAGE, scenes=(DISC,), featured=lambda r: r.variant == "tuned")
-    text = render_page(page, Material(CELLS), "the command")["base.md"]
-    work = text.split("## Work and precision")[1].split("## Order")[0]
-    short, everything = work.split("<details>")
+    files = render_page(page, Material(CELLS), "the command")
+    short = files["base.md"].split("**disc** at a step of")[1]
+    everything = files["base_data.md"].split("## Work and precision")[1].split("## Order")[0]
     assert ("| mujoco tuned" in short, "| mujoco default" in short) == (True, False)
     assert ("| mujoco tuned" in everything, "| mujoco default" in everything) == (True, True)
 
@@ -191,7 +192,7 @@ def test_outcomes_of_a_page_are_those_that_its_tables_tell():
     torn = Cell(DISC, Toy("torn"), 1, "failure")
     page = replace(PAGE, scenes=(DISC,), failures=(Failure("T", "E", (torn,)),))
     rows[torn] = row_of("mujoco torn", purpose="failure", outcome=Outcome.TORN, sentence="it tore")
-    text = render_page(page, Material(rows), "the command")["base.md"]
+    text = render_page(page, Material(rows), "the command")["base_data.md"]
     assert re.findall(r"^- \*\*([\w ]+)\*\*: ", text, re.MULTILINE) == ["finished", "converged", "plateau", "torn"]
 
 
@@ -201,7 +202,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
     rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
     for quantity, outcome in (("position", "plateau"), ("angle", "converged")):
         page = replace(PAGE, scenes=(DISC,), quantity=quantity)
-        text = render_page(page, Material(rows), "the command")["base.md"]
+        text = render_page(page, Material(rows), "the command")["base_data.md"]
         errors_told = text.split("## All errors")[1]
         assert f"| mujoco default | {outcome} | 1.0e-4" in errors_told
 
@@ -217,7 +218,8 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
     second = Failure("Second", "So should this.", (sound,), columns=("energy",))
     never = Failure("Third", "Never run.", (Cell(DISC, Toy("never"), 1, "failure"),))
     page = replace(PAGE, scenes=(DISC,), failures=(first, second, never))
-    text = render_page(page, Material(rows), "the command")["base.md"]
+    files = render_page(page, Material(rows), "the command")
+    text = files["base_data.md"]
     one, two, three = (
         text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second", "Third")
     )
@@ -227,6 +229,13 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
     assert "sound" not in one
     assert "| mujoco sound | 0.1 | **finished** | 5.3e-3 |" in two
     assert "|" not in three
+    lines = files["base.md"].split("## Where methods fail")[1].split("\n- ")
+    assert [line.split("**")[1] for line in lines[1:]] == [
+        f"[{name}](base_data.md#{name.lower()})" for name in ("First", "Second", "Third")
+    ]
+    assert "Of 1 run: 1 **torn**." in lines[1]
+    assert "Of 1 run: 1 ended with an energy error of 5.3e-3 relative." in lines[2]
+    assert "not run yet." in lines[3]
 
 
 def test_a_method_that_cannot_build_a_scene_is_told_once():
@@ -236,7 +245,7 @@ def test_a_method_that_cannot_build_a_scene_is_told_once():
         )
         for every in (1, 10)
     }
-    text = render_page(replace(PAGE, scenes=(DISC,)), Material(rows), "the command")["base.md"]
+    text = render_page(replace(PAGE, scenes=(DISC,)), Material(rows), "the command")["base_data.md"]
     assert text.count("mujoco x can't build it: it has no pins") == 1
 
 

@@ -96,8 +96,8 @@ def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float 
         (sweep(Verdict.FALLS, 1.994, 4), "1.99 (±0.13, 4 points)"),
         (sweep(Verdict.FALLS, 1.994, 2), "1.99 (2 points, unchecked)"),
         (sweep(Verdict.FALLS), "falls, 1.7e-5"),
-        (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), stays at **2.3e-5**"),
-        (sweep(Verdict.PLATEAU, plateau=2.3e-5), "stays at **2.3e-5**"),
+        (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), plateau **2.3e-5**"),
+        (sweep(Verdict.PLATEAU, plateau=2.3e-5), "plateau **2.3e-5**"),
         (sweep(Verdict.ROUNDING, 3.9, 3), "3.90 (±0.13, 3 points), then rounding"),
         (sweep(Verdict.ROUNDING), "rounding"),
         (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), levels off at the finest step, best 1.7e-5"),
@@ -230,11 +230,11 @@ def test_a_summary_has_each_number_under_its_name():
         "at step [s]": "1.0e-3",
         "CPU [ms/s]": "100",
         "order": "2.0 (3)",
-        "stays at [rad]": "-",
+        "plateau [rad]": "-",
         "outcomes": "finished, torn",
     }
-    assert lines[1]["stays at [rad]"] == "3.0e-5"
-    assert lines[2]["stays at [rad]"] == "rounding"
+    assert lines[1]["plateau [rad]"] == "3.0e-5"
+    assert lines[2]["plateau [rad]"] == "rounding"
     assert list(lines[3].values()) == ["toy lost", "-", "-", "-", "-", "-", "diverged"]
 
 

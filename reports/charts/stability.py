@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -65,7 +66,7 @@ def stability_map(
             spare.set_visible(False)
         for panel, method in zip(axes, methods, strict=False):
             style_axes(panel, theme, grid=False)
-            panel.set_title(method, loc="left", fontweight="bold", color=theme.ink)
+            panel.set_title(fill(method, 24), loc="left", fontweight="bold", color=theme.ink)
             for value, row in rows:
                 if row.method == method:
                     _map_cell(panel, values.index(value), steps.index(row.step), row, theme)

@@ -65,7 +65,7 @@ DARK = Theme(
 
 SETTINGS = {
     "svg.hashsalt": "crosscheck",
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",  # text stays text: it can be searched, read aloud and copied
     "font.family": "DejaVu Sans",
     "font.size": 9,
     "axes.titlesize": 9.5,
@@ -74,6 +74,12 @@ SETTINGS = {
     "ytick.labelsize": 8,
     "hatch.linewidth": 0.6,
 }
+
+
+# Where the first is missing, the second has letters of the same widths: both are drawn after one face.
+FONTS = "'DejaVu Sans', Verdana, sans-serif"
+# Names that matplotlib makes from a digest of what it draws: the last bit of a coordinate may differ between runs.
+DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
 def settings() -> AbstractContextManager[None]:
@@ -112,7 +118,7 @@ def svg(figure: Figure, title: str) -> str:
     out = io.StringIO()
     with settings():
         FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None, "Creator": None, "Title": title})
-    text = out.getvalue()
+    text = _renumbered(out.getvalue()).replace("'DejaVu Sans'", FONTS)
     rules = []
     for field in fields(Theme):
         light, dark = getattr(LIGHT, field.name), getattr(DARK, field.name)
@@ -122,3 +128,9 @@ def svg(figure: Figure, title: str) -> str:
     sheet = "\n".join(["<style>@media (prefers-color-scheme: dark) {", *rules, "}</style>"])
     text = re.sub(r"(<svg [^>]*>)", lambda match: match.group(1) + "\n" + sheet, text, count=1)
     return re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE)
+
+
+def _renumbered(text: str) -> str:
+    """The drawing with names for its clips, marks and hatches that count them, in the order in which they come."""
+    names: dict[str, str] = {}
+    return DIGESTED.sub(lambda found: names.setdefault(found[1], f"{found[1][0]}{len(names) + 1}"), text)

@@ -81,6 +81,13 @@ def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
     ]
 
 
+def _with_lines(rows: Sequence[Measurement]) -> list[str]:
+    """The scenes in which a method has two points or more; all of them where none has: single points teach little."""
+    scenes = list(dict.fromkeys(row.scene for row in rows))
+    lined = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
+    return [scene for scene in scenes if scene in lined] or scenes
+
+
 def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure, list[Axes]]:
     columns = min(COLUMNS, len(scenes)) or 1
     count = -(-len(scenes) // columns) or 1
@@ -127,7 +134,7 @@ def work_precision(
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
     """
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
-    scenes = list(dict.fromkeys(row.scene for row in rows))
+    scenes = _with_lines(rows)
     shown = [row for row in rows if featured(row)]
     variants = _shown_variants(shown)
     with settings():
@@ -159,7 +166,7 @@ def error_against_step(
 ) -> Figure:
     """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
     rows = [row for row in drawable(rows, field) if featured(row)]
-    scenes = list(dict.fromkeys(row.scene for row in rows))
+    scenes = _with_lines(rows)
     variants = _shown_variants(rows)
     with settings():
         figure, panels = _panels(scenes, theme, 3.6)

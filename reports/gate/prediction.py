@@ -84,18 +84,7 @@ class Prediction:
 
     def give(self, quantity: str, softness: Softness | None) -> float:
         """What this softness costs, in proportion to what the judge's own does."""
-        if softness is None:
-            return 0.0
-        stiff = STIFFNESS / softness.stiffness
-        found = 0.0
-        if softness.compliance > 0:
-            found += self.soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
-            # However stiff the spring, this share of a force is not felt by what gives it.
-            found += softness.compliance if quantity == "reaction" else 0.0
-        if not softness.complete:
-            lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
-            found += self.soft[softness.rows, False][quantity] * lag
-        return found
+        return given(self.soft, quantity, softness)
 
     def closing(self, quantity: str, gap: float, softness: Softness | None) -> float:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
@@ -119,6 +108,22 @@ class Prediction:
         """The error above which a run is no longer comparable, whatever the order promises."""
         scales = {"angle": SATURATED, "gap": TORN * self.length, "position": SATURATED * self.length}
         return scales.get(quantity, math.inf)
+
+
+def given(soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None) -> float:
+    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`)."""
+    if softness is None:
+        return 0.0
+    stiff = STIFFNESS / softness.stiffness
+    found = 0.0
+    if softness.compliance > 0:
+        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
+        # However stiff the spring, this share of a force is not felt by what gives it.
+        found += softness.compliance if quantity == "reaction" else 0.0
+    if not softness.complete:
+        lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
+        found += soft[softness.rows, False][quantity] * lag
+    return found
 
 
 def _worse(one: Mapping[str, float], other: Mapping[str, float]) -> Mapping[str, float]:

@@ -11,6 +11,7 @@ from engines import Engine
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
+from reports.gate.declared import soft_tasks
 from reports.gate.promises import Promises
 from reports.grid.cells import Cell, Purpose
 from reports.grid.measure import Measurement
@@ -122,6 +123,7 @@ class Page:
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.grid.quantities`.
+    advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
     orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
     method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
     """
@@ -137,6 +139,7 @@ class Page:
     maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything
     quantity: str = "angle"
+    advised: str = ""
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
@@ -152,6 +155,16 @@ class Page:
         """Whether the cells of failures and maps are run with the scene."""
         return scene.name in {each.name for each in (*self.scenes, *self.companions)}
 
+    @property
+    def advised_scene(self) -> Scene | None:
+        """The scene for which the page says which setting gives which accuracy; None on a page without scenes."""
+        return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
+
+    @property
+    def data_page(self) -> str:
+        """The file beside the page that has all of its numbers."""
+        return f"{self.name}_data.md"
+
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
@@ -164,5 +177,7 @@ class Page:
         )
 
     def all_tasks(self) -> tuple[Task, ...]:
-        """The tasks of the page and of its experiments, each once."""
-        return tuple(dict.fromkeys([*self.tasks, *(task for failure in self.failures for task in failure.tasks)]))
+        """The tasks of the page, of its experiments, and of what its engines declare, each once."""
+        experiments = [task for failure in self.failures for task in failure.tasks]
+        declared = [task for scene in self.scenes for task in soft_tasks(scene, self.engines_of(scene))]
+        return tuple(dict.fromkeys([*self.tasks, *experiments, *declared]))

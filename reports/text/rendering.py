@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -14,34 +14,23 @@ from reference.scene import Scene
 from reports.charts import stability as maps
 from reports.charts import work_precision as charts
 from reports.charts.theme import svg
-from reports.grid.convergence import judged, sweeps
+from reports.grid.convergence import judged
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.usual_steps import USUAL_STEPS
 from reports.pages.findings.findings import findings, pictures
-from reports.pages.page import Failure, Material, Page, StabilityMap
+from reports.pages.page import Material, Page, StabilityMap
 from reports.pages.symptoms import SYMPTOMS
 from reports.text import tables, unmeasured
+from reports.text.experiments import told_experiment
+from reports.text.holders import holders
 from reports.text.links import link
 from reports.text.overview import overviews
 from reports.text.parts import with_part
 from reports.text.provenance import machine, today, versions
+from reports.text.told_scene import told_scene
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
-
-
-@dataclass(frozen=True)
-class Told:
-    """A failure or a map with its table or picture, ready for the template."""
-
-    title: str
-    expected: str
-    grid: str
-    details: str
-    observations: str
-    remark: str
-    picture: str = ""
-    unrun: bool = False  # whether there is something to run, and nothing of it was
 
 
 def environment(folder: Path = TEMPLATES) -> Environment:
@@ -58,33 +47,25 @@ def environment(folder: Path = TEMPLATES) -> Environment:
         autoescape=False,
         finalize=unmeasured.marked,
     )
-    out.filters |= unmeasured.FILTERS
+    out.filters |= unmeasured.FILTERS | {"anchor": anchor}
     return out
 
 
-def template_of(page: Page) -> Template:
-    """The page's own template, that of its name here, or the generic one."""
+def template_of(page: Page, file: str, generic: str) -> Template:
+    """The page's own template `file` ("page.md" or "data.md"), that of its name here, or the generic one."""
     if page.template is not None:
-        return environment(page.template.parent).get_template(f"own/{page.template.name}")
-    return environment().select_template([f"{page.name}/page.md", "base.md"])
+        own = page.template if file == "page.md" else page.template.with_name(file)
+        return environment(own.parent).select_template([f"own/{own.name}", generic])
+    return environment().select_template([f"{page.name}/{file}", generic])
 
 
-def parameters(scene: Scene) -> str:
-    """A table of the scene's fields, which are the only place where its numbers stand."""
-    body = [[field.name, _value(getattr(scene, field.name))] for field in fields(scene)]  # type: ignore[arg-type]
-    return tables.markdown(["parameter", "value"], body)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    if isinstance(value, tuple):
-        return "(" + ", ".join(map(_value, value)) + ")"
-    return str(value)
+def anchor(heading: str) -> str:
+    """What a link to a heading of Markdown ends with, as GitHub makes it: lower case, no punctuation, hyphens."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
-    """The page's Markdown and its SVG pictures by file name.
+    """The page's Markdown, that of its data page where it has scenes, and its SVG pictures, by file name.
 
     Raises jinja2.UndefinedError when the template names what the page does not give.
     """
@@ -111,74 +92,32 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
-    scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name], page) for scene in page.scenes]
-    text = template_of(page).render(
-        page=page,
-        scenes=scenes,
-        pictures=unmeasured.Known(pictures),
-        failures=[_told_failure(failure, material) for failure in page.failures],
-        maps=[told for told in told_maps if told],
-        outcomes=[outcome for outcome in Outcome if outcome in met],
-        foot=foot(command),
+    scenes = [
+        told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
+    ]
+    given = {
+        "page": page,
+        "scenes": scenes,
+        "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
+        "pictures": unmeasured.Known(pictures),
+        "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
+        "maps": [told for told in told_maps if told],
+        "outcomes": [outcome for outcome in Outcome if outcome in met],
+        "foot": foot(command),
         **page.words(material),
-    )
-    return files | {f"{page.name}.md": unmeasured.without_marks(text)}
-
-
-def _told_scene(scene: Scene, rows: list[Measurement], page: Page) -> dict[str, Any]:
-    """The scene's tables: of the page's featured methods, and of `all` of them where there are others."""
-    told = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
-    featured = [row for row in rows if page.featured(row)]
-    return {
-        **_compared(featured, page.quantity),
-        "all": _compared(rows if len(featured) < len(rows) else [], page.quantity),
-        "name": scene.name,
-        "source": scene.source,
-        "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
-        "parameters": parameters(scene),
-        "errors": tables.error_table(rows),
-        "sizes": tables.size_table(rows),
-        "unsupported": [(row.method, row.sentence) for row in told if row.every == min(r.every for r in told)],
-        "missing": not rows,
     }
+    texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
+    if page.scenes:
+        texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
+    return files | {name: unmeasured.without_marks(text) for name, text in texts.items()}
 
 
-def _compared(rows: list[Measurement], quantity: str) -> dict[str, str]:
-    """The tables that compare methods; empty without rows."""
-    if not rows:
-        return {"orders": "", "work": "", "reactions": ""}
-    return {
-        "orders": tables.order_table(sweeps(rows)),
-        "work": tables.work_table(rows, quantity),
-        "reactions": tables.reaction_table(rows),
-    }
-
-
-def _told_failure(failure: Failure, material: Material) -> Told:
-    rows = material.of(failure.cells)
-    seen = failure.observations(material) if failure.observations else ()
-    run = rows or any(task in material.answers for task in failure.tasks)
-    observations = tables.markdown(
-        ["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3
-    )
-    grid = tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)
-    return Told(
-        failure.title,
-        failure.expected,
-        grid if rows else "",
-        tables.outcome_table(rows) if any(row.sentence for row in rows) else "",
-        observations if seen else "",
-        failure.remark,
-        unrun=not run and bool(failure.cells or failure.tasks),
-    )
-
-
-def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> Told | None:
+def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> dict[str, str] | None:
     rows = [(value, material.rows[cell]) for value, cell in picture.cells if cell in material.rows]
     if not rows:
         return None
     keep(picture.name, svg(maps.stability_map(rows, picture.parameter), picture.title))
-    return Told(picture.title, "", "", "", "", picture.remark, f"{page.name}_{picture.name}.svg")
+    return {"title": picture.title, "remark": picture.remark, "picture": f"{page.name}_{picture.name}.svg"}
 
 
 def foot(command: str) -> str:

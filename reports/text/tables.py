@@ -6,7 +6,7 @@ import csv
 import hashlib
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 
 from reports.grid.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
@@ -16,6 +16,8 @@ from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES, quantity
 
 NOTHING = "-"
+HOLDER = "joints held by"
+Held = Mapping[str, str] | None
 
 
 def number(value: float, digits: int = 2) -> str:
@@ -35,8 +37,16 @@ def milliseconds(seconds: float) -> str:
     return number(1e3 * seconds)
 
 
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
-    """A Markdown table; the first `left` columns are words, the others numbers. A bar in a cell is escaped."""
+def markdown(
+    header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, held: Mapping[str, str] | None = None
+) -> str:
+    """A Markdown table; the first `left` columns are words, the others numbers. A bar in a cell is escaped.
+
+    `held` says by method who holds the joints: then a column after the first, which has to be the methods', tells it.
+    """
+    if held:
+        header, left = [header[0], HOLDER, *header[1:]], left + 1
+        rows = [[row[0], held.get(row[0], NOTHING), *row[1:]] for row in rows]
     lines = [_line(header), _line(["---" if i < left else "--:" for i in range(len(header))])]
     return "\n".join(lines + [_line([cell.replace("|", "\\|").replace("\n", " ") for cell in row]) for row in rows])
 
@@ -45,9 +55,9 @@ def _line(cells: Iterable[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def error_table(rows: Iterable[Measurement]) -> str:
+def error_table(rows: Iterable[Measurement], held: Held = None) -> str:
     """Every quantity's largest error of every cell of one scene, by method and step."""
-    return markdown(ERROR_HEADER, error_rows(rows), left=2)
+    return markdown(ERROR_HEADER, error_rows(rows), left=2, held=held)
 
 
 ERROR_HEADER = ("method", "outcome", "step [s]", *(f"{q.label} [{q.unit}]" for q in QUANTITIES), "CPU [ms/s]")
@@ -64,12 +74,14 @@ def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
     ]
 
 
-def order_table(found: Iterable[Sweep], quantities: Sequence[str] = ("angle", "rate", "gap", "reaction")) -> str:
+def order_table(
+    found: Iterable[Sweep], quantities: Sequence[str] = ("angle", "rate", "gap", "reaction"), held: Held = None
+) -> str:
     """Order, number of points and plateau of some quantities, by method, for the sweeps of one scene."""
     units = {q.name: q for q in QUANTITIES}
     rows = order_rows(found, quantities)
     header = ["method", *(f"{units[name].label}: order, plateau [{units[name].unit}]" for name in quantities)]
-    return markdown(header, rows, left=9)
+    return markdown(header, rows, left=9, held=held)
 
 
 def order_rows(found: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
@@ -89,7 +101,7 @@ def sweep_words(sweep: Sweep) -> str:
         order = ""
     match sweep.verdict:
         case Verdict.PLATEAU:
-            end = f"stays at **{number(sweep.plateau)}**"
+            end = f"plateau **{number(sweep.plateau)}**"
         case Verdict.FALLS:
             end = "" if order else f"falls, {number(sweep.best)}"
         case Verdict.TOO_FEW:
@@ -101,7 +113,7 @@ def sweep_words(sweep: Sweep) -> str:
     return ", ".join(filter(None, (order, end)))
 
 
-def reaction_table(rows: Iterable[Measurement]) -> str:
+def reaction_table(rows: Iterable[Measurement], held: Held = None) -> str:
     """How exact each method's reactions are at the step where they are best, and of how many rows it tells them."""
     body = []
     for members in groups(rows).values():
@@ -111,7 +123,8 @@ def reaction_table(rows: Iterable[Measurement]) -> str:
         best = min(usable, key=lambda row: (math.isnan(row.reaction), row.reaction))
         known = f"{best.reaction_rows} of {best.own_rows}"
         body.append([best.method, known, number(best.reaction), number(best.step), milliseconds(best.cpu)])
-    return markdown(["method", "rows told", "least error [relative]", "at step [s]", "CPU [ms/s]"], body, left=2)
+    header = ["method", "rows told", "least error [relative]", "at step [s]", "CPU [ms/s]"]
+    return markdown(header, body, left=2, held=held)
 
 
 def size_table(rows: Iterable[Measurement]) -> str:
@@ -135,7 +148,7 @@ def size_table(rows: Iterable[Measurement]) -> str:
     return markdown(header, [own, *body] if own else body, left=5)
 
 
-def outcome_grid(rows: Iterable[Measurement]) -> str:
+def outcome_grid(rows: Iterable[Measurement], held: Held = None) -> str:
     """An experiment at a glance: a line a method, a column a step, the outcome and one number in each.
 
     Raises ValueError where two rows would stand in one place: only one of them could be seen.
@@ -149,7 +162,7 @@ def outcome_grid(rows: Iterable[Measurement]) -> str:
             raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {number(row.step)} s")
         line[row.step] = _outcome_in_brief(row)
     body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
-    return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1)
+    return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1, held=held)
 
 
 def _outcome_in_brief(row: Measurement) -> str:
@@ -161,17 +174,18 @@ def _outcome_in_brief(row: Measurement) -> str:
     return f"**{row.outcome}**"
 
 
-def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
+def cell_table(rows: Iterable[Measurement], columns: Sequence[str], held: Held = None) -> str:
     """A line a cell: method, step, outcome, the largest errors of these quantities."""
     told = [quantity(name) for name in columns]
     body = [
         [row.method, number(row.step), f"**{row.outcome}**", *(number(getattr(row, q.name)) for q in told)]
         for row in rows
     ]
-    return markdown(["method", "step [s]", "outcome", *(f"{q.label} [{q.unit}]" for q in told)], body, left=3)
+    header = ["method", "step [s]", "outcome", *(f"{q.label} [{q.unit}]" for q in told)]
+    return markdown(header, body, left=3, held=held)
 
 
-def outcome_table(rows: Iterable[Measurement]) -> str:
+def outcome_table(rows: Iterable[Measurement], held: Held = None) -> str:
     """The same with each cell's own sentence: method, step, outcome, largest errors."""
     header = ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
     body = [
@@ -184,11 +198,14 @@ def outcome_table(rows: Iterable[Measurement]) -> str:
         ]
         for row in rows
     ]
-    return markdown(header, body, left=3)
+    return markdown(header, body, left=3, held=held)
 
 
 def work_table(
-    rows: Iterable[Measurement], name: str = "angle", targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
+    rows: Iterable[Measurement],
+    name: str = "angle",
+    targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10),
+    held: Held = None,
 ) -> str:
     """The least CPU time with which each method gets below an error [ms per simulated second]."""
     body = []
@@ -197,10 +214,10 @@ def work_table(
         cost = [min((row.cpu for row in usable if getattr(row, name) <= target), default=NAN) for target in targets]
         body.append([members[0].method, *map(milliseconds, cost)])
     unit = quantity(name).unit
-    return markdown(["method", *(f"{number(target, 1)} {unit}" for target in targets)], body)
+    return markdown(["method", *(f"{number(target, 1)} {unit}" for target in targets)], body, held=held)
 
 
-SUMMARY_HEADER = ("method", "angle error [rad]", "at step [s]", "CPU [ms/s]", "order", "stays at [rad]", "outcomes")
+SUMMARY_HEADER = ("method", "angle error [rad]", "at step [s]", "CPU [ms/s]", "order", "plateau [rad]", "outcomes")
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:

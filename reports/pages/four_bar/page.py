@@ -66,6 +66,7 @@ PAGE = Page(
     title="The four-bar linkage",
     lesson="Three bars and four pins: the loop that the chapter closes exactly and an engine closes by forces.",
     scenes=SCENES,
+    advised="free_four_bar",
     engines=ENGINES,
     failures=FAILURES,
     maps=MAPS,

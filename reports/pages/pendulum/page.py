@@ -49,6 +49,7 @@ PAGE = Page(
     title="Pendulums of 1, 2, 10 and 100 links",
     lesson="Open chains: joints that a tree of coordinates gives for nothing, and that pymunk finds by iteration.",
     scenes=SCENES,
+    advised="pendulum_2",
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,
     maps=MAPS,

@@ -50,6 +50,7 @@ PAGE = Page(
     title="A person on one foot and on two",
     lesson="Five segments and no muscle: an open chain on one foot, a loop on two; unheld, the knee buckles.",
     scenes=SCENES,
+    advised="person_two_feet",
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,

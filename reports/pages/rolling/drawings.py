@@ -163,9 +163,14 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
                 panel.annotate(
                     "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
                 )
-                panel.annotate(name, point + 0.53 * vector, color=colour, ha="center", va="center", fontsize=11)
+                # Beside the arrow's tip, and above a ground that rises towards it, as a hole's does.
+                above = (0.09 + max(0.0, -a) * 0.53**2 / 2) * normal if vector is tangent else 0.0
+                panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=theme.ink, markersize=4, zorder=6)
             panel.annotate("C", point - 0.09 * normal, color=theme.ink, ha="center", va="center")
+            panel.annotate("A", point - 0.3 * normal, color=theme.ink, ha="center", va="center")
+            middle = rolling.pose(theta)[:2]
+            panel.annotate("B", middle + 0.08 * tangent, color=theme.quiet, ha="center", va="center")
             centre = np.array([point[0], point[1] + 0.3])
             panel.set_xlim(centre[0] - 0.85, centre[0] + 0.85)
             panel.set_ylim(centre[1] - 0.62, centre[1] + 0.72)

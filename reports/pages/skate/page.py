@@ -30,6 +30,7 @@ from reports.pages.skate.expectations import KNOWN, ORDERS
 from reports.pages.skate.experiments import FAILURES, MAPS
 from reports.pages.skate.methods import CONSTRUCTIONS, method
 from reports.text import tables
+from reports.text.holders import holders
 from reports.text.lookups import nearest_step
 from reports.text.unmeasured import UNMEASURED
 
@@ -118,7 +119,7 @@ def figures(material: Material) -> dict[str, str]:
     return found
 
 
-def constructions(rows: Sequence[Measurement]) -> str:
+def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = None) -> str:
     """One line a construction: what it gives at about the compared step and costs there, and what its error does.
 
     Constructions that were run at other steps alone have no line; the text is empty if none has one.
@@ -127,29 +128,30 @@ def constructions(rows: Sequence[Measurement]) -> str:
     told = []
     for key, members in groups(rows).items():
         if all(row.outcome == Outcome.UNSUPPORTED for row in members):
-            told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 5, ""]))
+            told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
             continue
         row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
         if row is None:
             continue
         numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
+        if not Outcome(row.outcome).comparable:
+            numbers[0] = f"**{row.outcome}** {numbers[0]}"
         wrong = all(Outcome(member.outcome).wrong for member in members)
         words = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
         error = row.position if np.isfinite(row.position) else np.inf
-        told.append((error, [row.method, row.outcome, *numbers, tables.milliseconds(row.cpu), words]))
+        told.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), words]))
     if not told:
         return ""
     header = [
         "construction",
-        "outcome",
         "position [m]",
         "slip [m/s]",
-        "energy",
-        "reaction",
+        "energy [relative]",
+        "reaction [relative]",
         "CPU [ms/s]",
-        "as the step shrinks",
+        "as the step shrinks, plateau in m",
     ]
-    return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=2)
+    return tables.markdown(header, [line for _, line in sorted(told, key=lambda pair: pair[0])], left=1, held=held)
 
 
 @cache
@@ -185,8 +187,9 @@ def words(material: Material) -> Mapping[str, Any]:
         return min(own, key=lambda row: row.step, default=UNMEASURED)
 
     commutator = commutator_displacement(0.1, 0.1)
+    held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
-        "constructions": constructions(rows),
+        "constructions": constructions(rows, held),
         "counted": counted(SCENES),
         "at": at,
         "least": least,

@@ -28,16 +28,16 @@ def parking() -> Figure:
     moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
     panels.append(
         Panel(
-            "displacement over both moves",
+            "the commutator's way over both moves",
             [
                 Path(np.column_stack([-np.log10(sizes), moved[:, 1]]), "sideways, towards 1", "lagrange"),
                 Path(np.column_stack([-np.log10(sizes), moved[:, 0]]), "along, towards 0", "pymunk", "--"),
             ],
             plane=False,
-            across="-log10 of both moves [rad, m]",
+            across="both moves are 10 to minus this [rad, m]",
         )
     )
-    return paths(panels, columns=4, height=2.5)
+    return paths(panels, columns=2, height=2.6)
 
 
 def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:

@@ -46,6 +46,7 @@ PAGE = Page(
     title="The slider-crank",
     lesson="A slot and three pins: a loop that slides, and a groove whose impulse is right only at a centre of mass.",
     scenes=SCENES,
+    advised="free_slider_crank",
     engines=VARIANTS,
     failures=FAILURES,
     maps=MAPS,

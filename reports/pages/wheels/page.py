@@ -12,7 +12,6 @@ from reference.wheels import CarAndTrailer, Cart
 from reports.charts.plane_panels import paths
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
-from reports.grid.convergence import best_of
 from reports.grid.tasks import Motion
 from reports.pages.page import Material, Page
 from reports.pages.skate.methods import method
@@ -20,7 +19,6 @@ from reports.pages.skate.page import counted
 from reports.pages.wheels import pictures as wheels_pictures
 from reports.pages.wheels.expectations import KNOWN, ORDERS
 from reports.pages.wheels.experiments import FAILURES
-from reports.text.unmeasured import UNMEASURED
 
 NAME = "wheels"
 SCENES = (CarAndTrailer(), Cart())
@@ -59,16 +57,10 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """`counted`: the freedoms' table; `least(scene, engine, variant)`: the row with the least position error."""
-    rows = material.sweep(SCENES)
-
-    def least(scene: str, engine: str, variant: str) -> Any:
-        own = (row for row in rows if row.scene == scene)
-        return best_of(own, engine, variant, "position") or UNMEASURED
-
+    """`counted`: the freedoms' table."""
     shown = (*SCENES, CarAndTrailer(redundant=True), Cart(redundant=True))
     doubled = ("car_and_trailer, both wheels of each axle", "cart, both wheels of the fixed axle")
-    return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled)), "least": least}
+    return {"counted": counted(shown, (*(scene.name for scene in SCENES), *doubled))}
 
 
 PAGE = Page(

@@ -1,0 +1,93 @@
+"""Programs to copy: how a method is built in its engine alone, beside the page's words, for the scene that is advised.
+
+A program is a file `programs/<method>.py` in the page's folder, with other characters than letters and digits as "_".
+It says its `duration`, within the scene's horizon, and `steps`, and ends with the place and angle of one body in `end`,
+which it prints. The tests run each as it is printed and hold it against the method's own run. A method without a file
+is told by its settings.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from reference.scene import Scene
+from reports.grid.measure import Measurement
+from reports.text.page_tables import Advice
+from reports.text.tables import number
+
+PAGES = Path(__file__).parents[1] / "pages"
+DURATION = re.compile(r"^duration = ([\d.]+)", re.MULTILINE)
+STEPS = re.compile(r"^steps = \d+$", re.MULTILINE)
+PRINTS = re.compile(r'print\("([^:"]+): x = ')
+
+
+@dataclass(frozen=True)
+class Setting:
+    """An advised method: its program with what it should print, or its settings where it has none."""
+
+    method: str
+    settings: str  # those that differ from the engine's own defaults
+    all_settings: str
+    program: str = ""
+    body: str = ""
+    exact: str = ""  # "x = ... m, y = ... m, angle = ... rad" of the body at the end
+
+
+def advised_settings(page: str, scene: Scene, found: Iterable[Advice], engines: Mapping[str, Any]) -> list[Setting]:
+    """The methods of some advice, each once, as they are to be copied; `engines` by method. `page`: whose programs are
+    for this scene; empty where there are none."""
+    rows: dict[str, list[tuple[Measurement, Sequence[float]]]] = {}
+    for each in found:
+        if each.row is not None:
+            rows.setdefault(each.row.method, []).append((each.row, each.targets))
+    return [_setting(page, scene, method, own, engines.get(method)) for method, own in rows.items()]
+
+
+def _setting(
+    page: str,
+    scene: Scene,
+    method: str,
+    rows: Sequence[tuple[Measurement, Sequence[float]]],
+    engine: Any,
+) -> Setting:
+    first = rows[0][0]
+    settings = compact(engine) if engine is not None else first.settings
+    source = program(page, method)
+    if not source:
+        return Setting(method, settings, first.settings)
+    body, end = PRINTS.search(source), DURATION.search(source)
+    if body is None or end is None:
+        raise ValueError(f"the program of {method} on the page {page} lacks its duration or does not print a place")
+    duration = float(end[1])
+    index = scene.mechanism().body_index(body[1])
+    x, y, angle = scene.motion([duration]).pose[0, index]
+    exact = f"x = {x:.10f} m, y = {y:.10f} m, angle = {angle:.10f} rad"
+    counts = [round(duration / scene.spacing) * row.every for row, _ in rows]
+    told = "; ".join(f"{count}: below {number(max(row[1]), 1)}" for count, row in zip(counts, rows, strict=True))
+    text = STEPS.sub(f"steps = {counts[0]}" + (f"  # {told}" if len(rows) > 1 else ""), source)
+    return Setting(method, settings, first.settings, text, body[1], exact)
+
+
+def program(page: str, method: str) -> str:
+    """The program of a method on a page; empty without one."""
+    path = PAGES / page / "programs" / f"{re.sub('[^a-z0-9]+', '_', method.lower())}.py"
+    return path.read_text(encoding="utf-8") if page and path.is_file() else ""
+
+
+def compact(value: Any) -> str:
+    """A dataclass as Python prints it, without the fields that have their defaults, and without `variant`."""
+    if isinstance(value, tuple):
+        return "(" + ", ".join(map(compact, value)) + ("," if len(value) == 1 else "") + ")"
+    if not is_dataclass(value) or isinstance(value, type):
+        return repr(value)
+    told = []
+    for field in fields(value):
+        own = getattr(value, field.name)
+        default = field.default_factory() if field.default_factory is not MISSING else field.default
+        if field.name != "variant" and field.repr and own != default:
+            told.append(f"{field.name}={compact(own)}")
+    return f"{type(value).__name__}({', '.join(told)})"

@@ -1,0 +1,244 @@
+"""What a mechanism's page tells of rows by hand: which setting to take, a table a scene, a line an experiment."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import pytest
+
+from engines import Softness
+from reference.four_bar import FreeFourBar
+from reports.gate.declared import MOST_BODIES, Softened, declared_error, soft_tasks
+from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS
+from reports.grid.cells import Cell
+from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Answer, answered
+from reports.pages.page import Failure, Material, Observation
+from reports.text.experiments import compared_only, happened, told_experiment
+from reports.text.holders import holders
+from reports.text.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
+from reports.text.programs import advised_settings, compact
+from reports.text.rendering import anchor
+from reports.text.tables import markdown, outcome_grid
+from tests.rows import falling, row_of, table
+from tests.toys import Disc, Plain, Toy
+
+
+def test_the_cheapest_method_below_each_error_is_advised_for_each_engine():
+    # Errors at steps of 1e-1, 1e-2, 1e-3 s, which cost 1, 10 and 100 ms; the second method costs three times as much.
+    rows = [
+        *falling("a slow", (1e-1, 1e-3, 1e-5)),
+        *[replace(row, cpu=3 * row.cpu) for row in falling("a fast", (1e-5, 1e-7, 1e-10))],
+        *falling("b only", (1e-1, 1e-2, 5e-3)),
+    ]
+    found = {(each.engine, each.targets): each.row for each in advice(rows, "angle")}
+    told = {key: (row.method, row.step) if row else None for key, row in found.items()}
+    assert told == {
+        ("a", (1e-2, 1e-4)): ("a fast", 1e-1),
+        ("a", (1e-6,)): ("a fast", 1e-2),
+        ("a", (1e-9,)): ("a fast", 1e-3),
+        ("b", (1e-2,)): ("b only", 1e-2),
+        ("b", (1e-4, 1e-6, 1e-9)): None,
+    }
+    head, *body = table(advice_table(advice(rows, "angle"), "angle", {"a fast": "ours"}))
+    assert head[1:5] == ["below [rad]", "method", "joints held by", "step [s]"]
+    assert body[0] == ["a", "0.01, 1e-4", "**fast**", "ours", "0.1", "1.0e-5", "3", "2.5"]
+    assert body[-1][:3] == ["b", "1e-4, 1e-6, 1e-9", "not reached"]
+    assert len(body[-1]) == len(head)
+
+
+def test_a_small_error_at_a_coarse_step_that_a_finer_one_does_not_keep_is_luck():
+    lucky = falling("a lucky", (1e-5, 1e-2, 1e-3))
+    assert [row.step for row in reliable(lucky, "angle", 1e-2)] == [1e-3, 1e-2, 1e-1]
+    assert [row.step for row in reliable(lucky, "angle", 5e-3)] == [1e-3]
+    assert reliable(lucky, "angle", 1e-4) == []
+    torn = [*lucky[:2], replace(lucky[2], outcome=Outcome.TORN)]
+    assert reliable(torn, "angle", 1.0) == []
+    unknown = [*lucky[:2], replace(lucky[2], angle=math.nan)]
+    assert reliable(unknown, "angle", 1.0) == []
+
+
+def test_of_costs_that_are_equal_within_their_scatter_the_first_method_of_the_page_is_advised():
+    rows = [row_of("a late", angle=1e-10, cpu=1.0), row_of("a early", angle=1e-10, cpu=1.2)]
+    for order, expected in ((("a early", "a late"), "a early"), (("a late", "a early"), "a late")):
+        (found,) = advice(rows, "angle", order)
+        assert found.row is not None
+        assert found.row.method == expected
+    (found,) = advice([rows[0], replace(rows[1], cpu=1.3)], "angle", ("a early", "a late"))
+    assert found.row is not None
+    assert found.row.method == "a late"
+
+
+def test_a_scenes_table_has_each_method_at_the_same_step_and_says_what_a_smaller_one_brings():
+    rows = [
+        *falling("a x", (1e-2, 1e-4, 1e-6), gap=1.7e-3, slip=math.nan, reaction=math.nan),
+        *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), gap=1.9e-3, slip=math.nan, reaction=math.nan),
+        row_of("c z", step=1e-3, outcome=Outcome.TORN, gap=0.5, slip=math.nan, reaction=math.nan),
+    ]
+    head, *body = table(scene_table(rows, "angle"))
+    assert head == ["method", "angle error [rad]", "gap [m]", "CPU [ms/s]", "as the step shrinks, plateau in rad"]
+    assert body[0] == ["a x", "1.0e-6", "1.7e-3", "100", "order 2.0 (3 points)"]
+    assert body[1][:2] == ["b y", "3.0e-5"]
+    assert body[1][-1].endswith("plateau **3.0e-5**")
+    assert body[2][:3] == ["c z", "**torn**", "0.5"]
+    held = table(scene_table(rows, "angle", {"a x": "engine", "b y": "ours"}))
+    assert [line[1] for line in held] == ["joints held by", "engine", "ours", "-"]
+
+
+def test_a_plateau_above_what_is_declared_is_marked():
+    rows = [*falling("a soft", (1e-2, 3e-5, 3e-5, 3e-5)), *falling("b wrong", (1e-2, 3e-5, 3e-5, 3e-5))]
+    head, *body = table(scene_table(rows, "angle", declared=lambda method, step: 2e-5 if method == "a soft" else 1e-6))
+    assert head[2] == "declared [rad]"
+    assert [line[2] for line in body] == ["2.0e-5", "1.0e-6"]
+    assert ["not declared" in line[-1] for line in body] == [False, True]
+    assert "declared" not in scene_table(rows, "angle")
+
+
+@pytest.mark.parametrize(
+    ("errors", "outcome", "words"),
+    [
+        ((1e-2, 1e-4, 1e-6), Outcome.FINISHED, "order 2.0 (3 points)"),
+        ((1e-2, 1e-4), Outcome.FINISHED, "order 2.0 (2 points, unchecked)"),
+        ((1e-2, 1e-4, 1e-6, 1e-1), Outcome.FINISHED, "order 2.0 (3 points), **erratic**"),
+        ((1e-3, 1e-13), Outcome.FINISHED, "to rounding"),
+        ((1e-2, 1e-4, 1e-6, 1e-8), Outcome.TORN, "order 2.0 (3 points), at the finest step **torn**"),
+        ((1e-3,), Outcome.FINISHED, "-"),
+    ],
+)
+def test_what_a_smaller_step_brings_is_said_in_words(errors, outcome, words):
+    from reports.grid.convergence import by_method, sweeps
+
+    rows = falling("a x", errors)
+    rows[-1] = replace(rows[-1], outcome=outcome)
+    (sweep,) = by_method(sweeps(rows), "angle").values()
+    assert as_the_step_shrinks(sweep, rows) == words
+
+
+def test_an_experiment_is_told_in_a_line():
+    rows = [
+        row_of("a x", angle=1e-5),
+        row_of("b x", angle=2e-3),
+        row_of("c x", angle=math.nan),
+        row_of("d x", outcome=Outcome.TORN),
+        row_of("e x", outcome=Outcome.RESET),
+        row_of("f x", outcome=Outcome.TORN),
+    ]
+    assert happened(rows, ()) == (
+        "Of 6 runs: 2 ended with an angle error of 1.0e-5 to 2.0e-3 rad, "
+        "1 ended and had nothing to be compared with, 2 **torn**, 1 **reset**."
+    )
+    assert happened(rows[:1], (), "energy") == "Of 1 run: 1 ended with an energy error of 5.3e-3 relative."
+    seen = [Observation("first", "slow", "0.1 m"), Observation("mid", "", "0.2 m"), Observation("last", "", "0.3 m")]
+    assert happened((), seen) == "first (slow): 0.1 m. last: 0.3 m."
+    assert happened((), seen[:1]) == "first (slow): 0.1 m."
+    assert happened((), ()) == ""
+
+
+def test_an_experiment_in_which_nothing_was_compared_says_so():
+    @dataclass(frozen=True)
+    class Ended(Disc):
+        @property
+        def comparable_until(self) -> float:  # type: ignore[override]
+            return 0.0
+
+    cell = Cell(Ended(), Toy(), 1, "failure")
+    row = row_of("toy default", angle=0.0)
+    assert math.isnan(compared_only(cell, row).angle)
+    assert compared_only(cell, row).gap == row.gap
+    assert compared_only(replace(cell, scene=Disc()), row) == row
+    told = told_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
+    assert "nothing to be compared with" in told.happened
+    assert "0 rad" not in told.grid
+
+
+def test_who_holds_the_joints_stands_beside_each_method_and_changes_with_the_scene():
+    @dataclass(frozen=True)
+    class Ours(Plain):
+        name: str = "toy"
+        variant: str = "ours"
+
+        def build(self, mechanism, dt):
+            raise NotImplementedError
+
+        def holder(self, joint, mechanism):
+            return "ours"
+
+    class Half(Ours):
+        def holder(self, joint, mechanism):
+            return "engine"
+
+    found = holders([Cell(FreeFourBar(), Ours(), 1), Cell(FreeFourBar(), Half(), 1), Cell(FreeFourBar(), Ours(), 10)])
+    assert found == {"toy ours": "ours or engine"}
+    head, line = table(outcome_grid([row_of("toy ours")], found))
+    assert (head[:2], line[:2]) == (["method", "joints held by"], ["toy ours", "ours or engine"])
+    assert markdown(["method", "b"], [["x", "1"]], held={"y": "ours"}).splitlines()[-1] == "| x | - | 1 |"
+
+
+def test_settings_are_told_without_those_that_are_the_engines_own():
+    @dataclass(frozen=True)
+    class Inner:
+        count: int = 3
+        factor: float = 1.0
+
+    @dataclass(frozen=True)
+    class Outer:
+        variant: str
+        inner: Inner = field(default_factory=Inner)
+        levels: tuple[int, ...] = (1,)
+
+    assert compact(Outer("a")) == "Outer()"
+    assert compact(Outer("a", Inner(count=5), (2,))) == "Outer(inner=Inner(count=5), levels=(2,))"
+    (found,) = advised_settings("", Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {"a x": Outer("x")})
+    assert (found.method, found.settings, found.program) == ("a x", "Outer()", "")
+    (found,) = advised_settings("", Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {})
+    assert found.settings == "Toy(order=2.0)"  # of an engine that is not here any more: as its row has them
+
+
+@pytest.mark.parametrize(
+    ("heading", "end"),
+    [("All errors", "all-errors"), ("How many, at which step?", "how-many-at-which-step"), ("A_b: c-d", "a_b-c-d")],
+)
+def test_a_heading_is_linked_as_github_links_it(heading, end):
+    assert anchor(heading) == end
+
+
+def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
+    @dataclass(frozen=True)
+    class Soft(Plain):
+        name: str = "toy"
+        variant: str = "soft"
+        share: float = COMPLIANCE
+
+        def softness(self, mechanism, dt):
+            return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
+
+    scene, engine = FreeFourBar(duration=0.1), Soft()
+    (task,) = soft_tasks(scene, (engine,))
+    answers = {task: answered(task)}
+    own = answers[task].number("angle")
+    assert own > 0
+    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(own)
+    assert declared_error(answers, scene, replace(engine, share=3 * COMPLIANCE), "angle", 1e-3) == pytest.approx(
+        3 * own
+    )
+    assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
+    assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
+    assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
+
+
+def test_the_judge_is_not_asked_where_it_would_take_minutes():
+    from reference.pendulum.scenes import HundredLinks
+
+    assert len(HundredLinks().mechanism().bodies) > MOST_BODIES
+
+    @dataclass(frozen=True)
+    class Soft(Plain):
+        name: str = "toy"
+        variant: str = "soft"
+
+        def softness(self, mechanism, dt):
+            return Softness(STIFFNESS, DAMPING, COMPLIANCE, (True,) * mechanism.row_count)
+
+    assert soft_tasks(HundredLinks(), (Soft(),)) == ()
+    assert all(isinstance(task, Softened) for task in soft_tasks(FreeFourBar(), (Soft(),)))
