@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from engines import Engine
+from engines import Engine, Promise
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
-from reports.gate.promises import Promises
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
 
@@ -99,8 +98,8 @@ class Page:
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.grid.quantities`.
-    orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
-    method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
+    orders: (scene, method) -> what is promised where the motion, not the mechanism alone, makes it another than the
+    engine says. known: (scene, method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
     """
 
     name: str
@@ -116,7 +115,7 @@ class Page:
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
-    orders: Promises = field(default_factory=dict, compare=False)
+    orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
 
     def teaches(self, scene: Scene) -> bool:

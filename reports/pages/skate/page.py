@@ -25,7 +25,7 @@ from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.skate import pictures as skate_pictures
-from reports.pages.skate.expectations import KNOWN, ORDERS
+from reports.pages.skate.expectations import KNOWN
 from reports.pages.skate.experiments import FAILURES, MAPS
 from reports.pages.skate.methods import CONSTRUCTIONS, method
 from reports.text import tables
@@ -204,6 +204,5 @@ PAGE = Page(
     featured=featured,
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
 )

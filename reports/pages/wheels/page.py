@@ -17,7 +17,7 @@ from reports.pages.page import Material, Page
 from reports.pages.skate.methods import method
 from reports.pages.skate.page import counted
 from reports.pages.wheels import pictures as wheels_pictures
-from reports.pages.wheels.expectations import KNOWN, ORDERS
+from reports.pages.wheels.expectations import KNOWN
 from reports.pages.wheels.experiments import FAILURES
 from reports.text.unmeasured import UNMEASURED
 
@@ -75,6 +75,5 @@ PAGE = Page(
     quantity="position",
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
 )
