@@ -8,7 +8,6 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from reference.rolling.limits import DiscInHole
 
 from engines import rolling_table
 from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
@@ -26,6 +25,7 @@ from reference.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
+from reference.rolling.singular_cases import DiscInHole
 from reference.scene import Scene
 
 

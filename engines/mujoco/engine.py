@@ -134,7 +134,7 @@ class MuJoCo(Valid):
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
         lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
         gain, damping = stiffness.gains(mechanism, dt)
-        # The impedance of a gap of a millimetre and more; at none it is at most twice as soft.
+        # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * stiffness.softening
         rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
         return Softness(gain, damping, compliance, rows, complete=not lacking)

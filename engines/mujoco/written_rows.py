@@ -1,9 +1,10 @@
 """Constraint rows of one's own in MuJoCo: placeholders, rewritten before the solver in every stage of the integrator.
 
 MuJoCo has no joint for a skate or for rolling, but its solver takes any row. A placeholder (a joint equality) reserves
-the row; `mjcb_control`, which runs after the references are computed and before the solve, in all four stages of RK4,
-overwrites its part of `efc_J` and `efc_aref`. It needs the dense Jacobian, no islands, and a primal solver (Newton or
-CG): the dual one has built its matrix from the placeholder by then.
+the row; `mjcb_control`, which runs after the references are computed and before the solve, in all four stages of RK4
+(mj_forwardSkip in MuJoCo's engine_forward.c), overwrites its part of `efc_J` and `efc_aref`. It needs the dense
+Jacobian, no islands, and a primal solver (Newton or CG): the dual one has built its matrix from the placeholder by
+then.
 
 A row is written for the poses and twists of two bodies, J a = right, and is taken to the tree's coordinates here. Plain
 floats throughout: on rows this small, arrays cost more than the arithmetic.

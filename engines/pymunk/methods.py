@@ -14,7 +14,8 @@ from engines.pymunk.joints.roll import Contact
 from engines.pymunk.reflection import Reflected
 
 DEFAULT = Pymunk("default")
-# Contact: all of the overlap is left alone, because pushing bodies apart rolls them too.
+# Contact: all of the overlap is left alone, because pushing bodies apart rolls them too. That is `bias`, of which
+# nothing is closed, so that `slop` is no length here: any other gives the same motion to the last bit.
 TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=Contact(slop=1.0, bias=1.0, vertices=512))
 LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.

@@ -15,7 +15,7 @@ from pymunk.constraints import Constraint, GrooveJoint, PinJoint, PivotJoint, Si
 from engines import Size, Unsupported
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
 from engines.pymunk.joints.pin import pin
-from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, touching
+from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
 from reference.joints import Drive, Joint, Pin, Skate, Slot, Vector
@@ -178,7 +178,7 @@ class _Builder:
                 self.aims += aims
                 return constraints
             case Skate():
-                constraints, aims, repairs = blade(joint, settings.skate, first, second)
+                constraints, aims, repairs = blade(joint, settings.skate, first, second, self.mechanism.length_scale)
                 self.aims += aims
                 self.repairs += repairs
                 self.rows += 0 if constraints else 1  # held by hand
@@ -199,7 +199,7 @@ class _Builder:
         sides = tuple(
             (body, lambda p, n=name: self._own(n, p)) for body, name in ((first, joint.first), (second, joint.second))
         )
-        shapes = touching(joint, contact, self.rolls, sides)  # pyright: ignore[reportArgumentType]
+        shapes = touching(joint, contact, extent_of(self.mechanism), self.rolls, sides)  # pyright: ignore[reportArgumentType]
         self.space.add(*shapes)
         self.rolls += 1
         self.rows += 2

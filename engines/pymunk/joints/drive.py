@@ -87,5 +87,5 @@ def turned_body(drive: Drive, body: Body, unit: float) -> pymunk.Body:
 
 def motor(joint: Drive, first: pymunk.Body, second: pymunk.Body, unit: float) -> SimpleMotor:
     """One velocity row: it holds the rate and knows no angle, so what the sweeps leave adds up as a drift."""
-    # pymunk drives omega_first - omega_second to the motor's rate.
+    # Chipmunk drives omega_first - omega_second to the motor's rate (applyImpulse in its cpSimpleMotor.c).
     return SimpleMotor(first, second, -joint.turning_rate * unit)

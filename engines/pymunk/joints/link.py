@@ -31,7 +31,8 @@ class Link:
         second: pymunk.Body,
         second_point: Vector,
         first_point: Vector = (0.0, 0.0),
-        reach: float = 10.0,
+        *,
+        reach: float,
     ) -> None:
         self.constraint = PinJoint(first, second, (reach, reach), second_point)
         self.constraint.distance = reach

@@ -28,6 +28,7 @@ from engines.rolling_table import rolled, unplaced
 from reference.curves.circles_lines import Circle, Line
 from reference.curves.curve import Curve, Vector
 from reference.kinds import from_to
+from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Fraction, NonNegative, Valid
 
@@ -41,7 +42,7 @@ def _shipped() -> tuple[float, float]:
 
 
 SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # 0.1, 0.9 ** 60
-REACH = 1e3  # m, half the length of flat ground
+REACH = 1e3  # half the length of flat ground, in the mechanism's extents
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,10 @@ class Contact(Valid):
     """How contact is set: `slop` [m] of overlap is left alone, the fraction `bias` of the rest is left after a second.
 
     `friction` of each shape (the engine multiplies the two); `vertices` of a body that is not round, equally far apart
-    along its rim; `thickness` [m] of flat ground, as the radius of a segment that lies this deep. On ground without
-    thickness a polygon of some hundred corners is at times given a wrong normal: it is thrown, or stops dead. Raises
-    ValueError for other values: the engine would abort the process, or give NaN.
+    along its rim; `thickness` of flat ground, a part of the mechanism's extent (`extent_of`), as the radius of a
+    segment that lies this deep. On ground without thickness a polygon of some hundred corners is at times given a wrong
+    normal: it is thrown, or stops dead (a test in `tests/test_pymunk_rolls.py` has it). Raises ValueError for other
+    values: the engine would abort the process, or give NaN.
     """
 
     slop: NonNegative = SHIPPED_SLOP
@@ -64,20 +66,31 @@ class Contact(Valid):
 SHIPPED_CONTACT = Contact()
 
 
+def extent_of(mechanism: Mechanism) -> float:
+    """About how far a rolling body of the mechanism reaches across [m], to the next power of ten.
+
+    It is for lengths that only have to be large or small enough: steps of ten leave them as they are, to the last bit,
+    for all mechanisms of about one size.
+    """
+    return 10.0 ** round(math.log10(2 * mechanism.length_scale))
+
+
 def touching(
     joint: Roll,
     contact: Contact,
+    extent: float,
     index: int,
     sides: tuple[tuple[pymunk.Body, Callable[[Vector], Vector]], tuple[pymunk.Body, Callable[[Vector], Vector]]],
 ) -> list[pymunk.Shape]:
     """The shapes of both curves, that see each other only; `index` counts the mechanism's Rolls from 0.
 
-    `sides` are the first and second body, each with what gives a point from the engine's origin.
+    `extent` [m] is the mechanism's. `sides` are the first and second body, each with what gives a point from the
+    engine's origin.
     """
     if index >= 32:
         raise Unsupported(f"joint {joint.name!r}: pymunk's shape filter tells 32 pairs apart, and this is one more")
     shapes = [
-        _shape(joint, curve, body, own, contact)
+        _shape(joint, curve, body, own, contact, extent)
         for curve, (body, own) in zip((joint.rolling.ground, joint.rolling.body), sides, strict=True)
     ]
     for shape in shapes:
@@ -87,7 +100,7 @@ def touching(
 
 
 def _shape(
-    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], contact: Contact
+    joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], contact: Contact, extent: float
 ) -> pymunk.Shape:
     inner, shift, turn = unplaced(curve)
     if isinstance(inner, Circle):
@@ -95,10 +108,11 @@ def _shape(
         return pymunk.Circle(body, inner.radius, own((centre.real, centre.imag)))
     if isinstance(inner, Line):
         along = rect(1.0, turn + inner.heading)
-        below = contact.thickness * 1j * along  # material is to the left
+        thickness, reach = contact.thickness * extent, REACH * extent * along
+        below = thickness * 1j * along  # material is to the left
         through = rect(1.0, turn) * complex(*inner.through) + shift + below
-        back, front = (own((end.real, end.imag)) for end in (through - REACH * along, through + REACH * along))
-        return pymunk.Segment(body, back, front, contact.thickness)
+        back, front = (own((end.real, end.imag)) for end in (through - reach, through + reach))
+        return pymunk.Segment(body, back, front, thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
             f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: a hole of "

@@ -33,21 +33,23 @@ from reference.joints import Skate
 
 SkateConstruction = Literal["centre", "point", "projection", "stale groove", "groove", "friction"]
 
+LINK_REACH = 10.0  # lengths of the mechanism: far against what a body turns in a step, near against its rounding
+
 Aim = Callable[[float], None]
 Repair = Callable[[], None]
 
 
 def blade(
-    joint: Skate, construction: SkateConstruction, first: pymunk.Body, second: pymunk.Body
+    joint: Skate, construction: SkateConstruction, first: pymunk.Body, second: pymunk.Body, length: float
 ) -> tuple[list[Constraint], list[Aim], list[Repair]]:
-    """Constraints, what to do before each step and what after it; raises Unsupported."""
+    """Constraints, what to do before each step and what after it; `length` [m] of the mechanism; raises Unsupported."""
     if construction == "friction":
         raise Unsupported(
             f"joint {joint.name!r}: no friction of pymunk's shapes makes a blade: contacts press in the plane, and a "
             "blade seen from above presses on nothing in the plane, so there is no normal force to multiply"
         )
     if construction == "groove" and joint.first is not None:
-        link = Link(joint, first, second, joint.second_point)
+        link = Link(joint, first, second, joint.second_point, reach=LINK_REACH * length)
         return [link.constraint], [link], []
     if joint.first is not None:
         raise Unsupported(f"joint {joint.name!r}: the construction {construction!r} knows a skate on the ground only")
@@ -71,7 +73,8 @@ class AimedGroove:
         self.constraint = GrooveJoint(ground, body, (-1.0, 0.0), (1.0, 0.0), anchor)
         self._pointer, self._body = self.constraint._constraint, body._body
         self._angle, self._predicted = joint.angle, predicted
-        # Its ends, as far from the blade as it is long [m]: the blade can't come near them in a step.
+        # Its ends [m]: the blade can't come near them in a step, as the groove is laid anew under it. A metre whatever
+        # the mechanism's size, because another length rounds the slip otherwise, and with it published numbers.
         half = 1.0 + abs(along)
         self._back, self._front = along - half, along + half
 

@@ -70,7 +70,8 @@ def _add_ground(building: Building) -> None:
         name="ice",
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         size=[0.0, 0.0, 1.0],
-        pos=[0.0, 0.0, 1e-3 * building.mechanism.length_scale],  # at zero MuJoCo would never look at its height again
+        # At zero it would be compiled as a geom in its body's own frame (geom_sameframe), and `geom_pos` never read.
+        pos=[0.0, 0.0, 1e-3 * building.mechanism.length_scale],
         contype=0,
         conaffinity=0,
     )

@@ -79,7 +79,7 @@ def add_passive_forces(building: Building, joints: Sequence[WrittenJoint]) -> No
         bias, without = np.empty(compiled.nv), np.empty((1, compiled.nv))
 
         def apply(model: Any, data: Any) -> None:
-            # Gravity and velocity terms; MuJoCo computes its own only after the passive forces.
+            # Gravity and velocity terms; MuJoCo computes its own only after the passive forces (mj_fwdVelocity).
             mujoco.mj_rne(model, data, 0, bias)
             mujoco.mj_solveM(model, data, without, (data.qfrc_passive - bias)[None])
             data.qfrc_passive[:] += reaction(model, data, rows, without[0])
