@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from engines import Engine
 from engines.conformance import moving, refusing, same, sampled
-from engines.conformance.check import Case, Check, Result, Subject
+from engines.conformance.check import Case, Check, Result, Status, Subject
 
 CHECKS: tuple[Check, ...] = (*refusing.CHECKS, *sampled.CHECKS, *moving.CHECKS, *same.CHECKS)
 
@@ -22,4 +22,4 @@ def cases(*engines: Engine) -> Iterator[Case]:
                 yield Case(subject, check, world)
 
 
-__all__ = ["CHECKS", "Case", "Check", "Result", "Subject", "cases"]
+__all__ = ["CHECKS", "Case", "Check", "Result", "Status", "Subject", "cases"]

@@ -19,6 +19,7 @@ Status = Literal["holds", "fails", "not supported", "not asked"]
 
 STEP = 0.01  # s, of the runs that most checks look at: a sixth of a radian of the fastest motion
 SAMPLES = 8
+FEWEST_WORDS = 4  # of a sentence that says what can't be and why
 
 
 class Fails(AssertionError):
@@ -81,6 +82,16 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
             "a Trajectory",
             "what a run can't go on from is an exception instead of NaN from that sample on",
         ) from error
+
+
+def require_a_sentence(text: str, what: str) -> None:
+    """Fails unless it is one line of some words."""
+    if len(text.split()) < FEWEST_WORDS or not text.isprintable():
+        raise Fails(
+            f"{text!r} for {what}",
+            f"one line of at least {FEWEST_WORDS} words",
+            "it is raised without the sentence that a reader of the report gets to see",
+        )
 
 
 def finite(run: Trajectory) -> Trajectory:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from engines import Unsupported
-from engines.conformance.check import Check, Fails, NotAsked, Subject, stepped
+from engines.conformance.check import Check, Fails, NotAsked, Subject, require_a_sentence, stepped
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
 from reference.curves.round import Circle, Line
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
-
-FEWEST_WORDS = 4  # of a sentence that says what can't be built and why
 
 
 def builds_or_refuses(subject: Subject, world: World) -> None:
@@ -22,8 +21,18 @@ def builds_or_refuses(subject: Subject, world: World) -> None:
     try:
         subject.build(world.mechanism)
     except Unsupported as reason:
-        _require_a_sentence(reason, world.name)
+        require_a_sentence(str(reason), world.name)
         raise
+
+
+def builds_at_least_one(subject: Subject) -> None:
+    """At least one of the mechanisms of these checks is built, or nothing is checked at all."""
+    if _first_built(subject) is None:
+        raise Fails(
+            "a refusal of every one of them",
+            "a run of one",
+            "a package that the engine needs is not installed, or it is made for mechanisms of another kind",
+        )
 
 
 def refuses_odd_mechanisms(subject: Subject) -> None:
@@ -32,7 +41,7 @@ def refuses_odd_mechanisms(subject: Subject) -> None:
         try:
             run = subject.build(mechanism)
         except Unsupported as reason:
-            _require_a_sentence(reason, name)
+            require_a_sentence(str(reason), name)
             continue
         except Fails as failure:
             raise _of(name, failure) from failure
@@ -50,26 +59,16 @@ def _of(name: str, failure: Fails) -> Fails:
     )
 
 
-def _require_a_sentence(reason: Unsupported, name: str) -> None:
-    text = str(reason)
-    if len(text.split()) < FEWEST_WORDS or "\n" in text or not text.isprintable():
-        raise Fails(
-            f"the refusal {text!r} of {name}",
-            f"one line of at least {FEWEST_WORDS} words",
-            "Unsupported is raised without the sentence that a reader of the report gets to see",
-        )
-
-
 def refuses_bad_steps(subject: Subject) -> None:
     """A step that is not a finite time above zero is a ValueError that names dt."""
-    mechanism = _any_supported(subject)
+    mechanism = any_built(subject)
     for value in (0.0, -0.01, math.nan, math.inf, "0.01", None, True):
         _refused("dt", value, lambda value=value: subject.engine.build(mechanism, value))
 
 
 def refuses_bad_counts(subject: Subject) -> None:
     """Counts of samples and of steps that are not whole numbers above zero are a ValueError that names them."""
-    mechanism = _any_supported(subject)
+    mechanism = any_built(subject)
     for value in (0, -1, 1.5, math.nan, "2", None, True):
         run = subject.build(mechanism)
         _refused("samples", value, lambda value=value, run=run: run(value, 1))
@@ -90,20 +89,26 @@ def _refused(name: str, value: Any, ask: Callable[[], Any]) -> None:
     raise Fails(f"{name} = {value!r} taken", "a ValueError", means)
 
 
-def _any_supported(subject: Subject) -> Mechanism:
-    """The first mechanism that the engine builds."""
+def _first_built(subject: Subject) -> Mechanism | None:
+    """The first mechanism that the engine builds; None if it builds none."""
     for world in (*MOVING, *WORLDS):
-        try:
+        with suppress(Unsupported, Fails):  # how it fails is another check's
             subject.build(world.mechanism)
-        except Unsupported:
-            continue
-        return world.mechanism
-    raise NotAsked("the engine builds none of the mechanisms of these checks")
+            return world.mechanism
+    return None
+
+
+def any_built(subject: Subject) -> Mechanism:
+    """The same; raises NotAsked if it builds none."""
+    found = _first_built(subject)
+    if found is None:
+        raise NotAsked("the engine builds none of the mechanisms of these checks")
+    return found
 
 
 def stands_alone(subject: Subject) -> None:
     """A run is one shot: a second call is refused, not continued from where the first one ended."""
-    run = subject.build(_any_supported(subject))
+    run = subject.build(any_built(subject))
     first = stepped(run, 2, 1)
     try:
         second = run(2, 1)
@@ -178,6 +183,7 @@ def _odd() -> dict[str, Mechanism]:
 ODD = _odd()
 CHECKS = (
     Check(builds_or_refuses, (*WORLDS, SPINNING)),
+    Check(builds_at_least_one),
     Check(refuses_odd_mechanisms),
     Check(refuses_bad_steps),
     Check(refuses_bad_counts),

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from reports.cli.conform import conform
 from reports.cli.errata import errata
 from reports.cli.interruption import kept
 from reports.cli.report import FOLDER, STORE, Folder, report, with_folder
@@ -199,6 +200,7 @@ def bench(
 app.command("report")(report)
 app.command("shapes")(shapes)
 app.command("errata")(errata)
+app.command("conform")(conform)
 
 
 def invoke(arguments: Sequence[str]) -> int:
