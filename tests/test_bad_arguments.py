@@ -41,7 +41,9 @@ NOT_MADE_BY_USERS = {
     *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
     *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.pymunk.boundaries.Straight"),
     *("engines.pymunk.boundaries.Round", "engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings"),
-    *("engines.pymunk.model.Model", "engines.pymunk.running.Recording"),
+    *("engines.pymunk.model.Model", "engines.pymunk.running.Recording", "engines.conformance.changes.Isometry"),
+    *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
+    *("engines.conformance.worlds.Motion", "engines.conformance.worlds.World"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 

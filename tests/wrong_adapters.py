@@ -14,6 +14,7 @@ from engines.pymunk import LEAPFROG
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reference.validation import Count, validated
 
 Build = Callable[[Mechanism, float], Any]
 
@@ -49,9 +50,7 @@ class Spoiled:
 
 def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Callable[..., Any]:
     """The mistake of changing what a right run gives."""
-    return lambda inner, mechanism, dt: Spoiled(
-        inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt)
-    )
+    return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda given: spoil(given, mechanism, dt))
 
 
 def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
@@ -61,19 +60,27 @@ def moved(given: Trajectory, name: str, by: Any) -> Trajectory:
     return replace(given, **{name: values})
 
 
-class Calls:
-    """A run that is what a function says; each call gets (samples, every)."""
+class Careless:
+    """A run that is what a function of (samples, every) says, whatever these are."""
 
     def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
         self.size, self._call = size, call
 
-    def __call__(self, samples: int, every: int) -> Any:
+    def __call__(self, samples: Any, every: Any) -> Any:
+        return self._call(samples, every)
+
+
+class Calls(Careless):
+    """The same, for counts that can be."""
+
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Any:
         return self._call(samples, every)
 
 
 def key_error(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     known = {Pin: "pivot", Drive: "motor", Skate: "groove"}
-    assert [known[type(joint)] for joint in mechanism.joints] is not None
+    assert all(known[type(joint)] for joint in mechanism.joints)
     return inner.build(mechanism, dt)
 
 
@@ -98,7 +105,7 @@ def any_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     run = inner.build(mechanism, dt)
-    return Calls(run.size, lambda samples, every: run(max(1, int(samples)), every))
+    return Careless(run.size, lambda samples, every: run(max(1, int(samples)), every))
 
 
 def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
@@ -110,7 +117,9 @@ def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
         whole = inner.build(mechanism, dt)(done + samples, every)
         part = slice(done, None)
         done += samples
-        return replace(whole, t=whole.t[: samples + 1], **{k: getattr(whole, k)[part] for k in ("pose", "twist", "reaction")})
+        return replace(
+            whole, t=whole.t[: samples + 1], **{k: getattr(whole, k)[part] for k in ("pose", "twist", "reaction")}
+        )
 
     return Calls(inner.build(mechanism, dt).size, call)
 
@@ -150,11 +159,28 @@ def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 def second_first(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
     """The first sample is taken after the first step."""
+    return told_by(inner, mechanism, dt, lambda now, following, before: following, True, ("pose", "twist", "reaction"))
+
+
+def told_by(
+    inner: Engine,
+    mechanism: Mechanism,
+    dt: float,
+    tell: Callable[[Any, Any, Any], Any],
+    first: bool,
+    names: tuple[str, ...],
+) -> Any:
+    """Samples told by the states at them, a step later and a step before; the `first` sample too, or as it is."""
     run = inner.build(mechanism, dt)
 
     def call(samples: int, every: int) -> Trajectory:
         fine = run(samples * every + 1, 1)
-        parts = {name: getattr(fine, name)[1::every] for name in ("pose", "twist", "reaction")}
+        parts = {name: getattr(fine, name)[:-1:every].copy() for name in ("pose", "twist", "reaction")}
+        for name in names:
+            whole = getattr(fine, name)
+            before = np.concatenate([whole[:1], whole])[: samples * every + 1 : every]
+            told = tell(parts[name], whole[1::every], before)
+            parts[name][0 if first else 1 :] = told[0 if first else 1 :]
         return replace(fine, t=np.arange(samples + 1) * every * dt, **parts)
 
     return Calls(run.size, call)
@@ -185,8 +211,8 @@ def written_into(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def one_long_step(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    size = inner.build(mechanism, dt).size
-    return Calls(size, lambda samples, every: inner.build(mechanism, dt * every)(samples, 1))
+    kept = [inner.build(mechanism, dt)]
+    return Calls(kept[0].size, lambda samples, every: kept.pop() and inner.build(mechanism, dt * every)(samples, 1))
 
 
 def wrapped(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
@@ -208,16 +234,12 @@ def pose_half_a_step_late(given: Trajectory, mechanism: Mechanism, dt: float) ->
     return moved(given, "pose", given.twist * dt / 2)
 
 
-def _changes(given: Trajectory) -> Any:
-    return np.gradient(given.twist, given.t, axis=0)
+def twist_half_a_step_late(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+    return told_by(inner, mechanism, dt, lambda now, following, before: (now + following) / 2, False, ("twist",))
 
 
-def twist_half_a_step_late(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "twist", _changes(given) * dt / 2)
-
-
-def twist_a_step_early(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    return moved(given, "twist", -_changes(given) * dt)
+def twist_a_step_early(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+    return told_by(inner, mechanism, dt, lambda now, following, before: before, False, ("twist",))
 
 
 def first_order_poses(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
@@ -273,6 +295,7 @@ def always_on_the_body(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 # Mistake -> how it builds; the check that is named like it in FOUND_BY has to find it.
 MISTAKES: dict[str, Callable[..., Any]] = {
+    "nothing": lambda inner, mechanism, dt: inner.build(mechanism, dt),
     "a kind of joint is looked up": key_error,
     "a refusal of two words": terse,
     "nothing is built": refuses_all,
@@ -295,8 +318,8 @@ MISTAKES: dict[str, Callable[..., Any]] = {
     "reactions have the other sign": after(other_sign),
     "reactions are twice as large": after(double_force),
     "poses are half a step late": after(pose_half_a_step_late),
-    "velocities are half a step late": after(twist_half_a_step_late),
-    "velocities are of the step before": after(twist_a_step_early),
+    "velocities are half a step late": twist_half_a_step_late,
+    "velocities are of the step before": twist_a_step_early,
     "poses are of first order": after(first_order_poses),
     "velocities are of first order": after(first_order_twists),
     "gravity points down": gravity_down,
@@ -307,3 +330,6 @@ MISTAKES: dict[str, Callable[..., Any]] = {
     "reactions of pins are told first": pins_first,
     "reactions are always of the body": always_on_the_body,
 }
+
+HALF_A_STEP_LATE = Wrong("velocities are half a step late")
+NO_ENGINES: tuple[Wrong, ...] = ()

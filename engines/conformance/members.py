@@ -21,7 +21,9 @@ ADDRESS = re.compile(r" at 0x[0-9a-f]+", re.IGNORECASE)
 
 def _member(subject: Subject, name: str) -> Any:
     if not hasattr(subject.engine, name):
-        raise Fails(f"no member {name!r}", "one, as the contract of `engines` says", "the contract has got a member since")
+        raise Fails(
+            f"no member {name!r}", "one, as the contract of `engines` says", "the contract has got a member since"
+        )
     return getattr(subject.engine, name)
 
 
@@ -30,7 +32,9 @@ def has_a_name(subject: Subject) -> None:
     for name in ("name", "variant", "family"):
         value = _member(subject, name)
         if not (isinstance(value, str) and value.strip() and value.isprintable()):
-            raise Fails(f"{name} = {value!r}", "a string that is not empty and can be printed", "it is made from a setting")
+            raise Fails(
+                f"{name} = {value!r}", "a string that is not empty and can be printed", "it is made from a setting"
+            )
 
 
 def is_a_frozen_dataclass(subject: Subject) -> None:
@@ -54,7 +58,7 @@ def can_be_a_key(subject: Subject) -> None:
         hash(subject.engine)
     except TypeError as error:
         raise Fails(str(error), "a hash", "a setting is a list or an array instead of a tuple") from error
-    if subject.engine != subject.engine:  # noqa: PLR0124
+    if subject.engine != subject.engine:
         raise Fails("an engine that differs from itself", "equality", "a setting is NaN")
 
 
@@ -139,7 +143,9 @@ def tells_how_joints_give_way(subject: Subject, world: World) -> None:
     for name, least in (("stiffness", 0.0), ("damping", 0.0), ("compliance", -math.inf)):
         value = getattr(soft, name)
         if not (math.isfinite(value) and value > least and value >= 0):
-            raise Fails(f"{name} = {value!r}", "a finite number, above zero but for the compliance", "units are mixed up")
+            raise Fails(
+                f"{name} = {value!r}", "a finite number, above zero but for the compliance", "units are mixed up"
+            )
     if len(soft.rows) != world.mechanism.row_count:
         raise Fails(f"{len(soft.rows)} rows", f"{world.mechanism.row_count}", "it counts joints")
 

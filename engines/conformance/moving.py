@@ -8,7 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-class Unpromised: reason=""
+
+class Unpromised:
+    reason = ""
+
+
 from engines.conformance.check import Check, Fails, NotAsked, Subject, finite
 from engines.conformance.worlds import MOVING, WORLDS, World
 from reference.mechanism import Mechanism
@@ -87,7 +91,7 @@ def _require_an_order(subject: Subject, world: World) -> Any:
 
 
 REFINED = (1, 3, 9)  # times as many steps as of the others: between them an order shows as a factor of 3^order
-SPAN, WHOLE = 0.1, 5  # s, and samples in it
+SPAN, WHOLE = 0.06, 3  # s, and samples in it
 # Room above what the promised order lets expect of the coarser steps: the next power of the step, and samples.
 ROOM = 2.5
 # Relative to the motion, an error of this size is rounding, or that of a drive whose rate is held by an inertia of a
@@ -125,7 +129,7 @@ def _gives_way_for_good(subject: Subject, world: World) -> bool:
 
 def _give(subject: Subject, world: World, dt: float) -> float:
     """s^2: the way that a joint gives, over the acceleration that it should prevent."""
-    softness = getattr(subject.engine, "softness", lambda m,d: None)(world.mechanism, dt)
+    softness = getattr(subject.engine, "softness", lambda m, d: None)(world.mechanism, dt)
     return 0.0 if softness is None else softness.compliance / softness.stiffness
 
 

@@ -26,7 +26,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         return
     engines = [engine for marker in metafunc.definition.iter_markers("conforms") for engine in marker.args]
     if not engines:
-        raise pytest.UsageError(f"{metafunc.definition.nodeid}: it names no engine; mark it pytest.mark.conforms(ENGINE)")
+        raise pytest.UsageError(
+            f"{metafunc.definition.nodeid}: it names no engine; mark it pytest.mark.conforms(ENGINE)"
+        )
     metafunc.parametrize("conformance", list(cases(*engines)), ids=str, indirect=True)
 
 

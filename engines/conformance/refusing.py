@@ -1,4 +1,4 @@
-"""Checks of what an engine refuses: mechanisms by Unsupported with a sentence, values by a ValueError that names them."""
+"""Checks of refusals: mechanisms by Unsupported with a sentence, values by a ValueError that names them."""
 
 from __future__ import annotations
 
@@ -83,7 +83,9 @@ def _refused(name: str, value: Any, ask: Callable[[], Any]) -> None:
     except ValueError as error:
         if name in str(error):
             return
-        raise Fails(f"{name} = {value!r} refused with {error!s}", f"a message with {name}", "another value is named") from None
+        raise Fails(
+            f"{name} = {value!r} refused with {error!s}", f"a message with {name}", "another value is named"
+        ) from None
     except Exception as error:
         raise Fails(f"{type(error).__name__}: {error} for {name} = {value!r}", "a ValueError", means) from error
     raise Fails(f"{name} = {value!r} taken", "a ValueError", means)
@@ -129,7 +131,10 @@ def _free(name: str, x: float, spin: float = 0.5) -> Body:
 def _odd() -> dict[str, Mechanism]:
     """Mechanisms that are valid and that an engine may not have thought of."""
     left, right, still = _free("left", 0.0), _free("right", 1.0), _free("left", 0.0, 0.0)
-    hinge, other = Pin("hinge", None, "left", (0.0, 0.0), (0.0, 0.0)), Pin("other", None, "right", (1.0, 0.0), (0.0, 0.0))
+    hinge, other = (
+        Pin("hinge", None, "left", (0.0, 0.0), (0.0, 0.0)),
+        Pin("other", None, "right", (1.0, 0.0), (0.0, 0.0)),
+    )
     beside = Body("right", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.5, 0.5))  # moves with the left body's rotation
     wheel = rolling(Circle(0.5), 0.5, 0.0, 0.0)  # on the left body's rim
     cases: dict[str, tuple[tuple[Body, ...], tuple[Joint, ...]]] = {

@@ -40,7 +40,9 @@ def same_if_shifted(subject: Subject, world: World) -> None:
 
 def same_if_mirrored(subject: Subject, world: World) -> None:
     """The whole world seen in a mirror moves in the mirrored way."""
-    _same(subject, world, Isometry(mirrored=True), OWN, "a sign of an angle or of a direction across is taken for granted")
+    _same(
+        subject, world, Isometry(mirrored=True), OWN, "a sign of an angle or of a direction across is taken for granted"
+    )
 
 
 def same_if_relabelled(subject: Subject, world: World) -> None:

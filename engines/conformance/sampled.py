@@ -38,14 +38,18 @@ def told_in_shape(subject: Subject, world: World) -> None:
     ):
         found = np.shape(getattr(run, name))
         if found != shape:
-            raise Fails(f"{name} of the shape {found}", f"{shape}", "the first sample, the start, is left out or counted twice")
+            raise Fails(
+                f"{name} of the shape {found}", f"{shape}", "the first sample, the start, is left out or counted twice"
+            )
     for name, value, kinds in (
         ("warnings", run.warnings, tuple),
         ("reset_at", run.reset_at, (float, type(None))),
         ("estimate", run.estimate, (np.ndarray, type(None))),
     ):
         if not isinstance(value, kinds):
-            raise Fails(f"{name} of the type {type(value).__name__}", "what Trajectory says", "a field is filled by place")
+            raise Fails(
+                f"{name} of the type {type(value).__name__}", "what Trajectory says", "a field is filled by place"
+            )
 
 
 def told_size(subject: Subject, world: World) -> None:
@@ -155,9 +159,9 @@ def does_not_wrap_angles(subject: Subject, world: World) -> None:
     """An angle goes on beyond a whole turn, and starts where the mechanism says though that is several turns."""
     run = finite(subject.run(world.mechanism))
     off = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])
-    # A turn is 6.3 rad; the motion is a steady rotation, which every consistent method follows far better than this.
-    if not off <= 0.1:
-        raise Fails(f"an angle that is {off:.3g} rad off", "at most 0.1 rad", "angles are taken from a sine and a cosine")
+    # A turn is 6.3 rad, and a step 0.6 rad of it.
+    if not off <= 1.0:
+        raise Fails(f"an angle that is {off:.3g} rad off", "at most 1 rad", "angles are taken from a sine and a cosine")
 
 
 CHECKS = (

@@ -97,12 +97,12 @@ def _body(name: str, mass: float = MASS, inertia: float = INERTIA) -> Body:
     return Body(name, mass, inertia, (0.0, 0.0, 0.0))
 
 
-def _resting(
-    name: str, joints: tuple[Joint, ...], reaction: list[float], place: tuple[float, float, float]
-) -> World:
+def _resting(name: str, joints: tuple[Joint, ...], reaction: list[float], place: tuple[float, float, float]) -> World:
     """One body that stays where it is."""
     still = [[0.0, 0.0, 0.0]]
-    return _world(name, (_body("body"),), joints, (0.0, -G), lambda t: ([list(place)], still, still), lambda t: reaction)
+    return _world(
+        name, (_body("body"),), joints, (0.0, -G), lambda t: ([list(place)], still, still), lambda t: reaction
+    )
 
 
 def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array, Array, Array]:
@@ -194,9 +194,7 @@ def _sliding_block() -> World:
         return [[way * x, way * y, 0.3 + spin * t]], [[now * x, now * y, spin]], [[pull * x, pull * y, 0.0]]
 
     slot = Slot("guide", None, "body", (0.0, 0.0), slope, (0.0, 0.0))
-    return _world(
-        "sliding block", (_body("body"),), (slot,), (0.0, -G), states, lambda t: [MASS * G * math.cos(slope)]
-    )
+    return _world("sliding block", (_body("body"),), (slot,), (0.0, -G), states, lambda t: [MASS * G * math.cos(slope)])
 
 
 def _bead() -> World:
@@ -292,8 +290,9 @@ def _skate() -> World:
 def _sleigh() -> World:
     """Chaplygin's sleigh, its blade behind the centre of mass, on level ice: in the end it runs straight ahead.
 
-    With v along the blade and w the rate: v' = arm w^2, (I + m arm^2) w' = -m arm v w. So v = V tanh(s), w = W / cosh(s)
-    with V^2 m = W^2 (I + m arm^2), and the heading is W / p (gd(s) - gd(s0)), p = m arm V / (I + m arm^2), s = s0 + p t.
+    With v along the blade and w the rate: v' = arm w^2, (I + m arm^2) w' = -m arm v w. So v = V tanh(s) and
+    w = W / cosh(s), where V^2 m = W^2 (I + m arm^2) and s = s0 + p t with p = m arm V / (I + m arm^2). The heading has
+    turned by W / p (gd(s) - gd(s0)), gd the Gudermannian function.
     """
     arm, largest, begin, turned = 0.4, 2.0, 0.5, 0.3
     whole = INERTIA + MASS * arm**2
@@ -361,7 +360,7 @@ def _disc() -> World:
 
 
 def _disc_in_a_hole() -> World:
-    """A disc rolls to and fro at the bottom of a round hole, like a pendulum of frequency^2 = g / (q (1 + I / m r^2))."""
+    """A disc rolls to and fro at the bottom of a round hole: a pendulum of frequency^2 = g / (q (1 + I / (m r^2)))."""
     hole, radius, begin = 1.2, 0.3, 0.5
     between = hole - radius
     frequency = math.sqrt(G / (between * (1 + INERTIA / (MASS * radius**2))))
