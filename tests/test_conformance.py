@@ -15,12 +15,25 @@ from engines.pymunk import rolls as pymunk_rolls
 from engines.pymunk import skates as pymunk_skates
 from engines.pymunk import slots as pymunk_slots
 from reports.__main__ import main
-from tests.wrong_adapters import Wrong
+from tests.wrong_adapters import MISTAKES, TALKERS, Wrong, wrong
 
 # The check that has to find a mistake, and does so before any other.
 FOUND_BY = {
     "a kind of joint is looked up": "builds_or_refuses",
     "a refusal of two words": "builds_or_refuses",
+    "the family has two lines": "has_a_name",
+    "it can be changed": "is_a_frozen_dataclass",
+    "a setting is not shown": "is_a_frozen_dataclass",
+    "a setting is a list": "can_be_a_key",
+    "its class is local": "travels_to_a_worker",
+    "what is no field is lost": "travels_to_a_worker",
+    "a package has another name": "names_its_packages",
+    "the order is a number": "promises_an_order",
+    "an order is refused in a word": "promises_an_order",
+    "a step costs nothing": "tells_what_a_step_costs",
+    "a step's cost is measured": "tells_what_a_step_costs",
+    "who holds a skate is told in another word": "tells_who_holds_a_joint",
+    "softness counts joints": "tells_how_joints_give_way",
     "nothing is built": "builds_at_least_one",
     "the first joint is looked at": "refuses_odd_mechanisms",
     "a bad step is replaced": "refuses_bad_steps",
@@ -125,7 +138,7 @@ def test_another_description_is_of_the_same_motion(world, change):
 
 @pytest.mark.parametrize("mistake", FOUND_BY)
 def test_a_wrong_adapter_fails_by_the_name_of_its_mistake(mistake):
-    for case in cases(Wrong(mistake)):
+    for case in cases(wrong(mistake)):
         result = case.result()
         if result.status == "fails":
             assert case.check.name == FOUND_BY[mistake], result.sentence
@@ -137,6 +150,7 @@ def test_a_wrong_adapter_fails_by_the_name_of_its_mistake(mistake):
 
 
 def test_every_check_has_a_mistake_that_it_finds():
+    assert {*FOUND_BY} == {*MISTAKES, *TALKERS} - {"nothing"}
     assert {*FOUND_BY.values()} == {check.name for check in CHECKS}
 
 
@@ -165,7 +179,7 @@ def test_what_is_not_supported_is_no_pass():
 
 THEIRS = """
 import pytest
-from tests.wrong_adapters import Wrong
+from tests.wrong_adapters import MISTAKES, TALKERS, Wrong, wrong
 
 @pytest.mark.conforms(Wrong("nothing"), Wrong("reactions have the other sign"))
 def test_it_conforms(conformance):

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from engines import Engine
-from engines.conformance import moving, refusing, same, sampled
+from engines.conformance import members, moving, refusing, same, sampled
 from engines.conformance.check import Case, Check, Result, Status, Subject
 
-CHECKS: tuple[Check, ...] = (*refusing.CHECKS, *sampled.CHECKS, *moving.CHECKS, *same.CHECKS)
+CHECKS: tuple[Check, ...] = (
+    *refusing.CHECKS,
+    *members.CHECKS,
+    *sampled.CHECKS,
+    *moving.CHECKS,
+    *same.CHECKS,
+)
 
 
 def cases(*engines: Engine) -> Iterator[Case]:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 
-class Unpromised:
-    reason = ""
-
-
+from engines import Promise, Unpromised
 from engines.conformance.check import Check, Fails, NotAsked, Subject, finite
 from engines.conformance.worlds import MOVING, WORLDS, World
 from reference.mechanism import Mechanism
@@ -29,7 +25,7 @@ SIZE = 0.25  # of the largest reaction
 
 def poses_stand_at_their_instants(subject: Subject, world: World) -> None:
     """The first poses after the start lie on the exact motion at their own instants, not half a step or a step off."""
-    _require_an_order(subject, world)
+    _promise(subject, world)
     run = finite(subject.run(world.mechanism, SHORT, EARLY))
     exact = world.exact(run.t)
     _at_their_instants("pose", world, run.pose - exact.pose, exact.twist[0])
@@ -37,7 +33,7 @@ def poses_stand_at_their_instants(subject: Subject, world: World) -> None:
 
 def twists_stand_at_their_instants(subject: Subject, world: World) -> None:
     """The first twists after the start belong to their own instants, not half a step later or the step before."""
-    _require_an_order(subject, world)
+    _promise(subject, world)
     run = finite(subject.run(world.mechanism, SHORT, EARLY))
     exact = world.exact(run.t)
     _at_their_instants("twist", world, run.twist - exact.twist, exact.acceleration[0])
@@ -71,7 +67,7 @@ def _free(mechanism: Mechanism) -> Callable[[Array], Array]:
 
 def poses_have_their_order(subject: Subject, world: World) -> None:
     """Errors of poses fall at least as fast with the step as `order` promises, until rounding is left."""
-    _has_its_order(subject, world, "pose", "order")
+    _has_its_order(subject, world, "pose", "angle")
 
 
 def twists_have_their_order(subject: Subject, world: World) -> None:
@@ -79,12 +75,9 @@ def twists_have_their_order(subject: Subject, world: World) -> None:
     _has_its_order(subject, world, "twist", "rate")
 
 
-def _require_an_order(subject: Subject, world: World) -> Any:
-    """The engine's promise; raises NotAsked where it says that there is none, and why."""
-    order = getattr(subject.engine, "order", None)
-    if order is None:
-        return None
-    promise = order(world.mechanism)
+def _promise(subject: Subject, world: World) -> Promise:
+    """What the engine promises here; raises NotAsked where it says why it can't."""
+    promise = subject.engine.order(world.mechanism)
     if isinstance(promise, Unpromised):
         raise NotAsked(f"no order is promised: {promise.reason}")
     return promise
@@ -102,8 +95,7 @@ HARD = 1e-10
 
 
 def _has_its_order(subject: Subject, world: World, name: str, quantity: str) -> None:
-    promise = _require_an_order(subject, world)
-    order = 1.0 if promise is None else promise.of("angle" if name == "pose" else "rate")
+    order = _promise(subject, world).of(quantity)
     if _gives_way_for_good(subject, world):
         raise NotAsked("joints give way as the engine says, by the same at every step")
     errors = []
@@ -122,19 +114,21 @@ def _has_its_order(subject: Subject, world: World, name: str, quantity: str) -> 
 
 
 def _gives_way_for_good(subject: Subject, world: World) -> bool:
-    """Whether joints give way visibly under a force, and at the smallest step nearly as much as at the largest."""
-    coarse, fine = (_give(subject, world, SPAN / WHOLE / every) for every in (REFINED[0], REFINED[-1]))
-    return fine > HARD and fine * (REFINED[-1] / REFINED[0]) > ROOM * coarse
+    """Whether joints give way visibly under a force, and at the smallest step nearly as much as at the one before."""
+    coarse, fine = (_give(subject, world, SPAN / WHOLE / every) for every in REFINED[-2:])
+    return fine > HARD and fine * (REFINED[-1] / REFINED[-2]) > ROOM * coarse
 
 
 def _give(subject: Subject, world: World, dt: float) -> float:
     """s^2: the way that a joint gives, over the acceleration that it should prevent."""
-    softness = getattr(subject.engine, "softness", lambda m, d: None)(world.mechanism, dt)
+    softness = subject.engine.softness(world.mechanism, dt)
     return 0.0 if softness is None else softness.compliance / softness.stiffness
 
 
 def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
     """Reactions are forces on the second body: up where it hangs, and of the size of its weight and m a."""
+    subject.build(world.mechanism)
+    _promise(subject, world)  # a method without one holds another motion, with other forces
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t).reaction
     turning = world.mechanism.turning
