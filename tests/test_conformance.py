@@ -9,11 +9,8 @@ from engines import lagrange, mujoco, pymunk
 from engines.conformance import CHECKS, Case, Subject, cases
 from engines.conformance.changes import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS
-from engines.mujoco import rolls as mujoco_rolls
-from engines.mujoco import skates as mujoco_skates
-from engines.pymunk import rolls as pymunk_rolls
-from engines.pymunk import skates as pymunk_skates
-from engines.pymunk import slots as pymunk_slots
+from engines.mujoco import methods as of_mujoco
+from engines.pymunk import methods as of_pymunk
 from reports.__main__ import main
 from tests.wrong_adapters import MISTAKES, TALKERS, Wrong, wrong
 
@@ -70,8 +67,8 @@ FOUND_BY = {
 
 METHODS = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS)
 SPECIAL = (
-    *(*pymunk_skates.METHODS, *pymunk_slots.METHODS, *pymunk_rolls.METHODS),
-    *(*mujoco_skates.METHODS, *mujoco_rolls.METHODS, *mujoco.DRIVES),
+    *(*of_pymunk.SKATES, *of_pymunk.SLOTS, *of_pymunk.ROLLS),
+    *(*of_mujoco.SKATES, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
 # Steps in Python take seconds: one order and one treatment of the joints each are enough for every day.
 DAILY = (lagrange.Lagrange("euler", "baumgarte"), lagrange.Lagrange("rk4", "projection"))

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Curve, Placed
-from reference.curves.round import Circle, Line, Ring
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
@@ -92,11 +92,10 @@ class Isometry:
         sense = -1.0 if self.mirrored else 1.0
         own_angle = self._angle if ground else (lambda angle: sense * angle)
         match joint:
-            case Pin() | Slot():
-                first = self._place(*joint.first_point) if ground else self._inside(joint.first_point)
-                second = self._place(*joint.second_point) if joint.second is None else self._inside(joint.second_point)
-                moved = replace(joint, first_point=first, second_point=second)
-                return replace(moved, line_angle=own_angle(joint.line_angle)) if isinstance(moved, Slot) else moved
+            case Pin():
+                return replace(joint, **self._points(joint))
+            case Slot():
+                return replace(joint, **self._points(joint), line_angle=own_angle(joint.line_angle))
             case Skate():
                 return replace(joint, second_point=self._inside(joint.second_point), angle=sense * joint.angle)
             case Drive():
@@ -104,6 +103,16 @@ class Isometry:
                 return replace(joint, turning_rate=sense * joint.turning_rate, offset=offset)
             case Roll():
                 return replace(joint, rolling=self._rolling(joint.rolling, ground))
+
+    def _points(self, joint: Pin | Slot) -> dict[str, Any]:
+        """Both points where they are now."""
+        return {
+            point: self._place(*where) if body is None else self._inside(where)
+            for point, body, where in (
+                ("first_point", joint.first, joint.first_point),
+                ("second_point", joint.second, joint.second_point),
+            )
+        }
 
     def _rolling(self, rolling: Rolling, ground: bool) -> Rolling:
         first, first_arc, second, second_arc = rolling.ground, rolling.ground_arc, rolling.body, rolling.body_arc

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-
 from engines import Promise, Unpromised
 from engines.conformance.check import Check, Fails, NotAsked, Subject, finite
 from engines.conformance.worlds import MOVING, WORLDS, World

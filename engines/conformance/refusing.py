@@ -10,10 +10,13 @@ from typing import Any
 from engines import Unsupported
 from engines.conformance.check import Check, Fails, NotAsked, Subject, require_a_sentence, stepped
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
-from reference.curves.round import Circle, Line
+from reference.curves.circles_lines import Circle, Line
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
+
+BAD_STEPS: tuple[Any, ...] = (0.0, -0.01, math.nan, math.inf, "0.01", None, True)
+BAD_COUNTS: tuple[Any, ...] = (0, -1, 1.5, math.nan, "2", None, True)
 
 
 def builds_or_refuses(subject: Subject, world: World) -> None:
@@ -62,14 +65,14 @@ def _of(name: str, failure: Fails) -> Fails:
 def refuses_bad_steps(subject: Subject) -> None:
     """A step that is not a finite time above zero is a ValueError that names dt."""
     mechanism = any_built(subject)
-    for value in (0.0, -0.01, math.nan, math.inf, "0.01", None, True):
+    for value in BAD_STEPS:
         _refused("dt", value, lambda value=value: subject.engine.build(mechanism, value))
 
 
 def refuses_bad_counts(subject: Subject) -> None:
     """Counts of samples and of steps that are not whole numbers above zero are a ValueError that names them."""
     mechanism = any_built(subject)
-    for value in (0, -1, 1.5, math.nan, "2", None, True):
+    for value in BAD_COUNTS:
         run = subject.build(mechanism)
         _refused("samples", value, lambda value=value, run=run: run(value, 1))
         run = subject.build(mechanism)

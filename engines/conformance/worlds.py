@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipj, ellipkinc
 
-from reference.curves.round import Circle, Line, Ring
+from reference.curves.circles_lines import Circle, Line, Ring
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
