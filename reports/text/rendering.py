@@ -18,8 +18,10 @@ from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Failure, Material, Page, StabilityMap
 from reports.text import tables, unmeasured
+from reports.text.lookups import nearest_step
 from reports.text.overview import overview, with_overview
 from reports.text.provenance import machine, today, versions
+from reports.text.unmeasured import UNMEASURED
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
@@ -156,9 +158,21 @@ def _told_failure(failure: Failure, material: Material) -> Told:
         grid if rows else "",
         tables.outcome_table(rows) if any(row.sentence for row in rows) else "",
         observations if seen else "",
-        failure.remark,
+        _remark(failure, rows, material),
         unrun=not run and bool(failure.cells or failure.tasks),
     )
+
+
+def _remark(failure: Failure, rows: list[Measurement], material: Material) -> str:
+    """What the outcomes teach, with its numbers from the rows of the experiment."""
+
+    def at(method: str, step: float) -> Any:
+        return nearest_step((row for row in rows if row.method == method), step) or UNMEASURED
+
+    def count(*outcomes: str) -> Any:
+        return sum(not outcomes or row.outcome in outcomes for row in rows) if rows else UNMEASURED
+
+    return environment().from_string(failure.remark).render(at=at, count=count, **failure.words(material))
 
 
 def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> Told | None:
