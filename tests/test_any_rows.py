@@ -35,7 +35,8 @@ from reports.pages.skate import page as skate
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels.folding import Folding
-from reports.text.rendering import environment, render_index, render_page, render_readme
+from reports.text.rendering import render_index, render_page, render_readme
+from reports.text.templates import environment
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, committed_rows
 

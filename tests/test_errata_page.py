@@ -19,7 +19,8 @@ from reports.pages.errata import errata_engines as referees
 from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
 from reports.pages.errata.page import PAGE, SNIPPETS, digits, table
 from reports.pages.page import Material
-from reports.text.rendering import TEMPLATES, render_page
+from reports.text.rendering import render_page
+from reports.text.templates import TEMPLATES
 
 IDS = [str(erratum.number) for erratum in ERRATA]
 

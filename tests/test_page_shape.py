@@ -13,7 +13,7 @@ import pytest
 from reports.pages.page import Page
 from reports.text.programs import PAGES as FOLDER
 from reports.text.programs import program
-from reports.text.rendering import anchor
+from reports.text.templates import anchor
 from tests import test_any_rows as rendering
 from tests.test_any_rows import FROM_ROWS, cheap, whole, written
 

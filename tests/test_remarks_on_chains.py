@@ -133,3 +133,19 @@ def test_a_groove_at_a_rods_end_is_wrong_at_every_step_and_of_first_order_with_t
     shipped, closed = (found[f"pymunk {name}, GrooveJoint at the rod's end"] for name in ("default", "tuned"))
     assert stays(shipped)
     assert all(8 < coarse.angle / fine.angle < 13 for coarse, fine in pairwise(closed))
+
+
+def test_a_ring_hardened_too_far_has_its_joint_shut_and_more_energy_than_there_was() -> None:
+    found = methods(pendulum_failures.FAILURES, "A ring of a hundred links, closed by one joint")
+    assert stays(found["mujoco default"])
+    assert found["mujoco Newton, softening 1e-6"][0].angle < 1e-10
+    lost = found["mujoco Newton, softening 1e-8"][0]
+    assert lost.energy > 1
+    assert lost.gap < 1e-3
+    assert lost.angle < 1e-2
+
+
+def test_the_step_at_which_two_errors_cancel_has_a_smaller_error_than_the_next() -> None:
+    rows = methods(four_bar_failures.FAILURES, "Worse as the step shrinks")["mujoco default"]
+    lucky, finer = (next(row for row in rows if 0.5 < row.step / step < 2) for step in (1e-3, 1e-4))
+    assert lucky.angle < finer.angle / 5

@@ -22,7 +22,8 @@ from reports.grid.convergence import judged
 from reports.grid.measure import TIMINGS, measure
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Failure, Material, Observation, Page, StabilityMap
-from reports.text.rendering import environment, render_all
+from reports.text.rendering import render_all
+from reports.text.templates import environment
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))

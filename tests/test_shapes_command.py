@@ -17,7 +17,7 @@ import pytest
 from reference.centrodes import from_poses
 from reports import __main__ as command_line
 from reports.pages.centrodes.centrode_check import returned
-from reports.text.rendering import TEMPLATES
+from reports.text.templates import TEMPLATES
 
 HEADER = "t,x,y,angle"
 

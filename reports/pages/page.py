@@ -18,6 +18,10 @@ from reports.grid.tasks import Answer, Motion, Task, trajectory_of
 from reports.grid.usual_steps import FEATURED
 
 
+def no_words(material: Material) -> dict[str, Any]:
+    return {}
+
+
 @dataclass(frozen=True)
 class Observation:
     """What was found of something that is no cell: a motion that was kept, or a method of the reference."""
@@ -34,7 +38,9 @@ class Failure:
     `expected` says what the reference says should happen. `cells` have the purpose "failure". `tasks` are run with
     them; `observations` reads their answers, and formulas that cost nothing: it steps and integrates nothing.
     `columns` are the quantities (`reports.grid.quantities`) whose largest errors are told of every cell; without any, a
-    grid of methods and steps tells the angle's.
+    grid of methods and steps tells the angle's. `remark` is a template: its numbers are `at(method, step)`, the row of
+    the experiment at about a step [s], `count(outcome)`, how many of its rows ended so, `count()`, how many there are,
+    and what `words` gives. A clause within `if_measured` vanishes where one of its numbers is missing.
     """
 
     title: str
@@ -44,6 +50,7 @@ class Failure:
     remark: str = ""  # what the outcomes teach
     columns: tuple[str, ...] = ()
     tasks: tuple[Task, ...] = ()
+    words: Callable[[Material], Mapping[str, Any]] = no_words
 
 
 @dataclass(frozen=True)
@@ -103,10 +110,6 @@ def everything(scene: Scene, engine: Engine) -> bool:
 
 
 def no_figures(material: Material) -> dict[str, str]:
-    return {}
-
-
-def no_words(material: Material) -> dict[str, Any]:
     return {}
 
 

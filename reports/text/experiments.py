@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
@@ -13,6 +14,9 @@ from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES, quantity
 from reports.pages.page import Failure, Material, Observation
 from reports.text import tables
+from reports.text.lookups import nearest_step
+from reports.text.templates import environment
+from reports.text.unmeasured import UNMEASURED
 
 
 @dataclass(frozen=True)
@@ -44,9 +48,21 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
         else "",
         grid if rows else "",
         tables.outcome_table(rows, held) if any(row.sentence for row in rows) else "",
-        failure.remark,
+        _remark(failure, rows, material),
         unrun=not run and bool(failure.cells or failure.tasks),
     )
+
+
+def _remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
+    """What the outcomes teach, with its numbers from the rows of the experiment."""
+
+    def at(method: str, step: float) -> Any:
+        return nearest_step((row for row in rows if row.method == method), step) or UNMEASURED
+
+    def count(*outcomes: str) -> Any:
+        return sum(not outcomes or row.outcome in outcomes for row in rows) if rows else UNMEASURED
+
+    return environment().from_string(failure.remark).render(at=at, count=count, **failure.words(material))
 
 
 def compared_only(cell: Cell, row: Measurement) -> Measurement:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -16,6 +19,7 @@ from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.pages.pendulum.neighbours import Neighbours
 from reports.text.tables import number
+from reports.text.unmeasured import UNMEASURED
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -103,6 +107,27 @@ PHASE = _cells(PointPendulum(), (*ALL, SOLVED), (10, 50)) + _cells(
     PointPendulum(), (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED), (150,)
 )
 
+LATE = _cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
+HIGHER_ORDER = (mujoco.TUNED, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+LARGE_STEPS = tuple(
+    cell
+    for samples in (20, 40, 100)
+    for cell in _cells(HundredLinks(), (*PUBLIC, Lagrange("euler", "projection")), (1,), samples)
+)
+
+
+def beyond_the_horizon(material: Material) -> dict[str, Any]:
+    """`worst` [rad]: the largest angle error of the methods of higher order at the smaller step."""
+    rows = material.of(cell for cell in LATE if cell.engine in HIGHER_ORDER and cell.every > 1)
+    return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
+
+
+def opened_joints(material: Material) -> dict[str, Any]:
+    """`opened`: how far joints of pymunk opened at most, over a link's length."""
+    rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
+    return {"opened": np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED}
+
+
 FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Two thousand seconds of a point pendulum",
@@ -154,14 +179,17 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=_cells(SpinningRing(), RING, (1, 10)),
         remark=(
-            "As shipped the ring is soft: its error does not fall with the step. Hardened a millionfold it is exact to "
-            "1e-11. A hundred times harder again, the same solver returns accelerations that are not solutions: at "
-            "0.01 s the joint stays shut and the angles look right while the energy is wrong by more than all there "
-            "was, without a warning. This is no fault of a model that MuJoCo documents: its softness is 1e8 times "
-            "less than solimp admits, and only fields of the compiled model can ask for it "
-            "([solver parameters](https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters)). Only "
-            "asking whether the accelerations satisfy their equation shows it: the sentences that begin with ours are "
-            "from such a check, which the extended variant makes at the start before it takes a solver."
+            "As shipped the ring is soft: its error does not fall with the step. Hardened a millionfold its angles "
+            'are right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number }} '
+            "rad{% endfilter %}. A hundred times harder again, the same solver returns accelerations that are not "
+            "solutions: at 0.01 s the joint stays shut and the angles look right while the energy is wrong by more "
+            'than all there was{% filter if_measured %} ({{ at("mujoco Newton, softening 1e-8", 1e-2).energy | '
+            "number }} times as much){% endfilter %}, without a warning. This is no fault of a model that MuJoCo "
+            "documents: its softness is 1e8 times less than solimp admits, and only fields of the compiled model can "
+            "ask for it ([solver "
+            "parameters](https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters)). Only asking "
+            "whether the accelerations satisfy their equation shows it: the sentences that begin with ours are from "
+            "such a check, which the extended variant makes at the start before it takes a solver."
         ),
     ),
     Failure(
@@ -170,31 +198,31 @@ FAILURES: tuple[Failure, ...] = (
             "It is chaotic: a difference of its start grows as listed, so every error does. Within the horizon methods "
             "can be compared; beyond, the same growth takes one digit after another from each, whatever its order."
         ),
-        cells=_cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+        cells=LATE,
         tasks=(PARTING,),
+        words=beyond_the_horizon,
         observations=divergence,
         remark=(
             "An error of 1e-12 times the growth is what the best can reach. At 12 s the methods of first order, "
-            "pymunk tuned among them, are lost at both steps, while those of higher order are still right to three "
-            "digits or more at 1e-3 s: their smaller error leaves them more time. Whether a simulation of a chaotic "
-            "motion is right can be asked only up to a time, and that time is part of the scene."
+            "pymunk tuned among them, are lost at both steps, while those of higher order are still right at 1e-3 "
+            "s{% filter if_measured %}, to {{ worst | number }} rad or better{% endfilter %}: their smaller error "
+            "leaves them more time. Whether a simulation of a chaotic motion is right can be asked only up to a "
+            "time, and that time is part of the scene."
         ),
     ),
     Failure(
         title="A hundred links at large steps",
         expected="The chain falls like a rope: nothing in the visible motion is faster than a few radians a second.",
-        cells=tuple(
-            cell
-            for samples in (20, 40, 100)
-            for cell in _cells(HundredLinks(), (*PUBLIC, Lagrange("euler", "projection")), (1,), samples)
-        ),
+        cells=LARGE_STEPS,
+        words=opened_joints,
         remark=(
             "Hanging, the chain has modes of up to 103 rad/s beside the visible ones, and an explicit method must "
             "follow all of them or explode, though the motion does not show them. Impulses forget the fast modes at "
-            "the end of a step: joints open, by up to three links' length, but the numbers stay finite and "
-            "the energy near what it was. MuJoCo's Euler in the tree starts anew at 0.1 s, and stays finite but wrong "
-            "at 0.05 s; its RK4 starts anew at both, and exact multipliers under Euler end in infinity. No method "
-            "is right; at 0.02 s all of them can be compared again."
+            "the end of a step: joints open{% filter if_measured %}, by up to {{ opened | number }} times a link's "
+            "length{% endfilter %}, but the numbers stay finite and the energy near what it was. MuJoCo's Euler in "
+            "the tree starts anew at 0.1 s, and stays finite but wrong at 0.05 s; its RK4 starts anew at both, and "
+            "exact multipliers under Euler end in infinity. No method is right; at 0.02 s all of them can be "
+            "compared again."
         ),
     ),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from reports.grid.tasks import Motion
 from reports.pages.observing import observe
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.text.tables import number
+from reports.text.unmeasured import UNMEASURED
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
@@ -96,6 +98,13 @@ def partings(material: Material) -> list[Observation]:
     return observed(material, PARTINGS, told)
 
 
+def after_parting(material: Material) -> dict[str, Any]:
+    """`least`: how many times a contact's error at the end is its largest before they part, in the best of the runs."""
+    contacts = [cell for cell in PARTINGS if cell.engine in CONTACTS]
+    found = [parting(cell, run) for cell, run in material.motions(contacts).items()]
+    return {"least": np.min([after / before for before, after in found]) if found else UNMEASURED}
+
+
 def observed(material: Material, cells: Iterable[Cell], told: Callable[[Cell, Trajectory], str]) -> list[Observation]:
     """A line for each cell whose motion was kept."""
     found: list[Observation] = []
@@ -118,6 +127,23 @@ def chatter(material: Material) -> list[Observation]:
     return observed(
         material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
     )
+
+
+def finest_polygon(material: Material) -> dict[str, Any]:
+    """`coarse`, `fine`: angle errors [rad] of the polygon with most corners at the two smallest steps."""
+    most = max(corners for corners, _ in polygon_cells())
+    rows = material.of(cell for corners, cell in polygon_cells() if corners == most and cell.every > 1)
+    coarse, fine = (row.angle for row in rows) if len(rows) == 2 else (UNMEASURED, UNMEASURED)
+    return {"coarse": coarse, "fine": fine}
+
+
+TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), CONTACTS, (1,), samples))
+
+
+def least_opening(material: Material) -> dict[str, Any]:
+    """`least` [m]: the smallest gap of a contact at steps far too large."""
+    rows = material.of(TOO_LARGE)
+    return {"least": np.min([row.gap for row in rows]) if rows else UNMEASURED}
 
 
 def refused(scene: RollingScene, setting: str) -> Callable[[Material], list[Observation]]:
@@ -173,11 +199,12 @@ FAILURES: tuple[Failure, ...] = (
         title="Polygons",
         expected="An ellipse has no corners. With more of them the error should fall, and with the step too.",
         cells=tuple(cell for _, cell in polygon_cells()),
+        words=finest_polygon,
         remark=(
             "Pymunk has circles, segments and convex polygons, and no ellipse. A polygon rolls by falling from corner "
             "to corner and loses energy in each blow: what is computed well is another body. With 32 and 128 corners "
-            "the two smaller steps give the same error, so the corners make it. With 512 the last step still lowers it "
-            "by about a fifth."
+            "the two smaller steps give the same error, so the corners make it. With 512 the last step still lowers it"
+            "{% filter if_measured %} from {{ coarse | number }} to {{ fine | number }} rad{% endfilter %}."
         ),
     ),
     *(
@@ -236,10 +263,12 @@ FAILURES: tuple[Failure, ...] = (
         cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
+        words=after_parting,
         remark=(
             "Up to there the tuned contacts are off by an error that falls with the step; after it they are off by "
-            "hundreds of times as much or more, at either step. The method by constraint follows the ideal motion to "
-            "the end, with a force that no ground could give. Neither is wrong: they answer different questions."
+            "{% filter if_measured %}{{ least | number }} times as much or {% endfilter %}more, at either step. The "
+            "method by constraint follows the ideal motion to the end, with a force that no ground could give. Neither "
+            "is wrong: they answer different questions."
         ),
     ),
     Failure(
@@ -256,13 +285,15 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Steps far too large",
         expected="The disc stays on the ground. Steps this large are wrong, and a warning would help.",
-        cells=tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), CONTACTS, (1,), samples)),
+        cells=TOO_LARGE,
         remark=(
             "In one step a free body falls by g times the step squared (0.1 m at 0.1 s) before contact is looked at "
-            "again. At each of these steps the contact opens, or the shapes overlap, by a fifth of the disc's size "
-            "or more, and by more at larger steps. No engine warns. MuJoCo 4.0 has speculative contacts against "
-            "tunnelling (the flag `speculative`, see its release notes); they are off by default and not used here."
+            "again. At each of these steps the contact opens, or the shapes overlap{% filter if_measured %}, by {{ "
+            "least | number }} m or more{% endfilter %}, and by more at larger steps. No engine warns. MuJoCo 4.0 "
+            "has speculative contacts against tunnelling (the flag `speculative`, see its release notes); they are "
+            "off by default and not used here."
         ),
+        words=least_opening,
     ),
 )
 

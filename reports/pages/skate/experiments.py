@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from reports.pages.observing import observe
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.pages.skate.methods import CONSTRUCTIONS, limited, method
 from reports.text.tables import number
+from reports.text.unmeasured import UNMEASURED
 
 Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
@@ -147,9 +149,31 @@ def slipping(material: Material) -> list[Observation]:
 
 
 def _slipped(run: Trajectory) -> str:
-    slip = np.abs(BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0])
-    over = np.flatnonzero(slip > SLIPS)
-    return f"slips by {SLIPS:g} m/s at {run.t[over[0]]:.2f} s, at most {slip.max():.2g}" if over.size else "holds"
+    when = slips_at(run)
+    if when is None:
+        return "holds"
+    return f"slips by {SLIPS:g} m/s at {when:.2f} s, at most {np.abs(slip_of(run)).max():.2g}"
+
+
+def slip_of(run: Trajectory) -> np.ndarray:
+    """The skate's sideways velocity (times,) [m/s]."""
+    return BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0]
+
+
+def slips_at(run: Trajectory) -> float | None:
+    """When it slips by more than SLIPS first [s]; None if it holds."""
+    over = np.flatnonzero(np.abs(slip_of(run)) > SLIPS)
+    return float(run.t[over[0]]) if over.size else None
+
+
+def delays(material: Material) -> dict[str, Any]:
+    """`least`, `most` [s]: how long after the exact force passes a limit an engine with that limit slips."""
+    found = []
+    for limit, cells in LIMITED.items():
+        exact = first_beyond(BACKWARDS, limit)
+        slipped = map(slips_at, material.motions(cells).values())
+        found += [when - exact for when in slipped if exact is not None and when is not None]
+    return {"least": min(found, default=UNMEASURED), "most": max(found, default=UNMEASURED)}
 
 
 PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 10_001))).max())
@@ -250,11 +274,12 @@ FAILURES: tuple[Failure, ...] = (
         ),
         tasks=tuple(Motion(cell) for cells in LIMITED.values() for cell in cells),
         observations=slipping,
+        words=delays,
         remark=(
             "So the reaction in a run with an ideal skate tells whether a real blade would hold. An engine's friction "
             "with that limit tells it too, if it does not creep by itself as much as it slips. Both "
-            "engines here slip one to two tenths of a second after the exact force passes the limit, since the slip "
-            "has to grow before it is counted."
+            "engines here slip {% filter if_measured %}{{ least | number }} to {{ most | number }} s {% endfilter %}"
+            "after the exact force passes the limit, since the slip has to grow before it is counted."
         ),
     ),
     Failure(

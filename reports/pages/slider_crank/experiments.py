@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -16,6 +17,7 @@ from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.pages.slider_crank.leaving import Leaving
 from reports.text.tables import number
+from reports.text.unmeasured import UNMEASURED
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -34,6 +36,13 @@ GROOVES = _cells(RodEndInSlot(), GROOVE, (1, 10, 100))
 
 
 LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
+
+
+def delay(material: Material) -> dict[str, Any]:
+    """`later` [s]: how much later the nearest start leaves than one a hundred times as far aside; `nearer`: log 100."""
+    far, near = (material.finished(task) for task in LEAVING[-2:])
+    later = near.number("when") - far.number("when") if far and near else UNMEASURED
+    return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
 
 
 def leaving(material: Material) -> list[Observation]:
@@ -87,11 +96,13 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=_cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
         tasks=LEAVING,
+        words=delay,
         observations=leaving,
         remark=(
-            "A start a hundred times nearer leaves 0.38 s later: errors grow by e every 0.08 s as the motion does, so "
-            "what counts is an error relative to how far aside it is. No joint of these methods pushes to the side by "
-            "being open, so none goes the wrong way; they only differ in when."
+            "A start a hundred times nearer leaves {% filter if_measured %}{{ later | number }} s {% endfilter "
+            "%}later: errors grow{% filter if_measured %} by e every {{ (later / nearer) | number }} s{% endfilter "
+            "%} as the motion does, so what counts is an error relative to how far aside it is. No joint of these "
+            "methods pushes to the side by being open, so none goes the wrong way; they only differ in when."
         ),
     ),
     Failure(

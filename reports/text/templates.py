@@ -1,0 +1,44 @@
+"""The templates of pages and remarks, and what all of them may use."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
+
+from reports.pages.page import Page
+from reports.text import unmeasured
+
+TEMPLATES = Path(__file__).parents[1] / "pages"
+
+
+def environment(folder: Path = TEMPLATES) -> Environment:
+    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
+
+    Those of another folder are found as "own/NAME"; so none of them hides "base.md".
+    """
+    out = Environment(
+        loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+        finalize=unmeasured.marked,
+    )
+    out.filters |= unmeasured.FILTERS | {"anchor": anchor}
+    return out
+
+
+def template_of(page: Page, file: str, generic: str) -> Template:
+    """The page's own template `file` ("page.md" or "data.md"), that of its name here, or the generic one."""
+    if page.template is not None:
+        own = page.template if file == "page.md" else page.template.with_name(file)
+        return environment(own.parent).select_template([f"own/{own.name}", generic])
+    return environment().select_template([f"{page.name}/{file}", generic])
+
+
+def anchor(heading: str) -> str:
+    """What a link to a heading of Markdown ends with, as GitHub makes it: lower case, no punctuation, hyphens."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
