@@ -285,5 +285,6 @@ METHODS = tuple(
     for integrator in get_args(Integrator)
     for stabilisation in get_args(Stabilisation)
 )
+VARIANTS = (Lagrange("euler", "projection"), Lagrange("rk4", "projection"))  # for every scene: orders 1 and 4
 TRUTH = Lagrange("dop853", "projection", tolerance=1e-13)
 """The tightest that double precision carries: what scenes are checked against."""
