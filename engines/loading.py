@@ -108,7 +108,9 @@ def _module_of_file(path: Path) -> ModuleType:
     module = _imported(name, str(path))
     found = getattr(module, "__file__", None)
     if found is None or Path(found).resolve() != path:
-        raise ValueError(f"{path}: another module is called {name!r} ({found or 'built in'}); give the file another name")
+        raise ValueError(
+            f"{path}: another module is called {name!r} ({found or 'built in'}); give the file another name"
+        )
     return module
 
 
