@@ -36,29 +36,25 @@ def is_reference(word: str) -> bool:
     return ":" in word or word.endswith(".py")
 
 
-def load(reference: str, kind: Kind) -> tuple[Any, ...]:
+def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, ...]:
     """The values that a reference names, each once. Raises ValueError, a sentence, where there are none.
 
-    The folder of a file, and the current one for a module, is added to the end of `sys.path` and stays there, since
-    worker processes import what they are given by its name.
+    `folder`: where it counts from, the current one unless it is given. A module's folder, or this one, is added to the
+    end of `sys.path` and stays there, since worker processes import what they are given by its name.
     """
     place, name = _parts(reference)
-    module = _module_of_file(Path(place)) if place.endswith(".py") else _module(place)
-    if not name:
-        found = tuple(dict.fromkeys(_at_top(module, kind)))
-        if not found:
-            raise ValueError(f"{reference}: no {kind.word} stands at the top level of this file")
-        return found
+    folder = Path.cwd() if folder is None else folder
+    module = _module_of_file(folder / place) if place.endswith(".py") else _module(place, folder)
     try:
-        value = functools.reduce(getattr, name.split("."), module)
+        values = _named(module, name) if name else tuple(_at_top(module, kind))
     except AttributeError:
         raise ValueError(f"{reference}: {place} has no {name}") from None
-    values = tuple(value) if isinstance(value, tuple | list) else (value,)
     for each in values:
-        if why := kind.trouble(each):
-            raise ValueError(f"{reference}: {_shown(each)} is no {kind.word}: {why}")
+        if why := kind.trouble(each) or _unhashable(each):
+            raise ValueError(f"{reference}: a value of the type {type(each).__name__} is no {kind.word}: {why}")
     if not values:
-        raise ValueError(f"{reference}: it is empty, and should hold at least one {kind.word}")
+        where = "it is empty" if name else "nothing at the top level of this file is one"
+        raise ValueError(f"{reference} should hold at least one {kind.word}: {where}")
     return tuple(dict.fromkeys(values))
 
 
@@ -72,8 +68,18 @@ def _parts(reference: str) -> tuple[str, str]:
     return place.strip(), name
 
 
-def _shown(value: Any) -> str:
-    return f"a value of the type {type(value).__name__}"
+def _named(module: ModuleType, name: str) -> tuple[Any, ...]:
+    value = functools.reduce(getattr, name.split("."), module)
+    return tuple(value) if isinstance(value, tuple | list) else (value,)
+
+
+def _unhashable(value: Any) -> str:
+    """Why a value can't be a key, a clause; empty if it can. Results are kept by what they are of."""
+    try:
+        hash(value)
+    except TypeError:
+        return "it can't be hashed; make its class a frozen dataclass, of fields that can"
+    return ""
 
 
 def _at_top(module: ModuleType, kind: Kind) -> Iterator[Any]:
@@ -85,14 +91,17 @@ def _at_top(module: ModuleType, kind: Kind) -> Iterator[Any]:
             if not kind.trouble(value):
                 yield value
         elif kind.defaults is not None and value.__module__ == module.__name__ and value not in given:
-            made = kind.defaults(value)
+            try:
+                made = kind.defaults(value)
+            except Exception as error:
+                raise ValueError(f"{value.__name__}() can't be made: {describe(error)}") from None
             if made is not None:
                 yield made
 
 
-def _module(name: str) -> ModuleType:
-    """A module by its name, in the current folder too. Raises ValueError."""
-    _add_to_path(Path.cwd())
+def _module(name: str, folder: Path) -> ModuleType:
+    """A module by its name, in this folder too. Raises ValueError."""
+    _add_to_path(folder)
     return _imported(name, name)
 
 

@@ -1,12 +1,13 @@
 """What is under test: the engines that distributions register, ours among them, and those that a reference names.
 
-A distribution registers under `crosscheck.engines` what shall be run in every scene, and under `crosscheck.methods` what
-more there is of an engine: the methods between its variants, which show what each setting buys. The value of an entry
-point is an engine, or a tuple or list of engines.
+A distribution registers under `crosscheck.engines` what shall be run in every scene, and under `crosscheck.methods`
+what more there is of an engine: the methods between its variants, which show what each setting buys. The value of an
+entry point is an engine, or a tuple or list of engines.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from engines import Engine
@@ -28,10 +29,6 @@ def trouble(value: Any) -> str:
         word = getattr(value, name)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
-    try:
-        hash(value)
-    except TypeError as reason:
-        return f"it can't be hashed ({reason}); an engine is a frozen dataclass"
     return ""
 
 
@@ -43,12 +40,13 @@ def method(engine: Engine) -> str:
     return f"{engine.name} {engine.variant}"
 
 
-def load(reference: str) -> tuple[Engine, ...]:
+def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
     """The engines of `package.module:NAME`, `path/to/file.py` or `path/to/file.py:NAME`, installed or not.
 
-    Raises ValueError, in one line, for what can't be imported or is no engine.
+    `folder`: where the reference counts from, the current one unless it is given. Raises ValueError, in one line, for
+    what can't be imported or is no engine.
     """
-    return load_values(reference, ENGINE)
+    return load_values(reference, ENGINE, folder)
 
 
 _variants = registered("crosscheck.engines", ENGINE, method)

@@ -38,9 +38,8 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
             values[name] = taken
     if not values:
         return scene
-    changed = named(
-        replace(scene, **values), _name(scene.name, {name: values[name] for name in known if name in values})
-    )  # type: ignore[type-var]
+    name = _name(scene.name, {name: values[name] for name in known if name in values})
+    changed = named(_replaced(scene, values), name)
     changed.mechanism()  # raises for numbers that are valid each and no mechanism together
     return changed
 
@@ -49,7 +48,9 @@ def told_apart(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
     """The scenes, those of one class and name called after the numbers in which they differ from its defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
-        named(replace(scene), _name(scene.name, _set(scene))) if names.count(scene.name) > 1 and _set(scene) else scene  # type: ignore[type-var]
+        named(_replaced(scene, {}), _name(scene.name, _set(scene)))
+        if names.count(scene.name) > 1 and _set(scene)
+        else scene
         for scene in scenes
     )
 
@@ -58,6 +59,10 @@ def named(scene: Scene, name: str) -> Scene:
     """The same object, called so. Its numbers decide whether two scenes are equal, as with any dataclass."""
     object.__setattr__(scene, "name", name)
     return scene
+
+
+def _replaced(scene: Scene, values: Mapping[str, Any]) -> Scene:
+    return replace(scene, **values)  # type: ignore[type-var]
 
 
 def _readings(text: str) -> list[Any]:

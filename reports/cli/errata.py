@@ -8,7 +8,14 @@ import typer
 
 from reports.grid.ending import BadInput
 
-HEADER = ("no.", "where", "printed, and its value", "right, and its value", "derivative", "verdict")
+HEADER = (
+    "no.",
+    "where",
+    "printed, and its value",
+    "right, and its value",
+    "derivative, and all values' unit",
+    "verdict",
+)
 WIDTH = 150  # into a file or a pipe
 
 
@@ -35,14 +42,15 @@ def errata(
         from reports.text.tables import number as short
 
         lost: list[str] = []
+        units = {slip.number: slip.unit for slip in ERRATA}
         said = [
-            (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
+            (str(r.number), r.method, r.about, units[r.number], short(r.values.miss), short(r.values.agreement))
             for r in rulings(lost=lost)
             if r.number in (number or known)
         ]
         wide.print()
-        header = ("no.", "engine", "its motion", "printed misses by", "right misses by")
-        print_table(wide, "Engines as referees", header, said, 3)
+        header = ("no.", "engine", "its motion", "unit", "printed misses by", "right misses by")
+        print_table(wide, "Engines as referees", header, said, 4)
         for sentence in lost:
             wide.print(sentence, markup=False)
 

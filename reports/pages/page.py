@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from engines import Engine, Promise
@@ -68,12 +69,14 @@ class Material:
         return [self.rows[cell] for cell in cells if cell in self.rows]
 
 
-FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
+FEATURED = ("default", "tuned", "extended")
 
 
 def usual_series(row: Measurement) -> bool:
-    """The methods that charts show as series: each engine's three variants, and ideal constraints at order 1 and 4."""
-    return row.variant in FEATURED
+    """The methods that charts show as series: what is run in every scene, and any engine's three usual variants."""
+    from engines.registry import VARIANTS, method
+
+    return row.variant in FEATURED or row.method in map(method, VARIANTS)
 
 
 def everything(scene: Scene, engine: Engine) -> bool:
@@ -90,8 +93,10 @@ def no_words(material: Material) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Page:
-    """One mechanism's page: `name`.md in the results, from the template of the same name beside this file.
+    """One mechanism's page: `name`.md in the results, from its template.
 
+    template: its file, which may extend "base.md"; without one, page.md in the folder of the page's name beside this
+    file, and where there is none the generic "base.md" itself.
     scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
     own cells are run too; for a page without scenes.
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
@@ -108,6 +113,7 @@ class Page:
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     companions: tuple[Scene, ...] = ()
+    template: Path | None = None
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything

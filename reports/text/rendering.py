@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
 
 from reference.scene import Scene
 from reports.charts import stability as maps
@@ -37,10 +37,13 @@ class Told:
     picture: str = ""
 
 
-def environment() -> Environment:
-    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known."""
+def environment(folder: Path = TEMPLATES) -> Environment:
+    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
+
+    Those of another folder are found as "own/NAME"; so none of them hides "base.md".
+    """
     out = Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -50,6 +53,13 @@ def environment() -> Environment:
     )
     out.filters |= unmeasured.FILTERS
     return out
+
+
+def template_of(page: Page) -> Template:
+    """The page's own template, that of its name here, or the generic one."""
+    if page.template is not None:
+        return environment(page.template.parent).get_template(f"own/{page.template.name}")
+    return environment().select_template([f"{page.name}/page.md", "base.md"])
 
 
 def parameters(scene: Scene) -> str:
@@ -95,19 +105,15 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     for name, text in page.figures(material).items():
         keep(name, text)
     scenes = [_told_scene(scene, [row for row in rows if row.scene == scene.name], page) for scene in page.scenes]
-    text = (
-        environment()
-        .select_template([f"{page.name}/page.md", "base.md"])
-        .render(
-            page=page,
-            scenes=scenes,
-            pictures=unmeasured.Known(pictures),
-            failures=[_told_failure(failure, material) for failure in page.failures],
-            maps=[told for told in told_maps if told],
-            outcomes=[outcome for outcome in Outcome if outcome in met],
-            foot=foot(command),
-            **page.words(material),
-        )
+    text = template_of(page).render(
+        page=page,
+        scenes=scenes,
+        pictures=unmeasured.Known(pictures),
+        failures=[_told_failure(failure, material) for failure in page.failures],
+        maps=[told for told in told_maps if told],
+        outcomes=[outcome for outcome in Outcome if outcome in met],
+        foot=foot(command),
+        **page.words(material),
     )
     return files | {f"{page.name}.md": unmeasured.without_marks(text)}
 
