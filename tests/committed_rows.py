@@ -9,9 +9,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from reports.cli.selection import page_cells
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
+from reports.pages.page import Page
 from reports.text.tables import digest
 
 RESULTS = Path(__file__).parents[1] / "reports" / "results"
@@ -41,6 +43,12 @@ def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
     the sources have changed since, no digest fits, and the first row that is named alike has to do.
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
+
+
+@cache
+def page_rows(page: Page) -> Mapping[Cell, Measurement]:
+    """The committed rows of a page's cells: read once for all tests, because a cell's key takes its time."""
+    return committed_rows(page_cells(page))
 
 
 def _row(cell: Cell) -> Measurement | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from reports.grid.convergence import Sweep, Verdict, by_method, sweeps
 from reports.grid.holding import held_by
@@ -16,8 +16,8 @@ from reports.text.tables import NOTHING, markdown, number
 Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
 
 
-def overviews(entries: Iterable[Entry], steps: Sequence[str] = tuple(USUAL_STEPS), folder: str = "") -> dict[str, str]:
-    """Engine -> its table: the errors of its usual variants at these names of USUAL_STEPS, a line a scene.
+def overviews(entries: Iterable[Entry], steps: Mapping[str, float] = USUAL_STEPS, folder: str = "") -> dict[str, str]:
+    """Engine -> its table: the errors of its usual variants at these steps [s] by name, a line a scene.
 
     `folder` is where the pages stand. No cell has a time: the same versions give the same table on every machine.
     """
@@ -26,7 +26,9 @@ def overviews(entries: Iterable[Entry], steps: Sequence[str] = tuple(USUAL_STEPS
     return {engine: _table(entries, engine, variants, steps, folder) for engine, variants in usual.items()}
 
 
-def _table(entries: Sequence[Entry], engine: str, variants: Sequence[str], steps: Sequence[str], folder: str) -> str:
+def _table(
+    entries: Sequence[Entry], engine: str, variants: Sequence[str], steps: Mapping[str, float], folder: str
+) -> str:
     lines = []
     for page, rows in entries:
         for scene in dict.fromkeys(row.scene for row in rows):
@@ -37,16 +39,19 @@ def _table(entries: Sequence[Entry], engine: str, variants: Sequence[str], steps
     return markdown(["scene", *(f"{engine} {variant}" for variant in variants)], lines, left=1 + len(variants))
 
 
-def _cell(page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Sequence[str]) -> str:
+def _cell(
+    page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Mapping[str, float]
+) -> str:
     """'0.32, 0.029, 0.01; plateau 0.011; engine', or the outcomes where no step gave an answer."""
     members = [row for row in rows if (row.engine, row.variant) == (engine, variant)]
     if not members:
         return NOTHING
     if not any(Outcome(row.outcome).comparable for row in members):
-        told = ", ".join(dict.fromkeys(row.outcome for row in members))
-        return told if told == Outcome.UNSUPPORTED else f"{told}; {_holder(page, scene, engine, variant)}"
+        outcomes = dict.fromkeys(row.outcome for row in members)
+        held = "" if Outcome.UNSUPPORTED in outcomes else _holder(page, scene, engine, variant)
+        return "; ".join(filter(None, (", ".join(outcomes), held)))
     sweep = by_method(sweeps(members), page.quantity).get((scene, engine, variant))
-    at = [next((row for row in members if is_step(row.step, USUAL_STEPS[step])), None) for step in steps]
+    at = [next((row for row in members if is_step(row.step, step)), None) for step in steps.values()]
     errors = [getattr(row, page.quantity) for row in at if row is not None and Outcome(row.outcome).comparable]
     words = [_error(row, page.quantity) for row in at]
     told = words if errors else list(dict.fromkeys(words))  # "saturated" once
