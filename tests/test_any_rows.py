@@ -22,6 +22,7 @@ from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Answer, Motion, Task
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
+from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
 from reports.pages.page import Material, Page
 from reports.pages.pendulum.neighbours import Neighbours
@@ -173,7 +174,8 @@ def test_the_overview_can_be_read_whatever_was_run():
     for seed in range(4):
         materials = {page: Material(some(page_rows(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
         text = render_index(materials, "the command")
-        assert complaints("index", {"index.md": text}) == [], seed
+        drawn = {found.picture: "<svg/>" for found in findings(materials)}
+        assert complaints("index", {"index.md": text, **drawn}) == [], seed
         readme = render_readme((RESULTS.parents[1] / "README.md").read_text(encoding="utf-8"), materials)
         assert "nan" not in readme
 

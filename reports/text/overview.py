@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 
+from engines import Engine
+from reference.scene import Scene
 from reports.grid.convergence import Sweep, Verdict, by_method, sweeps
 from reports.grid.holding import held_by
 from reports.grid.measure import Measurement
@@ -54,7 +57,7 @@ def _cell(
     at = [next((row for row in members if is_step(row.step, step)), None) for step in steps.values()]
     errors = [getattr(row, page.quantity) for row in at if row is not None and Outcome(row.outcome).comparable]
     words = [_error(row, page.quantity) for row in at]
-    told = words if errors else list(dict.fromkeys(words))  # "saturated" once
+    told = words if len(set(words)) > 1 else words[:1]  # "saturated" once
     end = _brought(sweep, members, errors) if sweep else ""
     return "; ".join(filter(None, (", ".join(told), end, _holder(page, scene, engine, variant))))
 
@@ -91,12 +94,18 @@ def _step(step: float) -> str:
     return f"{number(1e3 * step)} ms"
 
 
+@cache
+def _held(method: Engine, scene: Scene) -> str:
+    """Kept, because a method asks its whole model about each of a hundred joints."""
+    return held_by(method, scene.mechanism())
+
+
 def _holder(page: Page, scene: str, engine: str, variant: str) -> str:
     """Who holds the scene's joints; empty for a method that is no longer in the page's list."""
     for known in page.scenes:
         for method in page.engines:
             if (known.name, method.name, method.variant) == (scene, engine, variant):
-                held = held_by(method, known.mechanism())
+                held = _held(method, known)
                 # An engine as shipped has no joint that our code holds: that is what a user puts in its place.
                 return f"{held}, a user's trick" if variant == "default" and "ours" in held.split(": ") else held
     return ""
