@@ -22,6 +22,7 @@ from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Answer, Motion, Task
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
+from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
 from reports.pages.page import Material, Page
 from reports.pages.pendulum.neighbours import Neighbours
@@ -38,7 +39,7 @@ from reports.pages.wheels.folding import Folding
 from reports.text.rendering import render_index, render_page, render_readme
 from reports.text.templates import environment
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
-from tests.committed_rows import RESULTS, committed_rows
+from tests.committed_rows import RESULTS, page_rows
 
 SUBSETS = 16  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
@@ -51,11 +52,6 @@ DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
 PLATEAU = ("however small the step", "at every step", "(plateau ")
 
 Rows = Mapping[Cell, Measurement]
-
-
-@cache
-def whole(page: Page) -> Rows:
-    return committed_rows(page_cells(page))
 
 
 def some(rows: Rows, chance: random.Random) -> Rows:
@@ -141,17 +137,17 @@ def written(page: Page, rows: Rows) -> Mapping[str, str]:
 @pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
 def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
     for seed in range(SUBSETS):
-        rows = some(whole(page), random.Random(f"{page.name} {seed}"))
+        rows = some(page_rows(page), random.Random(f"{page.name} {seed}"))
         assert complaints(page.name, written(cheap(page), rows)) == [], seed
     assert complaints(page.name, written(cheap(page), {})) == []
-    failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in whole(page)}
+    failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in page_rows(page)}
     assert complaints(page.name, written(cheap(page), failed)) == []
 
 
 @pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
-    chance, rows = random.Random(page.name), whole(page)
+    chance, rows = random.Random(page.name), page_rows(page)
     few = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
     for cell in list(few)[::2]:
         few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
@@ -161,10 +157,10 @@ def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
 
 def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones():
     chance = random.Random(0)
-    rows = whole(rolling.PAGE)
+    rows = page_rows(rolling.PAGE)
     corners = [(value, rows[cell]) for value, cell in polygon_cells()]
     constants = [(value, rows[cell]) for value, cell in softness_cells()]
-    chains = whole(scaling.PAGE)
+    chains = page_rows(scaling.PAGE)
     for count in (1, 4):
         few = [chance.sample(own, count) for own in (corners, constants)]
         failed = [[(value, replace(row, angle=math.nan)) for value, row in own] for own in few]
@@ -177,9 +173,10 @@ def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones
 
 def test_the_overview_can_be_read_whatever_was_run():
     for seed in range(4):
-        materials = {page: Material(some(whole(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
-        text = render_index(materials.items(), "the command")
-        assert complaints("index", {"index.md": text}) == [], seed
+        materials = {page: Material(some(page_rows(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
+        text = render_index(materials, "the command")
+        drawn = {found.picture: "<svg/>" for found in findings(materials)}
+        assert complaints("index", {"index.md": text, **drawn}) == [], seed
         readme = render_readme((RESULTS.parents[1] / "README.md").read_text(encoding="utf-8"), materials)
         assert "nan" not in readme
 
@@ -194,7 +191,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         return "" if MARK in clause else clause
 
     monkeypatch.setitem(FILTERS, "if_measured", kept)
-    material = Material(whole(page), {task: still(task) for task in page.all_tasks()})
+    material = Material(page_rows(page), {task: still(task) for task in page.all_tasks()})
     assert complaints(page.name, render_page(cheap(page), material, "the command")) == []
     assert vanished == []
 

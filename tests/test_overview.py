@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import pytest
 
+from engines import Holder
+from reference.joints import Joint
+from reference.mechanism import Mechanism
 from reports.grid.cells import Cell
 from reports.grid.convergence import Verdict
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Failure, Material, Observation, Page
 from reports.text.lookups import told
-from reports.text.overview import BEGIN, END, overview, with_overview
+from reports.text.overview import overviews
+from reports.text.parts import marks, with_part
 from reports.text.rendering import render_all, render_index, render_page, render_readme
 from reports.text.tables import number
 from reports.text.told_scene import parameters
@@ -22,10 +26,7 @@ from reports.text.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 
-METHODS = (
-    *("pymunk default", "pymunk tuned", "pymunk extended"),
-    *("mujoco default", "mujoco tuned", "mujoco extended"),
-)
+VARIANTS = ("default", "tuned", "extended")
 
 
 class OtherDisc(Disc):
@@ -39,73 +40,156 @@ class OtherDisc(Disc):
 
 
 PAGE = Page("base", "Discs", "One disc.", (Disc(), OtherDisc()), (Toy(),))
+# Steps of the rows that `falling` makes, in place of those that people use.
+STEPS = {"coarse": 1e-1, "usual": 1e-2, "fine": 1e-3}
 
 
-def cell_of(rows, quantity: str = "angle", method: str = "mujoco tuned") -> str:
+def cell_of(rows, quantity: str = "angle", method: str = "mujoco tuned", steps=STEPS, page: Page = PAGE) -> str:
     """The overview's cell of one method."""
-    head, line = table(overview([(replace(PAGE, quantity=quantity), rows)]))
-    assert head == ["scene", *METHODS]
-    return line[1 + METHODS.index(method)]
+    engine, variant = method.split(" ", 1)
+    head, line = table(overviews([(replace(page, quantity=quantity), rows)], steps)[engine])
+    return line[head.index(f"{engine} {variant}")]
 
 
 @pytest.mark.parametrize(
     ("errors", "words"),
     [
-        ((1e-2, 1e-4, 1e-6), "1.0e-6 rad, 100 ms, order 2.0"),
-        ((1e-2, 1e-13), "1.0e-13 rad, 10 ms, to rounding"),
-        ((1e-2, 3e-5, 3e-5, 2e-5), "2.0e-5 rad, 1000 ms, **stays**"),
-        ((1e-2, 3e-5, 2.9e-5), "2.9e-5 rad, 100 ms, **levels off**"),
-        ((1e-4, 1e-3), "1.0e-4 rad, 1 ms, **grows**"),
-        ((1e-2, 1e-4, 1e-1), "1.0e-4 rad, 10 ms, **erratic**"),
-        ((1e-2,), "0.01 rad, 1 ms"),
+        ((1e-2, 1e-4, 1e-6), "0.01, 1.0e-4, 1.0e-6; order 2.0"),
+        ((1e-2, 1e-13), "0.01, 1.0e-13, -; to rounding"),
+        ((1e-2, 3e-5, 2e-5, 2e-5), "0.01, 3.0e-5, 2.0e-5; **plateau 2.0e-5**"),
+        ((1e-2, 3e-5, 2.9e-5), "0.01, 3.0e-5, 2.9e-5; **levels off**"),
+        ((1e-4, 1e-3), "1.0e-4, 1.0e-3, -; **least at 100 ms**, then worse"),
+        ((1e-2, 1e-4, 1e-1), "0.01, 1.0e-4, 0.1; **least at 10 ms**, then worse"),
+        ((1e-2,), "0.01, -, -"),
+        # Two errors that cancel at the second step: the limit is told, and that what lies below it is luck.
+        ((1e-2, 1e-4, 1.0e-3, 1.1e-3, 1.11e-3), "0.01, 1.0e-4, 1.0e-3; **plateau 1.1e-3** (less is luck)"),
+        ((1e-2, 1e-3, 1.0e-5, 1.1e-3, 1.2e-3, 1.2e-3), "0.01, 1.0e-3, 1.0e-5; **plateau 1.2e-3** (less is luck)"),
     ],
 )
-def test_a_cell_has_the_least_error_its_cost_and_what_a_smaller_step_brings(errors, words):
+def test_a_cell_has_the_errors_at_the_usual_steps_and_what_a_smaller_step_brings(errors, words):
     assert cell_of(falling("mujoco tuned", errors)) == words
+
+
+def test_luck_is_told_only_of_errors_that_stand_there():
+    errors = (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3)
+    assert cell_of(falling("mujoco tuned", errors)) == "0.01, 2.0e-3, 1.6e-3; **plateau 1.5e-3**"
+
+
+def test_steps_are_told_where_they_were_run_and_no_other_step_stands_for_them():
+    rows = falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-8))
+    rows += [row_of("mujoco tuned", step=9e-2, angle=7e-3), row_of("mujoco tuned", step=9.95e-4, angle=8e-6)]
+    assert cell_of([row for row in rows if row.step not in (1e-1, 1e-3)]).startswith("-, 1.0e-4, 8.0e-6; ")
+    assert cell_of(rows, steps={"usual": 1e-2}).startswith("1.0e-4; ")
+
+
+def test_rows_at_usual_steps_stand_in_the_cell_and_leave_the_order_alone():
+    rows = [*falling("mujoco tuned", (1e-2, 1e-4, 1e-6)), row_of("mujoco tuned", step=1e-4, angle=0.3, purpose="usual")]
+    assert cell_of(rows) == "0.01, 1.0e-4, 1.0e-6; order 2.0"
+    kept = [replace(row, purpose="usual") if row.step == 1e-2 else row for row in rows]
+    assert cell_of(kept) == "0.01, 1.0e-4, 1.0e-6; order 2.0"
 
 
 def test_an_error_that_grew_at_the_finest_step_has_no_order():
     assert "order" not in cell_of(falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3)))
 
 
-def test_a_method_that_fails_at_its_finest_step_says_so():
+def test_a_method_that_fails_at_a_step_says_so_in_its_place_and_at_its_finest_step_too():
     rows = [*falling("mujoco tuned", (1e-2, 1e-4)), row_of("mujoco tuned", step=1e-3, outcome=Outcome.TORN)]
-    assert cell_of(rows) == "1.0e-4 rad, 10 ms, then **torn**"
+    assert cell_of(rows) == "0.01, 1.0e-4, torn; **torn** at 1 ms"
     assert cell_of(rows[::-1]) == cell_of(rows)
 
 
 def test_where_nothing_can_be_compared_the_outcomes_stand_and_where_nothing_ran_a_dash():
     rows = [row_of("mujoco tuned", outcome=o) for o in (Outcome.TORN, Outcome.TORN, Outcome.RESET)]
     assert cell_of(rows) == "torn, reset"
-    assert cell_of([row_of("mujoco default")]) == "-"
+    elsewhere = replace(PAGE, name="other", scenes=(OtherDisc(),))
+    both = [(PAGE, rows), (elsewhere, [row_of("mujoco default", scene="other_disc")])]
+    lines = table(overviews(both, STEPS)["mujoco"])[1:]
+    assert [line[1:] for line in lines] == [["-", "torn, reset"], ["-", "-"]]
 
 
-def test_the_quantity_of_the_page_is_told_with_its_unit():
+def test_outcomes_at_all_usual_steps_are_told_once():
+    rows = [row_of("mujoco tuned", step=10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
+    rows += falling("mujoco tuned", (1, 1, 1, 1e-2, 1e-3, 1e-4))[3:]
+    assert cell_of(rows) == "saturated; order 1.0"
+
+
+def test_the_quantity_of_the_page_is_told_and_its_unit_beside_the_scene():
     rows = falling("mujoco tuned", (1e-3, 1e-5), "position", angle=7.0)
-    assert cell_of(rows, "position") == "1.0e-5 m, 10 ms, order 2.0"
+    assert cell_of(rows, "position") == "1.0e-3, 1.0e-5, -; order 2.0"
+    for quantity, unit in (("position", "m"), ("angle", "rad")):
+        (text,) = overviews([(replace(PAGE, quantity=quantity), rows)], folder="there/").values()
+        assert table(text)[1][0] == f"[disc](there/base.md), {unit}"
 
 
-def test_each_column_is_its_own_method_and_each_line_its_own_scene():
-    # Another error and another cost for each of twelve cells.
+def test_each_engine_has_its_table_each_column_its_own_method_and_each_line_its_own_scene():
+    methods = [f"{engine} {variant}" for engine in ("pymunk", "mujoco") for variant in VARIANTS]
+    # Another error for each of twelve cells.
     rows = [
-        row_of(method, scene=scene, angle=(10 + i) * factor, cpu=(10 + i) * 1e-3)
+        row_of(method, scene=scene, step=1e-2, angle=(10 + i) * factor)
         for scene, factor in (("disc", 1e-4), ("other_disc", 1e-6))
-        for i, method in enumerate(METHODS)
+        for i, method in enumerate(methods)
     ]
-    _, first, second = table(overview([(PAGE, rows)], "folder/"))
-    for line, name, power in ((first, "disc", "e-3"), (second, "other disc", "e-5")):
-        assert line[0] == f"[{name}](folder/base.md)"
-        assert line[1:] == [f"1.{i}{power} rad, {10 + i} ms" for i in range(6)]
+    tables = overviews([(PAGE, rows)], {"usual": 1e-2}, "folder/")
+    assert list(tables) == ["pymunk", "mujoco"]
+    for engine, first in (("pymunk", 0), ("mujoco", 3)):
+        head, *lines = table(tables[engine])
+        assert head == ["scene", *(f"{engine} {variant}" for variant in VARIANTS)]
+        for line, name, power in zip(lines, ("disc", "other disc"), ("e-3", "e-5"), strict=True):
+            assert line[0] == f"[{name}](folder/base.md), rad"
+            assert line[1:] == [f"1.{first + i}{power}" for i in range(3)]
 
 
-def test_a_document_has_the_table_between_its_marks_and_nothing_else_changed():
-    text = f"before\n{BEGIN}\nold\n{END}\nafter\n"
-    assert with_overview(text, "new") == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
-    for lacking in (text.replace(BEGIN, ""), text.replace(END, ""), ""):
+def test_an_engine_from_elsewhere_has_its_table_with_the_variants_that_it_has():
+    rows = [row_of(f"elsewhere {name}", step=1e-2, angle=1e-3) for name in ("d", "a", "b", "c")]
+    rows += [row_of(f"known {name}", step=1e-2) for name in ("extended", "another", "default")]
+    tables = overviews([(PAGE, rows)])
+    assert table(tables["elsewhere"])[0] == ["scene", "elsewhere d", "elsewhere a", "elsewhere b"]
+    assert table(tables["known"])[0] == ["scene", "known default", "known extended"]
+
+
+@dataclass(frozen=True)
+class Held(Toy):
+    by: Holder = "engine"
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return self.by
+
+
+@pytest.mark.parametrize(
+    ("variant", "by", "words"),
+    [
+        ("default", "engine", "engine"),
+        ("default", "ours", "ours, a user's trick"),
+        ("default", "engine, our rows", "engine, our rows"),
+        ("tuned", "engine, our rows", "engine, our rows"),
+        ("extended", "ours", "ours"),
+    ],
+)
+def test_a_cell_ends_with_who_holds_the_joints_and_a_shipped_engines_cell_with_whose_trick_it_is(variant, by, words):
+    others = {"default": "tuned", "tuned": "extended", "extended": "default"}
+    engines = (Held(others[variant]), Held(variant, by=by))
+    page = replace(PAGE, engines=engines)
+    rows = falling(f"toy {variant}", (1e-2, 1e-4, 1e-6))
+    assert cell_of(rows, method=f"toy {variant}", page=page) == f"0.01, 1.0e-4, 1.0e-6; order 2.0; {words}"
+    torn = [replace(row, outcome=Outcome.TORN) for row in rows]
+    assert cell_of(torn, method=f"toy {variant}", page=page) == f"torn; {words}"
+    unbuilt = [replace(row, outcome=Outcome.UNSUPPORTED) for row in rows]
+    assert cell_of(unbuilt, method=f"toy {variant}", page=page) == "unsupported"
+
+
+def test_a_document_has_a_text_between_its_marks_and_nothing_else_changed():
+    begin, end = marks("table")
+    text = f"before\n{begin}\nold\n{end}\nafter\n"
+    assert with_part(text, "table", "new") == f"before\n{begin}\nnew\n{end}\nafter\n"
+    for lacking in (text.replace(begin, ""), text.replace(end, ""), ""):
         with pytest.raises(ValueError, match="lacks the marks"):
-            with_overview(lacking, "new")
+            with_part(lacking, "table", "new")
+    with pytest.raises(ValueError, match="lacks the marks"):
+        with_part(text, "another", "new")
 
 
+README = "\n".join(mark for name in ("findings", "overview") for mark in marks(name))
 DISC, OTHER = Disc(), OtherDisc()
 CELLS = {
     Cell(scene, Toy(variant), every): row_of(
@@ -251,15 +335,22 @@ def test_a_method_that_cannot_build_a_scene_is_told_once():
 
 def test_index_and_readme_tell_the_scenes_of_the_pages():
     pages = {PAGE: Material(CELLS)}
-    index = render_index(pages.items(), "the command")
-    assert "[disc](base.md)" in index
-    assert "[other disc](base.md)" in index
+    index = render_index(pages, "the command")
+    assert "[disc](base.md), rad" in index
+    assert "[other disc](base.md), rad" in index
     assert "- [Discs](base.md). One disc." in index
     assert all(f"- **{outcome}**: {outcome.meaning}" in index for outcome in Outcome)
-    readme = render_readme(f"{BEGIN}\n{END}", pages)
-    assert "[disc](reports/results/base.md)" in readme
+    readme = render_readme(README, pages)
+    assert "[disc](reports/results/base.md), rad" in readme
     assert "other disc" not in readme
     assert "order 2.0" in readme
+
+
+def test_the_readme_is_the_same_after_a_run_that_took_another_time():
+    slower = {cell: replace(row, cpu=7 * row.cpu, build=3.0, runs=9) for cell, row in CELLS.items()}
+    assert render_readme(README, {PAGE: Material(slower)}) == render_readme(README, {PAGE: Material(CELLS)})
+    worse = {cell: replace(row, angle=7 * row.angle) for cell, row in CELLS.items()}
+    assert render_readme(README, {PAGE: Material(worse)}) != render_readme(README, {PAGE: Material(CELLS)})
 
 
 def test_all_files_end_with_one_end_of_line_and_have_every_row_once():

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from reports.grid.ending import STATUSES
-from reports.text.overview import BEGIN, END, with_overview
+from reports.text.parts import marks, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -31,13 +31,23 @@ def test_it_is_shorter_than_150_lines():
     assert len(README.splitlines()) < 150
 
 
-def test_the_overview_stands_between_its_marks_and_nothing_else_changes():
-    filled = with_overview(README, "| a table |")
-    assert f"{BEGIN}\n| a table |\n{END}" in filled
-    assert with_overview(filled, "| another |") == with_overview(README, "| another |")
-    assert filled.split(BEGIN)[0] == README.split(BEGIN)[0]
+@pytest.mark.parametrize("part", ["findings", "overview"])
+def test_what_the_report_writes_stands_between_its_marks_and_nothing_else_changes(part):
+    begin, end = marks(part)
+    filled = with_part(README, part, "a text")
+    assert f"{begin}\na text\n{end}" in filled
+    assert with_part(filled, part, "another") == with_part(README, part, "another")
+    assert filled.split(begin)[0] == README.split(begin)[0]
     with pytest.raises(ValueError, match="lacks the marks"):
-        with_overview("nothing here", "| a table |")
+        with_part("nothing here", part, "a text")
+
+
+def test_both_parts_are_written_and_none_tells_a_time():
+    told = {name: README.split(marks(name)[0])[1].split(marks(name)[1])[0] for name in ("findings", "overview")}
+    assert len(re.findall("^- ", told["findings"], re.MULTILINE)) == 10
+    assert "pymunk default" in told["overview"]
+    assert "mujoco extended" in told["overview"]
+    assert not re.search(r"\d ms\b(?!\*\*)", told["overview"])  # "least at 1 ms" is a step
 
 
 def git(folder, *words):

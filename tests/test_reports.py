@@ -197,7 +197,7 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_maps_too()
     quick = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES), (page,), full=False)
     full = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES, Toy(factor=0.1)), (page,), full=True)
     assert {cell.purpose for cell in quick} == {"sweep", "failure"}
-    assert {cell.purpose for cell in full} == {"sweep", "failure", "map"}
+    assert {cell.purpose for cell in full} == {"sweep", "usual", "failure", "map"}
     assert {cell.every for cell in choose_cells((Disc(),), ENGINES, (page,), False, every=[4])} == {4}
 
 

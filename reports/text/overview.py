@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 
+from engines import Engine
+from reference.scene import Scene
 from reports.grid.convergence import Sweep, Verdict, by_method, sweeps
 from reports.grid.holding import held_by
 from reports.grid.measure import Measurement
@@ -16,8 +19,8 @@ from reports.text.tables import NOTHING, markdown, number
 Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
 
 
-def overviews(entries: Iterable[Entry], steps: Sequence[str] = tuple(USUAL_STEPS), folder: str = "") -> dict[str, str]:
-    """Engine -> its table: the errors of its usual variants at these names of USUAL_STEPS, a line a scene.
+def overviews(entries: Iterable[Entry], steps: Mapping[str, float] = USUAL_STEPS, folder: str = "") -> dict[str, str]:
+    """Engine -> its table: the errors of its usual variants at these steps [s] by name, a line a scene.
 
     `folder` is where the pages stand. No cell has a time: the same versions give the same table on every machine.
     """
@@ -26,7 +29,9 @@ def overviews(entries: Iterable[Entry], steps: Sequence[str] = tuple(USUAL_STEPS
     return {engine: _table(entries, engine, variants, steps, folder) for engine, variants in usual.items()}
 
 
-def _table(entries: Sequence[Entry], engine: str, variants: Sequence[str], steps: Sequence[str], folder: str) -> str:
+def _table(
+    entries: Sequence[Entry], engine: str, variants: Sequence[str], steps: Mapping[str, float], folder: str
+) -> str:
     lines = []
     for page, rows in entries:
         for scene in dict.fromkeys(row.scene for row in rows):
@@ -37,19 +42,22 @@ def _table(entries: Sequence[Entry], engine: str, variants: Sequence[str], steps
     return markdown(["scene", *(f"{engine} {variant}" for variant in variants)], lines, left=1 + len(variants))
 
 
-def _cell(page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Sequence[str]) -> str:
+def _cell(
+    page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Mapping[str, float]
+) -> str:
     """'0.32, 0.029, 0.01; plateau 0.011; engine', or the outcomes where no step gave an answer."""
     members = [row for row in rows if (row.engine, row.variant) == (engine, variant)]
     if not members:
         return NOTHING
     if not any(Outcome(row.outcome).comparable for row in members):
-        told = ", ".join(dict.fromkeys(row.outcome for row in members))
-        return told if told == Outcome.UNSUPPORTED else f"{told}; {_holder(page, scene, engine, variant)}"
+        outcomes = dict.fromkeys(row.outcome for row in members)
+        held = "" if Outcome.UNSUPPORTED in outcomes else _holder(page, scene, engine, variant)
+        return "; ".join(filter(None, (", ".join(outcomes), held)))
     sweep = by_method(sweeps(members), page.quantity).get((scene, engine, variant))
-    at = [next((row for row in members if is_step(row.step, USUAL_STEPS[step])), None) for step in steps]
+    at = [next((row for row in members if is_step(row.step, step)), None) for step in steps.values()]
     errors = [getattr(row, page.quantity) for row in at if row is not None and Outcome(row.outcome).comparable]
     words = [_error(row, page.quantity) for row in at]
-    told = words if errors else list(dict.fromkeys(words))  # "saturated" once
+    told = words if len(set(words)) > 1 else words[:1]  # "saturated" once
     end = _brought(sweep, members, errors) if sweep else ""
     return "; ".join(filter(None, (", ".join(told), end, _holder(page, scene, engine, variant))))
 
@@ -86,12 +94,18 @@ def _step(step: float) -> str:
     return f"{number(1e3 * step)} ms"
 
 
+@cache
+def _held(method: Engine, scene: Scene) -> str:
+    """Kept, because a method asks its whole model about each of a hundred joints."""
+    return held_by(method, scene.mechanism())
+
+
 def _holder(page: Page, scene: str, engine: str, variant: str) -> str:
     """Who holds the scene's joints; empty for a method that is no longer in the page's list."""
     for known in page.scenes:
         for method in page.engines:
             if (known.name, method.name, method.variant) == (scene, engine, variant):
-                held = held_by(method, known.mechanism())
+                held = _held(method, known)
                 # An engine as shipped has no joint that our code holds: that is what a user puts in its place.
                 return f"{held}, a user's trick" if variant == "default" and "ours" in held.split(": ") else held
     return ""

@@ -123,7 +123,7 @@ def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
     """
     firsts = [(page, _overview_rows(page, material, page.scenes[:1])) for page, material in pages.items()]
     shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
-    told = overviews(firsts, ("1 ms",), "reports/results/")
+    told = overviews(firsts, {"1 ms": USUAL_STEPS["1 ms"]}, "reports/results/")
     text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
     return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
 

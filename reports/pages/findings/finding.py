@@ -31,7 +31,7 @@ class Finding:
     @property
     def alternative(self) -> str:
         """The picture in words, for who can't see it."""
-        shown = " and ".join(line.label for line in self.lines)
+        shown = "; ".join(line.label for line in self.lines)
         return f"{axis_label(self.quantity)} against step [ms]: {shown}"
 
     @property

@@ -1,0 +1,321 @@
+"""Ten findings from the committed rows: each number is a row's, and a claim that its rows contradict is not made."""
+
+from __future__ import annotations
+
+import csv
+import re
+import xml.etree.ElementTree as xml
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from reports.charts.theme import DARK
+from reports.grid.outcomes import Outcome
+from reports.pages.catalogue import PAGES
+from reports.pages.findings.finding import MILLISECOND, TENTH
+from reports.pages.findings.findings import FINDINGS, findings, pictures
+from reports.pages.findings.lookup import Rows
+from reports.pages.findings.pictures import HEIGHT, LOOKS, WIDTH, Line, draw
+from reports.pages.page import Material
+from reports.pages.symptoms import SYMPTOMS
+from reports.text.links import anchor, headings, link
+from reports.text.tables import number
+from reports.text.unmeasured import MARK
+from tests.committed_rows import RESULTS, page_rows
+from tests.rows import falling, row_of
+
+NAMES = [find.__name__ for find in FINDINGS]
+
+
+TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
+
+
+def changed(change):
+    """The pages' material, each row as `change(cell, row)` gives it; None leaves it out."""
+    return {
+        page: Material({cell: new for cell, row in page_rows(page).items() if (new := change(cell, row)) is not None})
+        for page in TAUGHT
+    }
+
+
+@cache
+def told():
+    return {found.name: found for found in findings(changed(lambda cell, row: row))}
+
+
+def test_the_committed_rows_bear_all_ten_out():
+    assert list(told()) == NAMES
+    assert len(NAMES) == 10
+    assert len({found.title for found in told().values()}) == 10
+
+
+def stored(scene, engine, variant, every, field, purpose="sweep", which=lambda line: True):
+    """One number of errors.csv, as it stands there."""
+    with (RESULTS / "errors.csv").open(encoding="utf-8", newline="") as file:
+        wanted = (scene, engine, variant, str(every), purpose)
+        (line,) = (
+            line
+            for line in csv.DictReader(file)
+            if (line["scene"], line["engine"], line["variant"], line["every"], line["purpose"]) == wanted
+            and which(line)
+        )
+    return float(line[field])
+
+
+def iterations(count):
+    """Whether a line of errors.csv is of an engine with so many iterations."""
+    with (RESULTS / "descriptions.csv").open(encoding="utf-8", newline="") as file:
+        digests = {d["digest"] for d in csv.DictReader(file) if f"iterations={count}," in d["description"]}
+    return lambda line: line["settings"] in digests
+
+
+def free(engine, variant, field):
+    return stored("free_four_bar", engine, variant, 10, field)
+
+
+def person(count, every, field):
+    return stored("person_one_foot", "pymunk", "all of the gap", every, field, "map", iterations(count))
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers"),
+    [
+        ("spring", lambda: [free("mujoco", "tuned", "angle")]),
+        (
+            "tuned",
+            lambda: [
+                free(engine, "default", "angle") / free(engine, "tuned", "angle") for engine in ("pymunk", "mujoco")
+            ],
+        ),
+        ("luck", lambda: [stored("spinning_four_bar", "mujoco", "default", 10, "angle")]),
+        ("reading", lambda: [free("pymunk", "leapfrog", "angle"), free("pymunk", "tuned", "angle")]),
+        (
+            "energy",
+            lambda: [
+                100 * stored("pendulum_1", engine, variant, 10, "energy")
+                for engine, variant in (("pymunk", "default"), ("pymunk", "tuned"), ("mujoco", "tuned"))
+            ],
+        ),
+        ("iterations", lambda: [person(10, 1, "angle"), person(10, 10, "angle"), person(20, 10, "angle")]),
+        (
+            "forces",
+            lambda: [person(20, 10, "angle"), 100 * person(20, 10, "reaction"), 100 * person(100, 10, "reaction")],
+        ),
+        (
+            "skate",
+            lambda: [
+                stored("sleigh", "pymunk", "default", 1, "position"),
+                stored("sleigh", "pymunk", "tuned", 10, "position"),
+            ],
+        ),
+        (
+            "crank",
+            lambda: [
+                stored("driven_four_bar", "mujoco", variant, every, "angle", "failure")
+                for variant, every in (
+                    ("default, overwritten crank", 10),
+                    ("default, overwritten crank", 100),
+                    ("tuned, overwritten crank", 10),
+                    ("tuned", 10),
+                )
+            ],
+        ),
+        ("contact", lambda: [stored("rolling_ellipse", "mujoco", "extended", 10, "angle")]),
+    ],
+)
+def test_its_numbers_are_those_of_the_rows_that_it_names(name, numbers):
+    for value in numbers():
+        assert re.search(rf"(?<![\d.]){re.escape(number(value))}(?![\d.e])", told()[name].text), (name, number(value))
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "method", "quantity"),
+    [
+        ("spring", "free_four_bar", "mujoco RK4 alone", "angle"),
+        ("luck", "spinning_four_bar", "mujoco default", "angle"),
+        ("contact", "rolling_ellipse", "pymunk tuned", "angle"),
+        ("contact", "rolling_ellipse", "mujoco default", "angle"),
+    ],
+)
+def test_the_limit_that_it_tells_is_near_the_finest_error(name, scene, method, quantity):
+    rows = Rows(changed(lambda cell, row: row))
+    limit, finest = rows.sweep(scene, method, quantity).plateau, rows.of(scene, method)[-1]
+    assert number(limit) in told()[name].text
+    # All of these end flat: half a decade changes them by less than a twentieth.
+    assert getattr(finest, quantity) == pytest.approx(limit, rel=0.05)
+
+
+def times(factor, *fields, scene, method, purpose="sweep", steps=lambda step: True, **settings):
+    """Rows of one method with some errors multiplied."""
+
+    def change(cell, row):
+        own = (row.scene, row.method, row.purpose) == (scene, method, purpose)
+        if own and steps(row.step) and all(getattr(cell.engine, n) == value for n, value in settings.items()):
+            return replace(row, **{field: factor * getattr(row, field) for field in fields})
+        return row
+
+    return change
+
+
+def falls(scene, method, field):
+    """Rows of one method with an error that falls with the step."""
+    return lambda cell, row: replace(row, **{field: row.step}) if (row.scene, row.method) == (scene, method) else row
+
+
+def at(wanted):
+    return lambda step: abs(step - wanted) < 0.01 * wanted
+
+
+FREE = {"scene": "free_four_bar"}
+PERSON = {"scene": "person_one_foot", "method": "pymunk all of the gap", "purpose": "map"}
+CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("spring", falls("free_four_bar", "mujoco default", "angle")),
+        ("spring", falls("free_four_bar", "mujoco RK4 alone", "angle")),
+        ("spring", falls("free_four_bar", "mujoco RK4 alone", "gap")),
+        ("spring", times(1.2, "angle", **FREE, method="mujoco RK4 alone")),
+        ("spring", times(1.2, "gap", **FREE, method="mujoco RK4 alone")),
+        ("spring", times(100.0, "angle", **FREE, method="mujoco tuned")),
+        ("tuned", times(1e6, "angle", **FREE, method="mujoco tuned", steps=at(MILLISECOND))),
+        ("tuned", times(3.0, "angle", **FREE, method="pymunk tuned", steps=at(MILLISECOND))),
+        ("luck", falls("spinning_four_bar", "mujoco default", "angle")),
+        ("luck", times(4.0, "angle", scene="spinning_four_bar", method="mujoco default", steps=at(MILLISECOND))),
+        ("reading", falls("free_four_bar", "pymunk leapfrog", "angle")),
+        ("reading", times(10.0, "angle", **FREE, method="pymunk leapfrog")),
+        ("energy", times(0.1, "energy", scene="pendulum_1", method="pymunk default")),
+        ("energy", times(1e10, "energy", scene="pendulum_1", method="mujoco tuned")),
+        ("iterations", times(0.1, "angle", **PERSON, iterations=10, steps=at(MILLISECOND))),
+        ("iterations", times(10.0, "angle", **PERSON, iterations=20)),
+        ("forces", times(1.1, "angle", **PERSON, iterations=20)),
+        ("forces", times(0.2, "reaction", **PERSON, iterations=20)),
+        ("skate", times(1e-2, "position", scene="sleigh", method="pymunk default", steps=at(1e-4))),
+        ("skate", times(10.0, "position", scene="sleigh", method="pymunk tuned")),
+        ("crank", times(0.1, "angle", **CRANK, method="mujoco default, overwritten crank", steps=at(TENTH))),
+        ("crank", times(1e-3, "angle", **CRANK, method="mujoco tuned, overwritten crank")),
+        ("crank", times(100.0, "angle", **CRANK, method="mujoco tuned")),
+        ("contact", falls("rolling_ellipse", "mujoco default", "angle")),
+        ("contact", falls("rolling_ellipse", "pymunk tuned", "angle")),
+        ("contact", times(1e3, "angle", scene="rolling_ellipse", method="mujoco extended")),
+    ],
+)
+def test_a_finding_that_its_rows_contradict_is_not_told(name, wrong):
+    (find,) = (find for find in FINDINGS if find.__name__ == name)
+    assert not find(Rows(changed(wrong))).told
+
+
+ABOUT = {
+    "free_four_bar": ("spring", "tuned", "reading"),
+    "spinning_four_bar": ("luck",),
+    "driven_four_bar": ("crank",),
+    "pendulum_1": ("energy",),
+    "person_one_foot": ("iterations", "forces"),
+    "sleigh": ("skate",),
+    "rolling_ellipse": ("contact",),
+}
+
+
+@pytest.mark.parametrize("scene", ABOUT)
+def test_without_a_scenes_rows_its_findings_are_not_told_and_the_others_stay(scene):
+    left = findings(changed(lambda cell, row: None if row.scene == scene else row))
+    assert {found.name for found in left} == {name for name in NAMES if name not in ABOUT[scene]}
+    assert all(MARK not in found.title + found.text for found in left)
+
+
+def test_without_any_rows_or_with_failed_ones_alone_nothing_is_told():
+    assert findings(changed(lambda cell, row: None)) == []
+    assert findings({}) == []
+    failed = findings(changed(lambda cell, row: replace(row, outcome=Outcome.TORN)))
+    # Errors of failed runs may still speak of energy: a pendulum that is off by a radian has lost what it has lost.
+    assert {found.name for found in failed} <= {"energy"}
+
+
+def test_without_timings_no_cost_is_told():
+    untimed = findings(changed(lambda cell, row: replace(row, cpu=0.0)))
+    assert "tuned" not in [found.name for found in untimed]
+
+
+def test_rows_of_maps_with_other_numbers_do_not_stand_for_the_scenes_own():
+    rows = Rows(changed(lambda cell, row: row))
+    assert rows.of("free_four_bar", "pymunk default", "map") == []
+    assert any(
+        (cell.scene.name, cell.purpose, row.method) == ("free_four_bar", "map", "pymunk default")
+        for page in TAUGHT
+        for cell, row in page_rows(page).items()
+    )
+    assert len(rows.of("person_one_foot", "pymunk all of the gap", "map", iterations=10)) == 5
+
+
+def test_each_picture_is_legible_on_a_telephone_and_in_the_dark():
+    files = pictures(told().values())
+    assert sorted(files) == sorted(found.picture for found in told().values())
+    for found in told().values():
+        text = files[found.picture]
+        root = xml.fromstring(text)
+        assert float(root.attrib["width"].removesuffix("pt")) == 72 * WIDTH == 270  # 360 pixels
+        assert "prefers-color-scheme: dark" in text
+        assert DARK.ink in text
+        assert found.title in text
+
+
+def test_each_picture_has_every_line_with_its_label_and_units_on_both_axes():
+    for found in told().values():
+        figure = draw(found.lines, found.quantity)
+        (axes,) = figure.axes
+        labels = [line.get_label() for line in axes.lines]
+        assert labels == [line.label for line in found.lines]
+        assert all(np.size(line.get_xdata()) >= 2 for line in axes.lines), found.name
+        assert axes.get_xlabel() == "step [ms]"
+        assert re.fullmatch(r"\w+ error \[[\w/]+\]", axes.get_ylabel())
+        sizes: list[Any] = [text.get_fontsize() for text in (*figure.legends[0].get_texts(), *axes.get_xticklabels())]
+        assert min(sizes) >= 8  # points, at 360 pixels: nothing is scaled down
+        assert all(line.label in found.alternative for line in found.lines)
+        assert figure.get_size_inches() == pytest.approx((WIDTH, HEIGHT))
+
+
+def test_lines_differ_without_colours():
+    assert len({(look["linestyle"], look["marker"]) for look in LOOKS}) == len(LOOKS)
+    steps = [Line(name, falling(f"pymunk {name}", (1e-2, 1e-3))) for name in "abcd"]
+    (axes,) = draw(steps, "angle").axes
+    assert [np.asarray(line.get_xdata()).tolist() for line in axes.lines] == [[100.0, 10.0]] * 4
+    assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[1e-2, 1e-3]] * 4
+    assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
+    with pytest.raises(ValueError, match="5 lines"):
+        draw([*steps, Line("e", [])], "angle")
+
+
+def test_a_failed_run_stands_in_a_picture_and_an_unknown_error_does_not():
+    rows = [row_of("pymunk a", step=1e-2, angle=3.0, outcome=Outcome.SATURATED), row_of("pymunk a", angle=float("nan"))]
+    (axes,) = draw([Line("a", rows)], "angle").axes
+    assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[3.0]]
+
+
+# --- symptoms and links ---
+
+FILES = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
+
+
+@pytest.mark.parametrize("symptom", SYMPTOMS, ids=lambda symptom: symptom.seen[:30])
+def test_a_symptom_leads_to_a_section_that_is_there(symptom):
+    address = link(symptom.page, symptom.heading, FILES)
+    name, _, place = address.partition("#")
+    assert name in FILES
+    assert not symptom.heading or place in {anchor(heading) for heading in headings(FILES[name])}
+
+
+def test_a_link_is_to_the_page_then_to_one_beside_it_then_to_the_page_without_a_place():
+    files = {"b_data.md": "## First\n\n### Second, with `code`!\n", "b.md": "# B\n\n## First\n", "c.md": "## Third\n"}
+    assert link("b", "First", files) == "b.md#first"
+    assert link("b", "Second, with `code`!", files) == "b_data.md#second-with-code"
+    assert link("b", "Third", files) == "b.md"
+    assert link("b", "", files) == "b.md"
+
+
+def test_a_comment_in_code_is_no_heading():
+    assert headings("# A\n\n```\n# no heading\n```\n\n## B\n") == ("A", "B")
