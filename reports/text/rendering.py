@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from reports.pages.page import Material, Page, StabilityMap
 from reports.text import tables, unmeasured
 from reports.text.experiments import told_experiment
 from reports.text.holders import holders
+from reports.text.links import anchor
 from reports.text.overview import overview, with_overview
 from reports.text.provenance import machine, today, versions
 from reports.text.told_scene import told_scene
@@ -39,11 +39,6 @@ def environment() -> Environment:
     )
     out.filters |= unmeasured.FILTERS | {"anchor": anchor}
     return out
-
-
-def anchor(heading: str) -> str:
-    """What a link to a heading of Markdown ends with, as GitHub makes it: lower case, no punctuation, hyphens."""
-    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
