@@ -233,7 +233,7 @@ class Lagrange(Valid):
 
 class _LagrangeRun:
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
-        self._engine, self._mechanism, self._dt = engine, mechanism, dt
+        self._engine, self._mechanism, self._dt, self._over = engine, mechanism, dt, False
         baumgarte = 1 / (BAUMGARTE_STEPS * dt) if engine.stabilisation == "baumgarte" else 0.0
         self._dynamics = _Dynamics(mechanism, baumgarte)
         count = len(mechanism.bodies)
@@ -248,7 +248,11 @@ class _LagrangeRun:
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
+        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
         dynamics, mechanism, step = self._dynamics, self._mechanism, self._step()
         steps, dt = (1, self._dt * every) if self._engine.tolerance is not None else (every, self._dt)
         project = self._engine.stabilisation == "projection"
@@ -285,5 +289,6 @@ METHODS = tuple(
     for integrator in get_args(Integrator)
     for stabilisation in get_args(Stabilisation)
 )
+VARIANTS = (Lagrange("euler", "projection"), Lagrange("rk4", "projection"))  # for every scene: orders 1 and 4
 TRUTH = Lagrange("dop853", "projection", tolerance=1e-13)
 """The tightest that double precision carries: what scenes are checked against."""

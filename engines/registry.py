@@ -1,16 +1,66 @@
-"""What is under test: the one list of engines. A new engine is its own file and a line or two here."""
+"""What is under test: the engines that distributions register, ours among them, and those that a reference names.
+
+A distribution registers under `crosscheck.engines` what shall be run in every scene, and under `crosscheck.methods`
+what more there is of an engine: the methods between its variants, which show what each setting buys. The value of an
+entry point is an engine, or a tuple or list of engines.
+"""
 
 from __future__ import annotations
 
-from engines import Engine, lagrange, mujoco, pymunk
+from pathlib import Path
+from typing import Any
 
-# Every engine as shipped, tuned by documented settings, and extended around; and ideal constraints under ordinary
-# integrators of order 1 and 4. Every scene is run in these.
-VARIANTS: tuple[Engine, ...] = (
-    *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED),
-    *(mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED),
-    *(lagrange.Lagrange("euler", "projection"), lagrange.Lagrange("rk4", "projection")),
+from engines import Engine
+from engines.entry_points import registered
+from engines.loading import Kind
+from engines.loading import load as load_values
+
+MEMBERS = tuple(name for name in vars(Engine) if not name.startswith("_"))
+
+
+def trouble(value: Any) -> str:
+    """Why a value is no engine, as a clause; empty if it is one. See the contract in `engines`."""
+    if isinstance(value, type):
+        return f"it is a class; give an engine made of it, {value.__name__}()"
+    lacking = [name for name in MEMBERS if not hasattr(value, name)]
+    if lacking:
+        return f"it lacks {', '.join(lacking)}"
+    for name in ("name", "variant"):
+        word = getattr(value, name)
+        if not (isinstance(word, str) and word.strip() and word.isprintable()):
+            return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
+    return ""
+
+
+ENGINE = Kind("engine", trouble)
+
+
+def method(engine: Engine) -> str:
+    """How an engine is called in every table."""
+    return f"{engine.name} {engine.variant}"
+
+
+def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
+    """The engines of `package.module:NAME`, `path/to/file.py` or `path/to/file.py:NAME`, installed or not.
+
+    `folder`: where the reference counts from, the current one unless it is given. Raises ValueError, in one line, for
+    what can't be imported or is no engine.
+    """
+    return load_values(reference, ENGINE, folder)
+
+
+_variants = registered("crosscheck.engines", ENGINE, method)
+_methods = registered("crosscheck.methods", ENGINE, method, {method(engine): engine for engine in _variants.values})
+
+# Every engine as shipped, tuned by documented settings, and extended around; ideal constraints under ordinary
+# integrators of order 1 and 4; and what other distributions register. Every scene is run in these.
+VARIANTS: tuple[Engine, ...] = _variants.values
+
+# These and the methods between them, an engine's together.
+ENGINES: tuple[Engine, ...] = tuple(
+    engine
+    for name in dict.fromkeys(engine.name for engine in (*VARIANTS, *_methods.values))
+    for engine in dict.fromkeys([*_methods.values, *VARIANTS])
+    if engine.name == name
 )
-
-# These and the methods between them, which show what each setting buys.
-ENGINES: tuple[Engine, ...] = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS)
+TROUBLES = (*_variants.troubles, *_methods.troubles)

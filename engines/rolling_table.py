@@ -1,12 +1,26 @@
-"""Where rolling puts a body, as a fast function of one angle: short polynomials through exact contacts."""
+"""Where rolling puts a body, as fast functions of one angle, for every adapter: a step can't wait for arrays.
+
+`reference.rolling` knows the contact for arrays of rotations; one call of it takes longer than a hundred steps of an
+engine. Two round curves, or a round one on a line, are in closed form here; any other pair is a table of short
+polynomials through exact contacts.
+
+With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.contact`), the body's origin in the frame of
+the ground is P = point + a, and P' = i a, P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the
+acceleration that rolling implies then. Vectors are complex numbers x + i y.
+"""
 
 from __future__ import annotations
 
 import math
+from cmath import rect
+from collections import deque
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.curves.circles_lines import Circle, Line, Ring
+from reference.curves.curve import Curve, Placed
 from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so
@@ -27,16 +41,137 @@ NOWHERE = complex(math.nan, math.nan)
 LOST: Place = (NOWHERE, NOWHERE, NOWHERE)
 
 
-class RollTable:
-    """P(theta), P'(theta) and P''(theta): the body's origin [m] in the frame of the ground, as x + i y.
+def unplaced(curve: Curve) -> tuple[Curve, complex, float]:
+    """The curve inside any number of placings, its shift [m] as x + i y, and its turn [rad]."""
+    if not isinstance(curve, Placed):
+        return curve, 0j, 0.0
+    inner, shift, turn = unplaced(curve.curve)
+    return inner, complex(*curve.shift) + rect(1.0, curve.turn) * shift, turn + curve.turn
 
-    With s' = ds/dtheta, the arm a = r_{O'/C} and e_n (see `reference.rolling.contact`), P = point + a, P' = i a and
-    P'' = s' e_n - a: the velocity (18.66) at one radian a second, and the acceleration that rolling implies then.
-    Made once; it grows with the angles that it is asked for.
+
+class Rolled(Protocol):
+    """A rolling pair; rotations theta [rad] are those of the body against the ground's, unwrapped.
+
+    Where the pair can't roll, and for an infinite rotation, `arm` and `contact` raise ValueError.
     """
 
+    def place(self, theta: float) -> Place:
+        """P, P', P'' [m, m/rad, m/rad^2]; NaN beyond the rotations at which the body can roll."""
+        ...
+
+    def arm(self, theta: float) -> complex:
+        """The body's origin seen from the contact [m], in the ground's frame."""
+        ...
+
+    def contact(self, theta: float) -> tuple[complex, complex]:
+        """The contact in the ground's frame, and in the body's [m]."""
+        ...
+
+
+# Of the mechanisms built last: the levels of an extrapolation build one mechanism many times, and a table takes as long
+# as thousands of steps.
+_latest: deque[tuple[Rolling, Rolled]] = deque(maxlen=8)
+
+
+def rolled(rolling: Rolling) -> Rolled:
+    """The fast functions of a pair, made once for as long as the same pair is asked for."""
+    for known, fast in _latest:
+        if known is rolling:
+            return fast
+    _latest.append((rolling, _made(rolling)))
+    return _latest[-1][1]
+
+
+def _made(rolling: Rolling) -> Rolled:
+    ground, body = _round(rolling.ground), _round(rolling.body)
+    if body is not None and ground is not None:
+        return RoundOnRound(rolling, ground, body)
+    if body is not None and isinstance(unplaced(rolling.ground)[0], Line):
+        return RoundOnLine(rolling, body)
+    return Table(rolling)
+
+
+def _round(curve: Curve) -> tuple[complex, float] | None:
+    """Centre [m] and radius [m] of a disc, or of a hole with a negative radius; None for any other curve."""
+    curve, shift, turn = unplaced(curve)
+    if isinstance(curve, Circle | Ring):
+        return shift + rect(1.0, turn) * complex(*curve.centre), curve.sense * curve.radius
+    return None
+
+
+def _exactly(rolling: Rolling, theta: float) -> Place:
+    place, first, second = _contacts(rolling, np.array(theta))
+    return complex(place), complex(first), complex(second)
+
+
+def _contacts(rolling: Rolling, theta: NDArray[np.float64]) -> tuple[NDArray[np.complex128], ...]:
+    """P, P' and P'' (...) by the reference."""
+    contact = rolling.contact(theta)
+    point, arm = (vector[..., 0] + 1j * vector[..., 1] for vector in (contact.point, contact.arm))
+    normal = np.sin(contact.tangent_angle) - 1j * np.cos(contact.tangent_angle)
+    return point + arm, 1j * arm, contact.rate * normal - arm
+
+
+class RoundOnLine:
+    """A disc on a line: its middle goes straight, and its origin round its middle."""
+
+    def __init__(self, rolling: Rolling, body: tuple[complex, float]) -> None:
+        self._start = rolling.theta
+        self._middle, radius = body
+        start = rolling.contact(rolling.theta)
+        self._along = radius * rect(1.0, float(start.tangent_angle))  # of the middle in a radian
+        self._radius = -1j * self._along  # from the contact to the middle
+        self._point = complex(*start.point)
+
+    def place(self, theta: float) -> Place:
+        if not -FARTHEST <= theta <= FARTHEST:
+            return LOST
+        along, out = self._along, rect(1.0, theta) * self._middle
+        return self._point + self._radius + along * (theta - self._start) - out, along - 1j * out, out
+
+    def arm(self, theta: float) -> complex:
+        return self._radius - rect(1.0, theta) * self._middle
+
+    def contact(self, theta: float) -> tuple[complex, complex]:
+        return self._point + self._along * (theta - self._start), self._middle - self._radius * rect(1.0, -theta)
+
+
+class RoundOnRound:
+    """A disc or a ring on a disc or in a ring: its middle goes round the ground's, and its origin round its middle.
+
+    Radii of holes are negative, as their curvatures are. The tangent turns by m = r_B / (r_A + r_B) in a radian.
+    """
+
+    def __init__(self, rolling: Rolling, ground: tuple[complex, float], body: tuple[complex, float]) -> None:
+        self._start = rolling.theta
+        (self._centre, around), (self._middle, radius) = ground, body
+        self._turning = radius / (around + radius)
+        # Along the normal -i e^(i angle): from the ground's middle to the contact, from there to the body's, and both.
+        self._ground, self._radius, self._between = -1j * around, -1j * radius, -1j * (around + radius)
+        self._angle = float(rolling.contact(rolling.theta).tangent_angle)
+
+    def place(self, theta: float) -> Place:
+        if not -FARTHEST <= theta <= FARTHEST:
+            return LOST
+        tangent = rect(1.0, self._angle + self._turning * (theta - self._start))
+        out, radius = rect(1.0, theta) * self._middle, self._radius * tangent
+        return self._centre + self._between * tangent - out, 1j * (radius - out), out - self._turning * radius
+
+    def arm(self, theta: float) -> complex:
+        tangent = rect(1.0, self._angle + self._turning * (theta - self._start))
+        return self._radius * tangent - rect(1.0, theta) * self._middle
+
+    def contact(self, theta: float) -> tuple[complex, complex]:
+        angle = self._angle + self._turning * (theta - self._start)
+        on_body = self._middle - self._radius * rect(1.0, angle - theta)
+        return self._centre + self._ground * rect(1.0, angle), on_body
+
+
+class Table:
+    """Any pair by polynomials in cells of equal width. It grows with the angles that it is asked for."""
+
     def __init__(self, rolling: Rolling) -> None:
-        self.rolling = rolling
+        self._rolling = rolling
         low, high = rolling.limits
         self._low, self._high = max(low, -FARTHEST), min(high, FARTHEST)
         self._cells: dict[int, tuple[complex, ...] | None] = {}
@@ -48,24 +183,18 @@ class RollTable:
             if error < ROUNDING or width <= FINEST or (error < POOR and error > before / 4):
                 break
             width, before = width / 2, error
-        self.exact_only = not error < POOR
-        if not self.exact_only:
+        self._exact_only = not error < POOR
+        if not self._exact_only:
             for turn in (-1, 1):  # a turn to both sides; what is met beyond is laid when it is met
                 for block in range(min(16, math.ceil(2 * math.pi / (BLOCK * width)))):
                     self.place(rolling.theta + turn * block * BLOCK * width)
 
     def place(self, theta: float) -> Place:
-        """P, P', P'' [m, m/rad, m/rad^2]; NaN beyond the rotations at which the body can roll."""
         if not self._low <= theta <= self._high:
             return LOST
-        if self.exact_only:
-            return self._exactly(theta)
-        index = math.floor(theta * self._per_radian)
-        if index not in self._cells:
-            self._lay(index // BLOCK * BLOCK)
-        cell = self._cells[index]
+        cell = self._cells.get(math.floor(theta * self._per_radian)) or self._laid(theta)
         if cell is None:
-            return self._exactly(theta)
+            return _exactly(self._rolling, theta)
         middle, p, q, a, b, c, d, e, f, b1, c1, d1, e1, f1, a2, b2, c2, d2, e2, f2 = cell
         u = theta - middle.real
         return (
@@ -74,15 +203,27 @@ class RollTable:
             ((((f * u + e) * u + d) * u + c) * u + b) * u + a,
         )
 
-    def _contacts(self, theta: NDArray[np.float64]) -> tuple[NDArray[np.complex128], ...]:
-        contact = self.rolling.contact(theta)
-        point, arm = (vector[..., 0] + 1j * vector[..., 1] for vector in (contact.point, contact.arm))
-        normal = np.sin(contact.tangent_angle) - 1j * np.cos(contact.tangent_angle)
-        return point + arm, 1j * arm, contact.rate * normal - arm
+    def arm(self, theta: float) -> complex:
+        if not self._low <= theta <= self._high:
+            return -1j * _exactly(self._rolling, theta)[1]
+        cell = self._cells.get(math.floor(theta * self._per_radian)) or self._laid(theta)
+        if cell is None:
+            return -1j * _exactly(self._rolling, theta)[1]
+        middle, _, q, a, _, _, _, _, _, b1, c1, d1, e1, f1, _, _, _, _, _, _ = cell
+        u = theta - middle.real
+        return -1j * (((((((f1 * u + e1) * u + d1) * u + c1) * u + b1) * u) + a) * u + q)
 
-    def _exactly(self, theta: float) -> Place:
-        place, first, second = self._contacts(np.array(theta))
-        return complex(place), complex(first), complex(second)
+    def contact(self, theta: float) -> tuple[complex, complex]:
+        place, once, _ = self.place(theta) if self._low <= theta <= self._high else _exactly(self._rolling, theta)
+        out = 1j * once  # from the origin to the contact
+        return place + out, out * rect(1.0, -theta)
+
+    def _laid(self, theta: float) -> tuple[complex, ...] | None:
+        """The cell of a rotation, laid if it is not there yet; None where only exact contacts will do."""
+        index = math.floor(theta * self._per_radian)
+        if index not in self._cells and not self._exact_only:
+            self._lay(index // BLOCK * BLOCK)
+        return self._cells.get(index)
 
     def _lay(self, start: int) -> None:
         """The cells from `start` on, a block of them; None for those that aren't wholly within the limits."""
@@ -99,7 +240,7 @@ class RollTable:
         """(cells, 20): the middle of each cell, P and P' there, and the coefficients of P'', P' and P."""
         middle, half = np.asarray((index + 0.5) * self._width, dtype=float), 0.5 * self._width
         node = np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES)
-        place, first, second = self._contacts(np.append(middle, middle[:, None] + half * node))
+        place, first, second = _contacts(self._rolling, np.append(middle, middle[:, None] + half * node))
         count, power = len(middle), np.arange(NODES)
         powers = np.linalg.inv(np.vander(node, increasing=True)) / half ** power[:, None]
         bend = second[count:].reshape(count, NODES) @ powers.T
@@ -110,14 +251,14 @@ class RollTable:
 
     def _error(self) -> float:
         """How far a block about the start misses P'' half way between its nodes, in parts of the largest P''."""
-        around = np.arange(BLOCK) + math.floor(self.rolling.theta * self._per_radian) - BLOCK // 2
+        around = np.arange(BLOCK) + math.floor(self._rolling.theta * self._per_radian) - BLOCK // 2
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf
         cells = self._fitted(around[inside])
         node = np.cos(math.pi * np.arange(NODES + 1) / NODES)
         theta = cells[:, :1].real + 0.5 * self._width * node
-        exact = self._contacts(theta)[2]
+        exact = _contacts(self._rolling, theta)[2]
         u = theta - cells[:, :1].real
         fitted = sum(cells[:, 3 + k, None] * u**k for k in range(NODES))
         return float(np.abs(fitted - exact).max() / np.abs(exact).max())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import combinations_with_replacement
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +10,7 @@ from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttribute
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-if TYPE_CHECKING:
-    from reference.mechanism import Mechanism
+from reference.joint_rows import JointRows
 
 Array = NDArray[np.float64]
 
@@ -22,21 +20,21 @@ MANY_ROWS = 24
 SMALLEST_PIVOT = 1e-9
 
 
-def banded_reaction(mechanism: Mechanism, pose: Array, excess: Array, inertias: Array) -> Array:
+def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias: Array) -> Array:
     """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
 
     `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
     the mass matrix M. J M^-1 J^T times the reactions is J excess: built from the joints' blocks, in an order that makes
     its band narrow, and factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
     """
-    everything = mechanism._with_ground(pose)
-    times, count = len(pose), len(mechanism.bodies)
-    weight = np.concatenate([1 / inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
+    everything = joint_rows.with_ground(pose)
+    times, count = len(pose), joint_rows.bodies
+    mobility = np.concatenate([1 / inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
     excess = np.concatenate([excess, np.zeros((times, 1, 3))], axis=1)
-    right = np.zeros((times, mechanism.row_count))
+    right = np.zeros((times, joint_rows.count))
     ends: dict[int, list[tuple[NDArray[np.intp], Array]]] = {}  # of each body, the rows on it and their blocks
-    for group in mechanism._groups:
-        block = group.joint.rows(everything[:, group.first, :], everything[:, group.second, :])
+    for group in joint_rows.groups:
+        block = group.blocks(everything)
         for bodies, columns in ((group.first, slice(0, 3)), (group.second, slice(3, 6))):
             right[:, group.rows] += np.einsum("tjrc,tjc->tjr", block[..., columns], excess[:, bodies])
             for joint, body in enumerate(bodies.tolist()):
@@ -45,7 +43,7 @@ def banded_reaction(mechanism: Mechanism, pose: Array, excess: Array, inertias: 
     pairs: dict[tuple[int, int], Array] = {}
     for body, own in ends.items():
         for (rows, block), (others, other) in combinations_with_replacement(own, 2):
-            product = np.einsum("trc,c,tsc->trs", block, weight[body], other)
+            product = np.einsum("trc,c,tsc->trs", block, mobility[body], other)
             same = rows is others or rows[0] == others[0]
             for i, row in enumerate(rows.tolist()):
                 for j, column in enumerate(others.tolist()):
@@ -53,9 +51,9 @@ def banded_reaction(mechanism: Mechanism, pose: Array, excess: Array, inertias: 
                         continue
                     key = (min(row, column), max(row, column))
                     pairs[key] = pairs.get(key, 0) + product[:, i, j]
-    order, band = _narrow(mechanism.row_count, list(pairs))
+    order, band = _narrow(joint_rows.count, list(pairs))
     place = np.argsort(order)
-    matrix = np.zeros((times, band + 1, mechanism.row_count))
+    matrix = np.zeros((times, band + 1, joint_rows.count))
     for (row, column), values in pairs.items():
         low, high = sorted((place[row], place[column]))
         matrix[:, high - low, low] = values  # LAPACK's lower band storage
@@ -70,7 +68,7 @@ def banded_reaction(mechanism: Mechanism, pose: Array, excess: Array, inertias: 
     # and this gives the digits back (Bjorck 1987, corrected seminormal equations).
     missing = np.zeros_like(right)
     for body, own in ends.items():
-        left = excess[:, body] - weight[body] * sum(np.einsum("trc,tr->tc", b, out[:, rows]) for rows, b in own)
+        left = excess[:, body] - mobility[body] * sum(np.einsum("trc,tr->tc", b, out[:, rows]) for rows, b in own)
         for rows, block in own:
             missing[:, rows] += np.einsum("trc,tc->tr", block, left)
     for time, factor in factors.items():

@@ -6,11 +6,8 @@ mechanism's vectors q and v stack them in the order of `Mechanism.bodies`. Nothi
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Sequence
-from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -18,13 +15,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.banded_reactions import MANY_ROWS, banded_reaction
-from reference.joints import Drive, Joint, Vector
+from reference.body import Body
+from reference.joint_rows import JointRows
+from reference.joints import Joint, Vector
 from reference.kinds import Floats
 from reference.memory import require_room
 from reference.row_system import rank, reactions
-from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Positive, Valid, validated
+from reference.scales import length_scale, time_scale
+from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 
-Triple = tuple[float, float, float]
 States = AnyComplexes  # (..., bodies, 3)
 
 # A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
@@ -33,41 +32,6 @@ START_TOLERANCE = 1e-9
 ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
 # The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
 LARGEST_RANK = 2**28
-
-
-@dataclass(frozen=True)
-class Body(Valid):
-    """A rigid body in the plane, described at its centre of mass.
-
-    mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
-    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a non-positive mass or inertia, or a number not finite.
-    """
-
-    name: Name
-    mass: Positive
-    inertia: Positive
-    pose: Triple
-    twist: Triple = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class _Group:
-    """Joints of one kind, stacked so that one numpy expression serves them all."""
-
-    joint: Any  # of the kind, each numeric field an array with the joints along its first axis
-    first: NDArray[np.intp]  # (joints,) index of the body; the ground is the index after the last body
-    second: NDArray[np.intp]
-    rows: NDArray[np.intp]  # (joints, size) where their rows stand in the mechanism
-
-
-def _stack(joints: Sequence[Any]) -> Any:
-    """One joint that stands for several of its kind: every numeric field becomes an array."""
-    if not getattr(joints[0], "stackable", True):
-        return joints[0]
-    numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
-    stacked = copy(joints[0])  # not made anew: arrays are no valid fields of one joint
-    stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
-    return stacked
 
 
 @dataclass(frozen=True)
@@ -125,22 +89,9 @@ class Mechanism(Valid):
         return {**{body.name: index for index, body in enumerate(self.bodies)}, None: len(self.bodies)}
 
     @cached_property
-    def _groups(self) -> tuple[_Group, ...]:
-        kinds: dict[Any, list[tuple[Any, range]]] = {}  # one that can't stack is a kind of its own
-        start = 0
-        for joint in self.joints:
-            kind = type(joint) if getattr(joint, "stackable", True) else joint.name
-            kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
-            start += joint.size
-        return tuple(
-            _Group(
-                joint=_stack([joint for joint, _ in members]),
-                first=np.array([self._index[joint.first] for joint, _ in members]),
-                second=np.array([self._index[joint.second] for joint, _ in members]),
-                rows=np.array([list(where) for _, where in members]),
-            )
-            for members in kinds.values()
-        )
+    def joint_rows(self) -> JointRows:
+        """The joints, ready to be evaluated; unchecked, for loops that ask at every step."""
+        return JointRows.of(self.joints, self._index)
 
     @validated
     def body_index(self, name: Name) -> int:
@@ -201,27 +152,13 @@ class Mechanism(Valid):
         """Raise InvalidMechanism if the poses of a trajectory of so many samples take more than memory.LARGEST."""
         require_room("mechanism: a trajectory", (samples + 1, len(self.bodies), 3))
 
-    def _with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
-        if pose.shape[-2:] != (len(self.bodies), 3):
-            raise InvalidMechanism(
-                f"mechanism: poses have the shape {pose.shape}; they must be of (..., {len(self.bodies)}, 3), "
-                "x, y and angle of every body"
-            )
-        return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
-
     @validated
     def gap(self, pose: States, t: ArrayLike) -> NDArray[Any]:
         """How far every joint is open (..., rows) [m, rad for a drive]; NaN in rows that constrain velocity only.
 
         pose (..., bodies, 3) and times t (...) [s].
         """
-        everything = self._with_ground(pose)
-        out = np.full((*everything.shape[:-2], self.row_count), np.nan, dtype=everything.dtype)
-        for group in self._groups:
-            if group.joint.holonomic:
-                first, second = everything[..., group.first, :], everything[..., group.second, :]
-                out[..., group.rows] = group.joint.gap(first, second, np.asarray(t)[..., None])
-        return out
+        return self.joint_rows.gap(pose, np.asarray(t))
 
     @validated
     def rows(self, pose: States) -> NDArray[Any]:
@@ -229,38 +166,18 @@ class Mechanism(Valid):
 
         Dense, though each row has two bodies: raises InvalidMechanism where that would take more than memory.LARGEST.
         """
-        everything = self._with_ground(pose)
-        leading, count = everything.shape[:-2], everything.shape[-2]
-        kind = np.result_type(everything, float)
-        require_room("mechanism: dense rows", (*leading, self.row_count, count, 3), kind.itemsize)
-        out = np.zeros((*leading, self.row_count, count, 3), dtype=kind)
-        for group in self._groups:
-            block = group.joint.rows(everything[..., group.first, :], everything[..., group.second, :])
-            out[..., group.rows, group.first[:, None], :] += block[..., 0:3]
-            out[..., group.rows, group.second[:, None], :] += block[..., 3:6]
-        return out[..., :-1, :].reshape((*leading, self.row_count, 3 * (count - 1)))
+        return self.joint_rows.dense(pose)
 
     @validated
     def slip(self, pose: States, twist: States) -> NDArray[Any]:
         """J v - rate (..., rows) [m/s, rad/s for a drive]: how fast every joint is violated."""
-        return self._velocities(pose, twist) - self.rate
+        return self.joint_rows.velocities(pose, twist) - self.rate
 
     @validated
     def bias(self, pose: Numbers, twist: Numbers) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
-        return -np.imag(self._velocities(pose + 1j * step * twist, twist)) / step
-
-    def _velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
-        """J v (..., rows) joint by joint: O(joints), where J alone is O(joints bodies)."""
-        poses, twists = self._with_ground(pose), self._with_ground(twist)
-        leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
-        out = np.zeros((*leading, self.row_count), dtype=np.result_type(poses, twists, float))
-        for group in self._groups:
-            block = group.joint.rows(poses[..., group.first, :], poses[..., group.second, :])
-            ends = np.concatenate([twists[..., group.first, :], twists[..., group.second, :]], axis=-1)
-            out[..., group.rows] = (block @ ends[..., None])[..., 0]
-        return out
+        return -np.imag(self.joint_rows.velocities(pose + 1j * step * twist, twist)) / step
 
     @validated
     def reaction(
@@ -289,7 +206,7 @@ class Mechanism(Valid):
         if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
             return self.forces(pose[None], excess[None], inertias)[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
-            found = banded_reaction(self, pose, excess, inertias)
+            found = banded_reaction(self.joint_rows, pose, excess, inertias)
             dependent = np.isnan(found).any(axis=1)
             if dependent.any():
                 found[dependent] = self._dense_reaction(pose[dependent], excess[dependent], inertias)
@@ -300,7 +217,8 @@ class Mechanism(Valid):
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         size = np.where(self.turning, self.length_scale, 1.0)
-        return reactions(self.rows(pose), inertias.reshape(-1), _column(excess)[..., 0], size)
+        excess = np.asarray(excess)
+        return reactions(self.rows(pose), inertias.reshape(-1), excess.reshape((*excess.shape[:-2], -1)), size)
 
     @validated
     def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:
@@ -319,29 +237,9 @@ class Mechanism(Valid):
     @cached_property
     def length_scale(self) -> float:
         """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
-        points: dict[str, list[Vector]] = {body.name: [(0.0, 0.0)] for body in self.bodies}
-        for joint in self.joints:
-            for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
-                if name is not None and hasattr(joint, point):
-                    points[name].append(getattr(joint, point))
-        return max((math.dist(p, q) for own in points.values() for p in own for q in own), default=0.0) or 1.0
+        return length_scale(self.bodies, self.joints)
 
     @cached_property
     def time_scale(self) -> float:
-        """One radian of the fastest motion that the description promises [s]: the scale for an engine's settings.
-
-        The inverse of the largest of: a body's rotation rate, a drive's rate, speed over length, and the pendulum
-        frequency sqrt(g / length); 1 s when nothing moves or pulls.
-        """
-        length = self.length_scale
-        rates = [math.sqrt(math.hypot(*self.gravity) / length)]
-        rates += [abs(body.twist[2]) for body in self.bodies]
-        rates += [math.hypot(*body.twist[:2]) / length for body in self.bodies]
-        rates += [abs(joint.turning_rate) for joint in self.joints if isinstance(joint, Drive)]
-        return 1 / max(rates) if max(rates) > 0 else 1.0
-
-
-def _column(per_body: NDArray[Any]) -> NDArray[Any]:
-    """(..., bodies, 3) as columns (..., 3 bodies, 1)."""
-    per_body = np.asarray(per_body)
-    return per_body.reshape((*per_body.shape[:-2], 3 * per_body.shape[-2], 1))
+        """One radian of the fastest motion that the description promises [s]: see `scales.time_scale`."""
+        return time_scale(self.length_scale, self.gravity, self.bodies, self.joints)

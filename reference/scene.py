@@ -34,8 +34,12 @@ class Scene(Valid, ABC):
     horizon: float
 
     def __getstate__(self) -> dict[str, Any]:
-        """Its numbers alone, so that a scene travels to another process without what it has worked out."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        """Its numbers alone, so that a scene travels to another process without what it has worked out.
+
+        A scene with other numbers may have a name of its own (`reference.variation`), which travels with them.
+        """
+        own = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return {name: getattr(self, name) for name in (*own, *(["name"] if "name" in vars(self) else []))}
 
     @abstractmethod
     def mechanism(self) -> Mechanism:

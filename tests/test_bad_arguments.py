@@ -38,10 +38,13 @@ NOT_MADE_BY_USERS = {
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
-    *("engines.mujoco.model.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
-    *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.pymunk.boundaries.Straight"),
-    *("engines.pymunk.boundaries.Round", "engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings"),
-    *("engines.pymunk.model.Model", "engines.pymunk.running.Recording"),
+    *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
+    *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.mujoco.tree.Link"),
+    *("engines.mujoco.tree.Tree", "engines.mujoco.written_rows.WrittenJoint"),
+    *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
+    "engines.conformance.changes.Isometry",
+    *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
+    *("engines.conformance.worlds.Motion", "engines.conformance.worlds.World"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 

@@ -28,7 +28,7 @@ def test_the_band_gives_the_forces_that_make_the_accelerations(scene: Any) -> No
     # Made from forces that are known: M a = f + J^T reaction, read backwards again.
     given = np.random.default_rng(1).normal(size=(3, mechanism.row_count))
     pull = np.einsum("trc,tr->tc", mechanism.rows(pose), given).reshape(pose.shape)
-    found = banded_reaction(mechanism, pose, pull / mechanism.inertias, mechanism.inertias)
+    found = banded_reaction(mechanism.joint_rows, pose, pull / mechanism.inertias, mechanism.inertias)
     # The condition of a hundred links' system is about 1e4: that many roundings.
     assert np.abs(found - given).max() < 1e-11
     # Free fall, added and taken away again, leaves a rounding of the accelerations.
@@ -43,7 +43,7 @@ def test_a_pin_given_twice_falls_back_to_the_smallest_forces() -> None:
     again = [replace(last, name="again"), replace(last, name="and again")]
     redundant = replace(mechanism, joints=(*mechanism.joints, *again))
     pose, acceleration = displaced(redundant)
-    assert np.isnan(banded_reaction(redundant, pose, acceleration, redundant.inertias)).any(axis=1).all()
+    assert np.isnan(banded_reaction(redundant.joint_rows, pose, acceleration, redundant.inertias)).any(axis=1).all()
     once, shared = mechanism.reaction(pose, acceleration), redundant.reaction(pose, acceleration)
     # Of three equal rows each carries a third; the smallest singular values are cut at 1e-9.
     assert np.abs(shared[:, -2:] - shared[:, -6:-4]).max() < 1e-8 * np.abs(once).max()
@@ -66,7 +66,7 @@ def test_two_pins_a_micrometre_apart_fall_back_to_the_dense_system_which_keeps_t
     given = np.random.default_rng(1).normal(size=(3, nearly.row_count))
     pull = np.einsum("trc,tr->tc", nearly.rows(pose), given).reshape(pose.shape)
     # The band's factorisation would end, with pivots of 1e-12: the product J M^-1 J^T has the rows' condition squared.
-    assert np.isnan(banded_reaction(nearly, pose, pull / nearly.inertias, nearly.inertias)).any(axis=1).all()
+    assert np.isnan(banded_reaction(nearly.joint_rows, pose, pull / nearly.inertias, nearly.inertias)).any(axis=1).all()
     # The rows' own condition is 6e7: that many roundings are 1e-8, and the product would leave no digit at all.
     assert np.abs(nearly.forces(pose, pull / nearly.inertias, nearly.inertias) - given).max() < 1e-6
 
@@ -74,7 +74,7 @@ def test_two_pins_a_micrometre_apart_fall_back_to_the_dense_system_which_keeps_t
 def test_two_pins_closer_than_the_rank_can_tell_share_the_force() -> None:
     dependent = with_a_pin_beside_the_last(1e-11)
     pose, acceleration = displaced(dependent)
-    assert np.isnan(banded_reaction(dependent, pose, acceleration, dependent.inertias)).any(axis=1).all()
+    assert np.isnan(banded_reaction(dependent.joint_rows, pose, acceleration, dependent.inertias)).any(axis=1).all()
     once, shared = TenLinks().mechanism().reaction(pose, acceleration), dependent.reaction(pose, acceleration)
     assert np.abs(shared).max() < 2 * np.abs(once).max()
     assert np.abs(shared[:, -4:-2] + shared[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from reports import __main__ as program
-from reports.cli import commands, interruption
+from reports.cli import commands, interruption, selection
 from reports.cli import report as report_command
 from reports.grid import files
-from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, Broken
+from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
 from reports.grid.files import write_whole
 from reports.grid.store import Store
 
@@ -108,7 +108,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
-    monkeypatch.setattr(report_command, "page_cells", lambda page: (cell,))
+    monkeypatch.setattr(selection, "page_cells", lambda page: (cell,))
     monkeypatch.setattr(rendering, "render_all", lambda material, command: {"index.md": f"made by {command}"})
     monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
@@ -206,7 +206,7 @@ def failing(error):
     [
         (Broken("3 cells are lost"), 1, "crosscheck: 3 cells are lost\n"),
         (files.FileTrouble("two\nlines"), 2, "crosscheck: two lines\n"),
-        (commands.BadInput("bad"), 2, "crosscheck: bad\n"),
+        (BadInput("bad"), 2, "crosscheck: bad\n"),
         (OSError(24, "Too many open files"), 2, "crosscheck: Too many open files\n"),
         (PermissionError(13, "Permission denied", "a.csv"), 2, "crosscheck: a.csv: Permission denied\n"),
         (BrokenPipeError(), UNREAD, ""),
@@ -290,7 +290,7 @@ def test_closed_streams_are_no_reason_to_fail(tmp_path):
     words = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
     process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *words], env=environment())
     assert process.returncode == FINE
-    with closing(commands.Store(tmp_path / "cells.sqlite")._connection) as connection:
+    with closing(Store(tmp_path / "cells.sqlite")._connection) as connection:
         assert connection.execute("select count(*) from results").fetchone() == (1,)
 
 

@@ -50,6 +50,7 @@ def test_the_packages_keep_their_contracts(copy):
         "from reference.four_bar.linkage import FourBar",
         "from reference.pendulum.link import Pendulum",
         "from reference.scenes import SCENES",
+        "from engines.conformance.worlds import WORLDS",
     ],
 )
 def test_a_closed_form_in_an_adapter_is_refused(copy, line):

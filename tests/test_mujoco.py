@@ -324,8 +324,75 @@ def test_two_drives_of_one_joint_are_unsupported() -> None:
         EXTENDED.build(replace(mechanism, joints=(*mechanism.joints, second)), 1e-3)
 
 
+ONE_OF_EACH = """
+<mujoco>
+  <option timestep="1e-3" integrator="{integrator}"><flag refsafe="{refsafe}"/></option>
+  <worldbody>
+    <geom name="ground" type="plane" size="1 1 1"/>
+    <body pos="0 0 0.0999"><joint type="slide" axis="0 0 1"/><geom name="ball" size="0.1"/></body>
+    <body name="held" pos="3 0 1"><joint type="slide" axis="0 0 1"/><geom size="0.1" conaffinity="0"/></body>
+  </worldbody>
+  <contact><pair geom1="ground" geom2="ball" solref="{constant} 1" solimp="0.9 0.9 0.001"/></contact>
+  <equality>
+    <connect body1="world" body2="held" anchor="3 0 1" solref="{constant} 1" solimp="{impedance}"/>
+  </equality>
+</mujoco>
+"""
+
+
+@pytest.mark.parametrize("refsafe", ["enable", "disable"])
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
+def test_upstream_short_time_constants_are_clamped_at_two_steps_but_not_all_by_the_discrete_integrator(
+    integrator: str, refsafe: str
+) -> None:
+    text = ONE_OF_EACH.format(integrator=integrator, refsafe=refsafe, constant=1e-4, impedance="0.9 0.9 0.001")
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    assert equality.any()
+    assert not equality.all()
+    # The damping of a row is 2 / (dmax timeconst).
+    constant = 2 / 0.9 / data.efc_KBIP[:, 1]
+    of_equality = of_contact = 2e-3
+    if integrator == "discrete":
+        of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # the contact's stiffness is then 1 / dt^2
+    if refsafe == "disable":
+        of_equality = of_contact = 1e-4
+    assert constant[equality] == pytest.approx(of_equality)
+    assert constant[~equality] == pytest.approx(of_contact)
+
+
+def test_upstream_the_shipped_impedance_grows_with_the_gap_from_nine_tenths() -> None:
+    impedance = " ".join(map(str, Shipped().impedance))
+    text = ONE_OF_EACH.format(integrator="Euler", refsafe="enable", constant=0.02, impedance=impedance)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    found = []
+    for gap in (0.0, 5e-4, 1e-3, 1e-2):
+        data.qpos[1] = gap
+        mujoco.mj_forward(model, data)
+        equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        found.append(data.efc_KBIP[equality, 2].max())
+    assert found == pytest.approx([0.9, 0.925, 0.95, 0.95])
+
+
+def test_an_overwritten_crank_converges_in_a_stiff_loop_only() -> None:
+    scene = DrivenFourBar()
+    coarse, fine = 1e-3, 1e-4
+
+    def error(base: MuJoCo, dt: float) -> float:
+        engine = replace(base, variant="overwritten", drive="overwrite")
+        every = round(scene.spacing / dt)
+        motion = engine.build(scene.mechanism(), scene.spacing / every)(scene.samples, every)
+        return float(np.abs(motion.pose - scene.motion(motion.t).pose)[..., 2].max())
+
+    assert error(DEFAULT, fine) == pytest.approx(error(DEFAULT, coarse), rel=0.1)
+    assert 60 < error(TUNED, coarse) / error(TUNED, fine) < 150  # second order: 100
+
+
 @pytest.mark.parametrize(
-    ("version", "reason"), [("3.3.7", "velocity term"), ("3.6.0", "velocity term"), ("4.0.0", "factorises")]
+    ("version", "reason"), [("3.3.7", "velocity term"), ("3.6.0", "velocity term"), ("4.0.0", "Hessian")]
 )
 def test_versions_that_move_wrongly_are_refused(version: str, reason: str) -> None:
     with pytest.raises(Unsupported, match=reason):

@@ -15,7 +15,7 @@ from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.joints.roll import CompletedContact, RollContact, RollEquality, RollRows, contact
 from engines.mujoco.joints.roll.rows import roll_rows
 from engines.mujoco.methods import ROLLS
-from engines.rolling_table import RollTable
+from engines.rolling_table import rolled
 from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Curve, Placed
 from reference.curves.ellipse import Ellipse
@@ -89,41 +89,6 @@ def disc_in_ring(clearance: float, rate: float = 1.0) -> Mechanism:
     return Mechanism((disc,), (Roll("contact", None, "disc", rolling),), (0.0, 0.0))
 
 
-# The table
-
-
-@pytest.mark.parametrize("scene", [ELLIPSE, DISC, RollingCam(), RollingInRing()], ids=lambda scene: scene.name)
-def test_the_table_is_the_exact_contact_to_rounding(scene: RollingScene) -> None:
-    rolling = scene.motion_law.rolling
-    table = RollTable(rolling)
-    theta = np.linspace(-9.0, 9.0, 203)  # far beyond what it lays at first
-    place, first, second = (np.array(values) for values in zip(*map(table.place, theta.tolist()), strict=True))
-    pose = rolling.pose(theta)
-    velocity = rolling.velocity(theta, np.ones_like(theta))
-    acceleration = rolling.acceleration(theta, np.ones_like(theta), np.zeros_like(theta))
-    # Lengths of about 1 m and a few roundings each; the ring's contact is itself found by a search to 1e-14.
-    assert np.abs(place - pose[:, 0] - 1j * pose[:, 1]).max() < 2e-14
-    assert np.abs(first - velocity[:, 0] - 1j * velocity[:, 1]).max() < 5e-14
-    assert np.abs(second - acceleration[:, 0] - 1j * acceleration[:, 1]).max() < 2e-13
-
-
-def test_the_table_gives_an_ellipse_the_height_of_its_support_function() -> None:
-    table = RollTable(ELLIPSE.motion_law.rolling)
-    for theta in np.linspace(-4.0, 4.0, 57).tolist():
-        height = math.hypot(ELLIPSE.along_x * math.sin(theta), ELLIPSE.along_y * math.cos(theta))
-        assert abs(table.place(theta)[0].imag - height) < 1e-15
-
-
-def test_the_table_ends_where_the_curves_end() -> None:
-    rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.4), turn=math.pi))
-    low, high = rolling.limits
-    table = RollTable(rolling)
-    assert abs(high - 2.0) < 1e-12  # 0.2 m of a circle of 0.1 m
-    assert abs(table.place(high - 1e-9)[0] - complex(*rolling.pose(high - 1e-9)[:2])) < 1e-15
-    for beyond in (low - 1e-3, high + 1e-3, math.inf, math.nan):
-        assert math.isnan(table.place(beyond)[0].real)
-
-
 # Rows
 
 
@@ -131,7 +96,7 @@ def test_written_rows_are_those_of_the_joint_and_its_velocity_term() -> None:
     gears = EllipticGears()
     roll = next(joint for joint in gears.mechanism().joints if isinstance(joint, Roll))
     mechanism = Mechanism(gears.mechanism().bodies, (roll,))
-    law = roll_rows(RollTable(roll.rolling), 100.0, 20.0)
+    law = roll_rows(rolled(roll.rolling), 100.0, 20.0)
     pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
     # The joint's rows are along e_t and e_n, ours along x and y: the same two conditions, turned.
     contact = roll.rolling.contact(pose[:, 1, 2] - pose[:, 0, 2])
@@ -228,6 +193,28 @@ def test_real_contact_without_the_term_is_wrong_by_a_millionfold(monkeypatch: py
     monkeypatch.setattr(contact, "_missing", lambda *_: lambda *_: 0j)
     # The missing acceleration of about 10 m/s^2 moves the contact by 10 / k, k = 1 / (0.04 s)^2: 16 mm.
     assert angle_error(COMPLETED, ELLIPSE, dt=1e-3) > 1e-3
+
+
+@pytest.mark.parametrize(("cone", "rates"), [("pyramidal", {20.0}), ("elliptic", {20.0, 500.0})])
+def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone: str, rates: set[float]) -> None:
+    model = mujoco.MjModel.from_xml_string(
+        f"""
+        <mujoco>
+          <option cone="{cone}"/>
+          <worldbody>
+            <geom name="ground" type="plane" size="1 1 1"/>
+            <body pos="0 0 0.0999"><freejoint/><geom name="ball" size="0.1"/></body>
+          </worldbody>
+          <contact>
+            <pair geom1="ground" geom2="ball" condim="3" solref="-100 -20" solreffriction="-1e-9 -500"/>
+          </contact>
+        </mujoco>
+        """
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    # MuJoCo divides both dampings by dmax, 0.95 as shipped.
+    assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
 
 
 def test_convex_on_convex_is_as_exact_as_the_search_for_their_contact() -> None:

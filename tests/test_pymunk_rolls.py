@@ -10,10 +10,8 @@ import pytest
 
 from engines import Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
-from engines.pymunk.contacts import Touch
 from reference.curves.circles_lines import Circle, Line, Side
 from reference.curves.curve import Placed
-from reference.curves.ellipse import Ellipse
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling
@@ -58,30 +56,6 @@ def order(engine, scene: Scene, every: int) -> float:
 
 def roll_of(scene: Scene) -> Roll:
     return next(joint for joint in scene.mechanism().joints if isinstance(joint, Roll))
-
-
-# Where they touch
-
-
-@pytest.mark.parametrize("scene", [*SCENES, EllipticGears()], ids=lambda scene: scene.name)
-def test_the_contact_in_plain_floats_is_the_references(scene):
-    rolling = roll_of(scene).rolling
-    touch = Touch(rolling)
-    for theta in rolling.theta + np.concatenate([np.linspace(0, 9, 91), [7.3, -2.0, 4.0]]):  # and back in leaps
-        contact = rolling.contact(theta)
-        ground, own = touch.on_both(float(theta))
-        arm = -np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]) @ own
-        assert largest(ground - contact.point) < 1e-13  # m: rounding of an arc of a few metres
-        assert largest(arm - contact.arm) < 1e-13
-        assert touch.on_body(float(theta)) == pytest.approx(own, abs=1e-14)
-
-
-def test_a_pair_that_plain_floats_do_not_know_asks_the_reference():
-    rolling = Rolling.at_angle(Circle(0.1), Ellipse(0.5, 0.3), 0.0, 0.2)
-    known, asked = Touch(rolling), Touch(rolling)
-    asked._parameters = None
-    for theta in (0.0, 1.0, 4.0):
-        assert np.allclose(known.on_both(theta), asked.on_both(theta), atol=1e-13)
 
 
 # By constraint
@@ -247,8 +221,3 @@ def test_a_pair_that_cannot_roll_on_is_stopped_with_a_warning():
         assert trajectory.t[there].max() == pytest.approx(0.5 / 1.6, abs=0.02)
         assert largest(trajectory.pose[there, 0, 2] - angle - 4.0 * trajectory.t[there]) < 1e-9
         assert any("could no longer be placed" in warning for warning in trajectory.warnings)
-
-
-def test_a_rotation_that_is_not_finite_has_no_contact():
-    with pytest.raises((ValueError, ArithmeticError)):
-        Touch(roll_of(RING).rolling).on_both(float("inf"))

@@ -22,6 +22,8 @@ from reports.charts.theme import svg
 from reports.cli.selection import choose_cells, known_engines
 from reports.grid.cells import Cell
 from reports.grid.measure import measure
+from reports.grid.tasks import Motion, answered
+from reports.pages.page import Material
 from reports.pages.skate import experiments as skate_failures
 from reports.pages.skate import page as skate
 from reports.pages.skate import pictures as skate_pictures
@@ -35,6 +37,11 @@ BLOCKS = re.findall(r"```python\n(.*?)```", TEMPLATE.read_text(encoding="utf-8")
 # What each block's method promises at its step of 1e-3 s: of first order the step, of second its square, of fourth its
 # fourth power; times the 3 s and 2.6 J / 2 kg of the motion, and room for constants. Exact ones end in rounding.
 PROMISED = (1e-3, 1e-6, 1e-3, 1e-6, 1e-10)
+
+
+def kept(tasks):
+    """What there is when these tasks were run."""
+    return Material({}, {task: answered(task) for task in tasks})
 
 
 @pytest.mark.parametrize(("block", "bound"), tuple(zip(BLOCKS, PROMISED, strict=True)))
@@ -108,7 +115,7 @@ def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apar
 
 
 def test_the_lateral_force_passes_a_limit_when_the_reference_says():
-    scene, limit = skate_failures.SLIDING, skate_failures.FRICTION_LIMITS[1]
+    scene, limit = skate_failures.BACKWARDS, list(skate_failures.LIMITED)[1]
     when = skate_failures.first_beyond(scene, limit)
     assert when is not None
     before, after = np.abs(scene.lateral_force([when - 2e-3, when]))
@@ -117,8 +124,9 @@ def test_the_lateral_force_passes_a_limit_when_the_reference_says():
 
 
 def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_before():
-    told = {(o.method, o.setting): o.outcome for o in skate_failures.slipping()}
-    for limit in skate_failures.FRICTION_LIMITS:
+    cells = [cell for own in skate_failures.LIMITED.values() for cell in own]
+    told = {(o.method, o.setting): o.outcome for o in skate_failures.slipping(kept(map(Motion, cells)))}
+    for limit in skate_failures.LIMITED:
         exact = told["exact lateral force", f"{limit:g} N"]
         for method in ("pymunk groove with max_force", "mujoco tendon with friction loss"):
             outcome = told[method, f"{limit:g} N"]
@@ -131,7 +139,7 @@ def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_befo
 
 
 def test_the_trailer_folds_in_the_kinematics_when_the_closed_form_says():
-    told = {o.method: o.outcome for o in wheels_failures.folding() if not o.setting}
+    told = {o.method: o.outcome for o in wheels_failures.folding(kept([wheels_failures.REFERENCE])) if not o.setting}
     closed, driven = told["closed form, at an even speed"], told["the reference, driven at an even speed"]
     assert closed == driven
     assert told["the drawbar pushed along by that way"] == f"bent by {math.pi / 2:.4f} rad"
@@ -140,7 +148,7 @@ def test_the_trailer_folds_in_the_kinematics_when_the_closed_form_says():
 
 
 def test_counting_tells_what_the_rows_leave():
-    told = {o.method: o.outcome for o in skate_failures.counting()}
+    told = {o.method: o.outcome for o in skate_failures.counting(Material({}))}
     assert told["pinned body (18.62)"].startswith("(1, 1); integrable")
     assert told["one skate (18.64)"].startswith("(3, 2); not integrable")
     assert told["two skates on one axle"] == told["one skate (18.64)"]

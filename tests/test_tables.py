@@ -87,7 +87,7 @@ def test_an_error_table_goes_from_coarse_to_fine_method_by_method_and_has_sweeps
 
 
 def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float = NAN, best: float = 1.7e-5) -> Sweep:
-    return Sweep("s", "toy", "default", quantity("angle"), verdict, order, points, 0.13, plateau, best, 1e-3)
+    return Sweep("s", "toy", "default", quantity("angle"), verdict, order, points, 0.13, plateau, 1e-7, best, 1e-3)
 
 
 @pytest.mark.parametrize(

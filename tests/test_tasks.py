@@ -18,10 +18,10 @@ from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choo
 from reports.grid import fingerprint, stored_text
 from reports.grid.cells import Cell
 from reports.grid.outcomes import Outcome
-from reports.grid.pool import run_tasks
 from reports.grid.running import missing, run_into
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost
+from reports.grid.task_pool import run_tasks
 from reports.grid.tasks import Answer, Motion, Task, answered, trajectory_of
 from reports.pages.catalogue import PAGES
 from reports.pages.page import Failure, Material, Page

@@ -89,6 +89,11 @@ class Building:
     start_rates: dict[str, float] = field(default_factory=dict)
     size: int = 0  # rows held by forces, those written not counted
 
+    @property
+    def writes(self) -> bool:
+        """Whether callbacks write rows: the solver must then read them where they are written."""
+        return bool(self.written) or self.rewritten
+
     def index(self, name: str | None) -> int | None:
         """A body's index, None for the ground."""
         return None if name is None else self.mechanism.body_index(name)

@@ -14,10 +14,11 @@ import mujoco
 from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
 from engines.motions import over_three
 from engines.mujoco import theory
+from engines.mujoco.joints.drive import DriveBy
 from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE, SkateBy
 from engines.mujoco.joints.slot import SlotBy
-from engines.mujoco.model import Coordinates, DriveBy, Model, build_model
+from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver
 from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
@@ -33,7 +34,11 @@ Factorisation = Literal["auto", "dense", "sparse"]
 
 
 def refuse_wrong_version(version: str) -> None:
-    """Raise Unsupported for the releases that are known to give wrong motions without a warning."""
+    """Raise Unsupported for the releases that are known to give wrong motions without a warning.
+
+    Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
+    `engines.mujoco.factorisation` measures it.
+    """
     numbers = tuple(int(part) for part in version.split(".")[:3] if part.isdigit())
     if numbers < (3, 7):
         raise Unsupported(
@@ -42,7 +47,8 @@ def refuse_wrong_version(version: str) -> None:
         )
     if numbers == (4, 0, 0):
         raise Unsupported(
-            "MuJoCo 4.0.0 factorises the inertia of some branching trees wrongly and says nothing; take 4.0.1 or later"
+            "MuJoCo 4.0.0 factorises the Hessian of its Newton solver wrongly where the Jacobian of the constraints is "
+            "sparse, for some trees that branch, and says nothing; take 4.0.1 or later"
         )
 
 
@@ -54,7 +60,8 @@ class MuJoCo(Valid):
     coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
     it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
-    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, as users do. `solvers` are tried at
+    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver is not told
+    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at
     the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
     `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
     integrator otherwise, since four stages of the same stale row cost more and gain nothing.
@@ -151,28 +158,25 @@ class MuJoCo(Valid):
         refuse_wrong_version(mujoco.__version__)
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
-        disable = mujoco.mjtDisableBit.mjDSBL_CONTACT
-        if not self.islands:
-            disable |= mujoco.mjtDisableBit.mjDSBL_ISLAND
-        model = build_model(
-            mechanism,
-            dt,
-            options={
-                "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
-                "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
-                "iterations": self.iterations,
-                "tolerance": self.tolerance,
-            },
-            disable=int(disable),
-            stiffness=self.stiffness,
-            coordinates=self.coordinates,
-            drive=self.drive,
-            armature=self.armature,
-            servo_gain=self.servo_gain,
-            slots=self.slots,
-            skates=self.skates,
-            rolls=self.rolls,
+        options = {
+            "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
+            "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),
+            "iterations": self.iterations,
+            "tolerance": self.tolerance,
+        }
+        settings = Settings(
+            options,
+            self.islands,
+            self.stiffness,
+            self.coordinates,
+            self.drive,
+            self.armature,
+            self.servo_gain,
+            self.slots,
+            self.skates,
+            self.rolls,
         )
+        model = build_model(mechanism, dt, settings)
         choose_solver(model, self.solvers)
         return model
 

@@ -1,4 +1,7 @@
-"""Whether MuJoCo's sparse factorisation gives the accelerations of its dense one: release 4.0.0's didn't, silently.
+"""Whether MuJoCo's Newton solver gives the same accelerations with a sparse Jacobian as with a dense one.
+
+Release 4.0.0's did not, without a warning, for some trees that branch: its Hessian's sparse Cholesky factor was wrong
+(changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767). The inertia and the other solvers were right.
 
 It needs nothing but MuJoCo, so that it can be run beside any release: give it a model's file and it prints the number.
 """

@@ -1,7 +1,9 @@
 """How stiff MuJoCo makes its equality constraints: every one is a spring and damper with a compliance of its own.
 
 A row obeys a + b v + k r = -R f: the reference acceleration that the solver aims at, missed by the regularisation R
-times the row's force. R is (1 - d) / d of a diagonal estimate of the row's inverse inertia, and d can't exceed 0.9999.
+times the row's force. R is (1 - d) / d of a diagonal estimate of the row's inverse inertia, and d can't exceed 0.9999
+(mjMAXIMP in mjmodel.h). Documentation: mujoco.readthedocs.io, "Computation: Constraint model" for the law, "Modeling:
+Solver parameters" for solref and solimp.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from typing import ClassVar
 from reference.mechanism import Mechanism
 from reference.validation import Positive, Valid, validated
 
-# MuJoCo clamps its impedance d here; all five numbers of solimp with it make d constant.
+# MuJoCo clamps its impedance d here (mjMAXIMP); both ends of its range are this, so that d is constant.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
 
 
@@ -22,7 +24,11 @@ def _critical(constant: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Shipped(Valid):
-    """MuJoCo's defaults: a time constant of 0.02 s whatever the step, impedance 0.9 to 0.95."""
+    """MuJoCo's defaults: a time constant of 0.02 s whatever the step, and an impedance that grows with the gap.
+
+    It is 0.9 with the gap closed, and 0.95 where it is open by a millimetre and more: R is 0.11 of the inverse inertia
+    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/test_mujoco.py`).
+    """
 
     softening: ClassVar[float] = 1.0
 
@@ -47,7 +53,9 @@ class TiedToStep(Valid):
     """Critically damped with a time constant of some steps, impedance at its limit: documented settings only.
 
     The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
-    Below two steps MuJoCo clamps the time constant.
+    With its flag `refsafe`, which is on unless it is disabled, MuJoCo clamps a shorter time constant at two steps
+    (mjDSBL_REFSAFE in mjtype.h). Its integrator "discrete" is another matter: there an equality is not clamped, and a
+    contact at about one step (4.0.1; a test in `tests/test_mujoco.py` asks it for both).
     """
 
     steps: Positive = 5.0
@@ -60,7 +68,10 @@ class TiedToStep(Valid):
 
     @validated
     def gains(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to."""
+        """Stiffness [1/s^2] and damping [1/s] of a row per unit of inertia: what this solref amounts to.
+
+        With the clamp of all integrators but "discrete", which below two steps is stiffer than this says.
+        """
         return _critical(max(self.steps, 2.0) * dt)
 
     @property

@@ -2,9 +2,10 @@
 
 All methods are in `engines.pymunk.methods`, the constructions of each joint in `engines.pymunk.joints`.
 
-What one step of Chipmunk does (cpSpaceStep): it drifts, p += v dt, with the old velocity; then, at the new positions,
-it kicks, and lets every joint correct the velocities in turn, `iterations` times, beginning with the impulses of the
-step before. So after n steps it holds p_n and a velocity that has felt the forces up to p_n in full. Two readings:
+What one step of Chipmunk does (its cpSpaceStep.c): it drifts, p += v dt, with the old velocity; then, at the new
+positions, it kicks, and lets every joint correct the velocities in turn, `iterations` times, beginning with the
+impulses of the step before. So after n steps it holds p_n and a velocity that has felt the forces up to p_n in full.
+Two readings:
 
 - As a user reads it (`leapfrog` False): `body.velocity` is the velocity at t_n. As the first drift used the velocity
   at 0, not at dt/2, the motion is half a kick off: first order. (From rest this is a delay of dt/2, which the kick in

@@ -59,6 +59,8 @@ class Pymunk(Valid):
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
     leapfrog: bool = False
+    # pymunk has no joint for a skate. "centre" is a user's naive trick and no part of pymunk: after each step the
+    # velocity of the centre of mass across the blade is set to zero.
     skate: SkateConstruction = "centre"
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"

@@ -168,8 +168,7 @@ class _Builder:
         settings = self.settings
         match joint:
             case Pin():
-                anchors = self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
-                return [pin(first, second, *anchors)]
+                return [pin(joint, first, second, self._own)]
             case Drive():
                 return [motor(joint, first, second, settings.unit)]
             case Slot():

@@ -25,9 +25,9 @@ from pymunk._chipmunk_cffi import lib
 
 from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.pymunk.contacts import Touch
 from engines.pymunk.joints.skate import along_blade
 from engines.pymunk.running import reactions
+from engines.rolling_table import rolled
 from reference.joints import Joint, Skate, Vector
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
@@ -237,7 +237,7 @@ def _skating(joint: Skate, mass: float, inertia: float, kick: Vector) -> Reflect
 
 
 def _rolling(joint: Roll, mass: float, inertia: float, kick: Vector) -> Reflector:
-    on_body = Touch(joint.rolling).on_body
+    arm_at = rolled(joint.rolling).arm
     kick_x, kick_y = kick
 
     def reflect(body: Any) -> tuple[Triple, Triple]:
@@ -246,9 +246,8 @@ def _rolling(joint: Roll, mass: float, inertia: float, kick: Vector) -> Reflecto
             lib.cpBodyGetAngularVelocity(body),
             lib.cpBodyGetAngle(body),
         )
-        own_x, own_y = on_body(angle)
-        cosine, sine = cos(angle), sin(angle)
-        arm_x, arm_y = sine * own_y - cosine * own_x, -sine * own_x - cosine * own_y  # from the contact to the centre
+        arm = arm_at(angle)
+        arm_x, arm_y = arm.real, arm.imag  # from the contact to the centre
         old_x, old_y = velocity.x, velocity.y
         x, y = old_x + kick_x, old_y + kick_y
         # About the contact the angular momentum is kept: the projection turns about it at this rate, the reflection

@@ -9,11 +9,12 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.body import Triple
 from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
 from reference.kinds import from_to
-from reference.mechanism import Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.mechanism import Triple
+from reference.body import Triple
 from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.body import Triple
 from reference.joints import Vector
 from reference.kinds import of_shape
-from reference.mechanism import Triple
 from reference.numerics.antiderivative import Antiderivative
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.validation import Complexes, InvalidMechanism, Positive, Valid, sample_times, validated

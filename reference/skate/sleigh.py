@@ -15,8 +15,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.body import Triple
 from reference.joints import Skate
-from reference.mechanism import Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism
 from reference.numerics.antiderivative import Antiderivative
 from reference.scene import Scene
 from reference.trajectory import Trajectory

@@ -8,9 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from reference.body import Triple
 from reference.joints import Skate, Vector
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism, Positive

@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.body import Triple
 from reference.joints import Joint, Pin, Skate
-from reference.mechanism import Body, Mechanism, Triple
+from reference.mechanism import Body, Mechanism
 from reference.plane import components
 from reference.validation import Positive
 from reference.wheels.casters import Casters

@@ -19,8 +19,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.body import Triple
 from reference.kinds import NOT_FINITE, Rule, from_to
-from reference.mechanism import Triple
 from reference.validation import Positive, Valid, validated
 
 Array = NDArray[np.float64]

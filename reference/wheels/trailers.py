@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.mechanism import Triple
+from reference.body import Triple
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
 from reference.validation import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated

@@ -8,7 +8,14 @@ import typer
 
 from reports.grid.ending import BadInput
 
-HEADER = ("no.", "where", "printed, and its value", "right, and its value", "derivative", "verdict")
+HEADER = (
+    "no.",
+    "where",
+    "printed, and its value",
+    "right, and its value",
+    "derivative, and all values' unit",
+    "verdict",
+)
 WIDTH = 150  # into a file or a pipe
 
 
@@ -31,20 +38,21 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.grid.pool import run_tasks
+        from reports.grid.task_pool import run_tasks
         from reports.pages.errata.errata_engines import TASKS, rulings
         from reports.text.tables import number as short
 
         found = dict(run_tasks(TASKS))
         lost: list[str] = []
+        units = {slip.number: slip.unit for slip in ERRATA}
         said = [
-            (str(r.number), r.method, r.about, short(r.values.miss), short(r.values.agreement))
+            (str(r.number), r.method, r.about, units[r.number], short(r.values.miss), short(r.values.agreement))
             for r in rulings(((task, found[task]) for task in TASKS), lost)
             if r.number in (number or known)
         ]
         wide.print()
-        header = ("no.", "engine", "its motion", "printed misses by", "right misses by")
-        print_table(wide, "Engines as referees", header, said, 3)
+        header = ("no.", "engine", "its motion", "unit", "printed misses by", "right misses by")
+        print_table(wide, "Engines as referees", header, said, 4)
         for sentence in lost:
             wide.print(sentence, markup=False)
 

@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.selection import page_cells
+from reports.cli.options import FOLDER, STORE, Folder, with_folder
 from reports.cli.terminal import Terminal
 from reports.grid.ending import BadInput
 from reports.grid.files import write_whole
 from reports.grid.store import Store
 
-FOLDER = Path(
-    "crosscheck-results"
-)  # below the current one, in the checkout too: no command writes to what is published
-STORE = "cells.sqlite"
 CHECKOUT = Path(__file__).parents[2]
-
-Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]
-
-
-def with_folder(command: str, results: Path) -> str:
-    """A command as it is to be typed for this folder of results."""
-    return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"
 
 
 def report(
@@ -41,16 +29,24 @@ def report(
     nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
     if not (results / STORE).exists():
         raise nothing
+    from reports.cli.known import registered, with_remembered
+    from reports.cli.selection import page_cells
     from reports.grid.running import missing
-    from reports.pages.catalogue import PAGES
     from reports.pages.page import Material
     from reports.text.rendering import render_all, render_readme
 
+    own = registered()
     with Store.read(results / STORE) as store:
-        wanted = {page: (page_cells(page), page.all_tasks()) for page in PAGES}
-        whole = tuple({item: None for cells, tasks in wanted.values() for item in (*cells, *tasks)})
-        material = {page: Material(store.get(cells), store.answers(tasks)) for page, (cells, tasks) in wanted.items()}
+        # What is published is of what is registered; a report of one's own shows what else was run.
+        known = own if publish else with_remembered(own, store.remembered())
+        whole = tuple({item: None for page in own.pages for item in (*page_cells(page), *page.all_tasks())})
+        material = {
+            page: Material(store.get(page_cells(page)), store.answers(page.all_tasks())) for page in known.pages
+        }
         left = len(missing(whole, store))
+    names = {page.name for page in own.pages}
+    # A scene that is only remembered, and whose sources have changed since, has nothing to show.
+    material = {page: given for page, given in material.items() if given.rows or page.name in names}
     command = with_folder("crosscheck run --full", results)
     grid = f"{left} of {len(whole)} cells of the full grid are not stored: {command}"
     if not any(given.rows for given in material.values()):

@@ -11,6 +11,7 @@ from reference.scene import Scene
 from reports.grid.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.grid.ending import BadInput
 from reports.grid.tasks import Task
+from reports.grid.usual_steps import usual_cells
 from reports.pages.page import Page
 
 # A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
@@ -95,7 +96,8 @@ def choose_cells(
     every: Sequence[int] = (),
     steps: Sequence[float] = (),
 ) -> tuple[Cell, ...]:
-    """The cells of a run: the grid, with the failures of the pages that teach these scenes, and their maps if full.
+    """The cells of a run: the grid, with the failures of the pages that teach these scenes; their maps and the steps
+    that people use if full.
 
     A quick run leaves out what would take longer than QUICK_CELL. `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
@@ -111,7 +113,9 @@ def choose_cells(
         return tuple(chosen)
     cells: list[Cell] = []
     for scene in scenes:
-        cells += sweep_cells((scene,), grid_engines(scene, engines, pages), FULL if full else QUICK)
+        compared = grid_engines(scene, engines, pages)
+        cells += sweep_cells((scene,), compared, FULL if full else QUICK)
+        cells += usual_cells((scene,), compared) if full else ()
     for page in pages:
         if any(page.is_run_with(scene) for scene in scenes):
             cells += [
@@ -147,5 +151,8 @@ def _quick(cell: Cell) -> bool:
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell that a page could show."""
-    grid = (cell for scene in page.scenes for cell in sweep_cells((scene,), page.engines_of(scene), FULL))
-    return tuple(dict.fromkeys([*grid, *page.extra_cells()]))
+    cells: list[Cell] = []
+    for scene in page.scenes:
+        compared = page.engines_of(scene)
+        cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
+    return tuple(dict.fromkeys([*cells, *page.extra_cells()]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from time import monotonic
 from typing import Any
 
 from rich.console import Console
@@ -13,6 +14,8 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.grid.ending import FileTrouble
+
+PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 
 
 class Terminal(Console):
@@ -65,7 +68,13 @@ def print_table(console: Console, title: str, header: Sequence[str], rows: Seque
 def progress(
     console: Console, total: int, check: Callable[[], None]
 ) -> Iterator[tuple[Callable[[object], None], Callable[[list[Any]], None]]]:
-    """(done, watch): call done with each result, and watch with what is running; both `check` for Ctrl-C."""
+    """(done, watch): call done with each result, and watch with what is running; both `check` for Ctrl-C.
+
+    A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
+    """
+    if not console.is_terminal:
+        yield _lines(console, total, check)
+        return
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -87,3 +96,28 @@ def progress(
             check()
 
         yield done, watch
+
+
+def _lines(
+    console: Console, total: int, check: Callable[[], None]
+) -> tuple[Callable[[object], None], Callable[[list[Any]], None]]:
+    """(done, watch) of `progress`, which print what is done, and what runs, at most once in PULSE seconds."""
+    start = last = monotonic()
+    count = 0
+
+    def watch(cells: list[Any]) -> None:
+        nonlocal last
+        now = monotonic()
+        if now - last >= PULSE:
+            last = now
+            running = f"; running: {' | '.join(cell.label for cell in cells)}" if cells else ""
+            line = f"{count} of {total} cells run after {now - start:.0f} s{running}"
+            console.print(line, markup=False, highlight=False, soft_wrap=True)
+        check()
+
+    def done(row: object) -> None:
+        nonlocal count
+        count += 1
+        check()
+
+    return done, watch

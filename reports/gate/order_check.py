@@ -30,14 +30,13 @@ def order(promise: Promise, rows: Sequence[Measurement]) -> tuple[Check, ...]:
     if promise.order == EXACT:
         return ()
     usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]
-    verdict, found, points, _, plateau = fit(
-        [row.step for row in usable], [row.angle for row in usable], quantity("angle").rounding
-    )
+    found = fit([row.step for row in usable], [row.angle for row in usable], quantity("angle").rounding)
     above = [row for row in usable if row.angle > quantity("angle").rounding]
     if len(above) < ENOUGH:
         return ()
-    stays = verdict in (Verdict.PLATEAU, Verdict.LEVELS, Verdict.GROWS, Verdict.ERRATIC)
-    observed = 0.0 if stays or points < 2 else found
+    flat = found.verdict in (Verdict.PLATEAU, Verdict.LEVELS, Verdict.GROWS, Verdict.ERRATIC)
+    observed = 0.0 if flat or found.points < 2 else found.order
     short = promise.order - observed
-    told = f", {verdict}" + (f" at {plateau:.2g} rad" if verdict is Verdict.PLATEAU else f", order {observed:.2f}")
+    value = f" at {found.plateau:.2g} rad" if found.verdict is Verdict.PLATEAU else f", order {observed:.2f}"
+    told = f", {found.verdict}{value}"
     return (Check("order", "angle", short / BELOW if short > 0 else -short / ABOVE, 1.0, sentence=told),)

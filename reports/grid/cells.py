@@ -13,7 +13,7 @@ from reference.scene import Scene
 from reference.validation import Count, Valid
 from reports.grid.fingerprint import fingerprint
 
-Purpose = Literal["sweep", "failure", "growth", "large", "map"]
+Purpose = Literal["sweep", "usual", "failure", "growth", "large", "map"]
 
 # Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
 # they are about 1e-2, 3e-3, 1e-3 ... 1e-5 s. Three points are the fewest that can tell a slope from a plateau.

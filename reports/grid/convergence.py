@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from reports.grid.errors import NAN
 from reports.grid.measure import Measurement
@@ -22,6 +24,8 @@ ENOUGH = 3
 ROUNDING_GROWTH = 100.0
 # An error this close to the plateau is the sum of both, and its slope is neither.
 NEAR_PLATEAU = 3.0
+# Powers of the step with which an error may come to its limit: from the root that a kink leaves to order 8.
+POWERS = (0.5, 8.0)
 
 
 class Verdict(StrEnum):
@@ -36,13 +40,27 @@ class Verdict(StrEnum):
     TOO_FEW = "not enough points"
 
 
+class Fit(NamedTuple):
+    """What errors at several steps do as the step goes to zero.
+
+    order: slope of log error over log step on `points` points of the falling part (NaN without two); spread: the
+    largest difference of a local slope from it; plateau: the limit of the error at a step of zero, in the error's unit
+    (NaN without one); uncertainty: how far that limit may be off, in the same unit.
+    """
+
+    verdict: Verdict
+    order: float = NAN
+    points: int = 0
+    spread: float = NAN
+    plateau: float = NAN
+    uncertainty: float = NAN
+
+
 @dataclass(frozen=True)
 class Sweep:
     """One quantity of one scene in one engine variant, over all steps that ended without failing.
 
-    order: slope of log error over log step on `points` points of the falling part (NaN without two); spread: the
-    largest difference of a local slope from it; plateau: the error that stays, in the quantity's unit (NaN without
-    one); best: the smallest error met, at `best_step` [s].
+    verdict to uncertainty: see Fit; best: the smallest error met, at `best_step` [s].
     """
 
     scene: str
@@ -54,6 +72,7 @@ class Sweep:
     points: int
     spread: float
     plateau: float
+    uncertainty: float
     best: float
     best_step: float
 
@@ -61,41 +80,46 @@ class Sweep:
     def method(self) -> str:
         return f"{self.engine} {self.variant}"
 
+    @property
+    def lucky(self) -> bool:
+        """Whether the smallest error is far below the plateau: there two errors cancel, at that step alone."""
+        return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
+
 
 def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
     """Slopes of log error over log step between neighbours, steps descending."""
     return np.diff(np.log(errors)) / np.diff(np.log(steps))
 
 
-def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> tuple[Verdict, float, int, float, float]:
-    """(verdict, order, points, spread, plateau) of errors at steps; see Sweep. Not finite or zero steps are left out.
+def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
+    """What these errors do as the step [s] goes to zero. Not finite or zero steps are left out.
 
     An error at or below `rounding` is rounding, whatever it does there.
     """
     pairs = sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)
     if not pairs:
-        return Verdict.TOO_FEW, NAN, 0, NAN, NAN
+        return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))
     # After it has met rounding an error may grow again, as rounding does with the number of steps; not by much more.
     reaches = first < len(pairs) and pairs[-1][1] <= ROUNDING_GROWTH * rounding
     above = pairs[:first] if reaches else [(h, e) for h, e in pairs if e > rounding]
     if len(above) < 2:
-        return (Verdict.ROUNDING if reaches else Verdict.TOO_FEW), NAN, 0, NAN, NAN
+        return Fit(Verdict.ROUNDING if reaches else Verdict.TOO_FEW)
     h, e = np.array([p[0] for p in above]), np.array([p[1] for p in above])
     slopes = local_slopes(h, e)
     falling = _longest_run(slopes > FLAT)
-    plateau = _plateau(slopes, e) if not reaches else NAN
-    order, points, spread = _order(h, e, slopes, falling, plateau)
+    limit, uncertainty = (NAN, NAN) if reaches else _plateau(h, e, slopes)
+    order, points, spread = _order(h, e, slopes, falling, limit)
     if reaches:
-        return Verdict.ROUNDING, order, points, spread, NAN
-    if not math.isnan(plateau):
-        return Verdict.PLATEAU, order, points, spread, plateau
+        return Fit(Verdict.ROUNDING, order, points, spread)
+    if not math.isnan(limit):
+        return Fit(Verdict.PLATEAU, order, points, spread, limit, uncertainty)
     if slopes[-1] > FLAT:
-        return Verdict.FALLS, order, points, spread, NAN
+        return Fit(Verdict.FALLS, order, points, spread)
     if slopes[-1] < -FLAT and (len(slopes) == 1 or slopes[-2] < FLAT):
-        return Verdict.GROWS, order, points, spread, NAN
+        return Fit(Verdict.GROWS, order, points, spread)
     # One flat interval alone may be a crossing of signs; two would have been a plateau.
-    return (Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC), order, points, spread, NAN
+    return Fit(Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC, order, points, spread)
 
 
 def _longest_run(mask: np.ndarray) -> tuple[int, int]:
@@ -111,14 +135,38 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
     return best
 
 
-def _plateau(slopes: np.ndarray, errors: np.ndarray) -> float:
-    """The error of the flat end, NaN unless it covers at least two intervals (or all there are)."""
-    flat = 0
-    for slope in slopes[::-1]:
-        if abs(slope) > FLAT:
-            break
-        flat += 1
-    return float(np.exp(np.mean(np.log(errors[-flat - 1 :])))) if flat >= 2 else NAN
+def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
+    """(limit, uncertainty) of errors that end flat, NaN of others: the last two intervals (or the only two) are flat.
+
+    One flat interval is enough where errors rise to it and rise less and less: an error that went through zero, as two
+    errors cancelled, and comes to the limit from below.
+    """
+    if len(errors) < 3 or abs(slopes[-1]) > FLAT:
+        return NAN, NAN
+    limit, uncertainty, settles = _limit(steps[-3:], errors[-3:])
+    rises = settles and bool(errors[-1] > errors[-2])
+    return (limit, uncertainty) if rises or abs(slopes[-2]) <= FLAT else (NAN, NAN)
+
+
+def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
+    """(limit, uncertainty, whether errors settle) of the three finest points, by limit + factor * step ** power.
+
+    Where no power of POWERS passes through all three (they go up and down, or change more and more), the limit is the
+    finest error and the uncertainty its largest difference from the two others.
+    """
+    before, last = errors[0] - errors[1], errors[1] - errors[2]
+    if last and before / last > 0:
+        wanted = before / last
+
+        def excess(power: float) -> float:
+            first, second, third = steps**power
+            return float((first - second) / (second - third) - wanted)
+
+        if excess(POWERS[0]) <= 0 <= excess(POWERS[1]):
+            power = float(brentq(excess, *POWERS))  # type: ignore[arg-type]
+            rest = last / ((steps[1] / steps[2]) ** power - 1)
+            return float(errors[2] - rest), float(abs(rest)), True
+    return float(errors[2]), float(np.max(np.abs(errors[:2] - errors[2]))), False
 
 
 def _order(
@@ -155,12 +203,9 @@ def sweeps(rows: Iterable[Measurement]) -> tuple[Sweep, ...]:
         for quantity in QUANTITIES:
             values = [(row.step, getattr(row, quantity.name)) for row in usable]
             steps, errors = [step for step, _ in values], [error for _, error in values]
-            verdict, order, points, spread, plateau = fit(steps, errors, quantity.rounding)
             known = [(error, step) for step, error in values if math.isfinite(error)]
-            best, best_step = min(known, default=(NAN, NAN))
-            out.append(
-                Sweep(scene, engine, variant, quantity, verdict, order, points, spread, plateau, best, best_step)
-            )
+            best = min(known, default=(NAN, NAN))
+            out.append(Sweep(scene, engine, variant, quantity, *fit(steps, errors, quantity.rounding), *best))
     return tuple(out)
 
 

@@ -8,9 +8,10 @@ from typing import Any, TypeVar
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
-from reports.grid.pool import TIME_LIMIT, run_cells, run_tasks, worker_count
+from reports.grid.pool import TIME_LIMIT, run_cells, worker_count
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost, supervise
+from reports.grid.task_pool import run_tasks
 from reports.grid.tasks import Answer, Task
 
 Item = TypeVar("Item", bound=Cell | Task)

@@ -18,8 +18,9 @@ from reports.grid.measure import Measurement
 from reports.grid.stored_text import answer_of, row_of, text_of_answer, text_of_row
 from reports.grid.tasks import Answer, Task
 
-SCHEMA = 1  # the file's `user_version`; 0 in a new one, and in those of the first versions, which have the same table
-COLUMNS = ("key", "row")  # of a cell or of a task
+# The file's `user_version`; 0 in a new one and in those of the first versions. Up to 1 nothing was remembered.
+SCHEMA = 2
+TABLES = {"results": ("key", "row"), "given": ("words",)}
 BESIDE = ("-wal", "-shm")  # what SQLite keeps beside a file: the first holds rows until they move into it
 WAIT = 30.0  # s for another process that is writing
 ELSEWHERE = "give another folder with --results"
@@ -62,9 +63,10 @@ class Store:
             except Damaged as why:
                 aside = _put_aside(path)
                 self._connection = _connected(path)
-                rows = _readable_rows(aside)
+                rows, words = _readable(aside)
                 with self._connection:
                     self._connection.executemany("insert or replace into results values (?, ?)", rows)
+                self.remember(words)
                 self.notice = (
                     f"{path} is damaged ({why}): it is now {aside.name}, {len(rows)} of its rows could be read and are "
                     "kept, the others run again"
@@ -114,6 +116,16 @@ class Store:
         with _sentences(self.path), self._connection:
             self._connection.execute("insert or replace into results values (?, ?)", (key, text))
 
+    def remember(self, words: Iterable[str]) -> None:
+        """Keep words that find a scene or an engine again which is not registered, so that a report shows it too."""
+        with _sentences(self.path), self._connection:
+            self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
+
+    def remembered(self) -> tuple[str, ...]:
+        """What `remember` was given, in that order."""
+        with _sentences(self.path):
+            return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
+
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
         """The stored rows of these cells.
 
@@ -161,13 +173,16 @@ def _connected(path: Path) -> sqlite3.Connection:
     try:
         version = connection.execute("pragma user_version").fetchone()[0]
         tables = {name for (name,) in connection.execute("select name from sqlite_master where type = 'table'")}
-        columns = tuple(line[1] for line in connection.execute("pragma table_info(results)"))
+        columns = {
+            name: tuple(line[1] for line in connection.execute(f"pragma table_info({name})"))
+            for name in TABLES.keys() & tables
+        }
         if version > SCHEMA:
             raise FileTrouble(
                 f"{path} was written by a newer version of this program (schema {version}, known here: {SCHEMA}); "
                 f"update it, or {ELSEWHERE}"
             )
-        if tables and (tables != {"results"} or columns != COLUMNS):
+        if tables and ("results" not in tables or not tables <= TABLES.keys() or not columns.items() <= TABLES.items()):
             raise FileTrouble(f"{path} is an SQLite file of another program, with other tables; {ELSEWHERE}")
         wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
         if wrong != "ok":
@@ -175,6 +190,7 @@ def _connected(path: Path) -> sqlite3.Connection:
         if version < SCHEMA or not tables:
             connection.execute("pragma journal_mode=wal")
             connection.execute("create table if not exists results (key text primary key, row text not null)")
+            connection.execute("create table if not exists given (words text primary key)")
             connection.execute(f"pragma user_version={SCHEMA}")
     except BaseException as error:
         connection.close()
@@ -217,9 +233,10 @@ def _put_aside(path: Path) -> Path:
     return aside
 
 
-def _readable_rows(aside: Path) -> list[tuple[str, str]]:
-    """(key, text) of every whole row that SQLite still finds in a damaged file, which is left as it is."""
+def _readable(aside: Path) -> tuple[list[tuple[str, str]], list[str]]:
+    """((key, text) of every whole row, what was remembered) that SQLite finds in a damaged file, left as it is."""
     found: dict[str, str] = {}
+    words: dict[str, None] = {}
     with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
         copy = Path(folder) / "copy.sqlite"
         _copy(aside, copy)
@@ -232,4 +249,7 @@ def _readable_rows(aside: Path) -> list[tuple[str, str]]:
                     for key, text in connection.execute(f"select key, row from results order by rowid{order}"):
                         if row_of(key, text) is not None or answer_of(key, text) is not None:
                             found[key] = text
-    return list(found.items())
+                with suppress(sqlite3.Error):
+                    for (text,) in connection.execute(f"select words from given order by rowid{order}"):
+                        words[text] = None
+    return list(found.items()), list(words)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from engines import Engine
@@ -12,9 +13,10 @@ from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
 from reports.gate.declared import soft_tasks
 from reports.gate.promises import Promises
-from reports.grid.cells import Cell
+from reports.grid.cells import Cell, Purpose
 from reports.grid.measure import Measurement
 from reports.grid.tasks import Answer, Motion, Task, trajectory_of
+from reports.grid.usual_steps import FEATURED
 
 
 @dataclass(frozen=True)
@@ -75,20 +77,26 @@ class Material:
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
         """The sweep rows of some scenes, in the order of the grid."""
+        return self._of(scenes, "sweep")
+
+    def usual(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The rows of some scenes at steps between those of the sweep that people use."""
+        return self._of(scenes, "usual")
+
+    def _of(self, scenes: Iterable[Scene], purpose: Purpose) -> list[Measurement]:
         names = {scene.name for scene in scenes}
-        return [row for cell, row in self.rows.items() if cell.purpose == "sweep" and cell.scene.name in names]
+        return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]
 
     def of(self, cells: Iterable[Cell]) -> list[Measurement]:
         """The rows of these cells, those that were run."""
         return [self.rows[cell] for cell in cells if cell in self.rows]
 
 
-FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
-
-
 def usual_series(row: Measurement) -> bool:
-    """The methods that charts show as series: each engine's three variants, and ideal constraints at order 1 and 4."""
-    return row.variant in FEATURED
+    """The methods that charts show as series: what is run in every scene, and any engine's three usual variants."""
+    from engines.registry import VARIANTS, method
+
+    return row.variant in FEATURED or row.method in map(method, VARIANTS)
 
 
 def everything(scene: Scene, engine: Engine) -> bool:
@@ -105,8 +113,10 @@ def no_words(material: Material) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Page:
-    """One mechanism's page: `name`.md in the results, from the template of the same name beside this file.
+    """One mechanism's page: `name`.md in the results, from its template.
 
+    template: its file, which may extend "base.md"; without one, page.md in the folder of the page's name beside this
+    file, and where there is none the generic "base.md" itself.
     scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
     own cells are run too; for a page without scenes.
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
@@ -124,6 +134,7 @@ class Page:
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     companions: tuple[Scene, ...] = ()
+    template: Path | None = None
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything

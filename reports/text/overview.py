@@ -1,65 +1,97 @@
-"""All mechanisms in one table: what each engine's variants reach in a scene, at what cost, and whether more helps."""
+"""All mechanisms, a table an engine: errors at the steps that people use, what a smaller step brings, who holds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from reports.grid.convergence import Verdict, best_of, by_method, sweeps
+from reports.grid.convergence import Sweep, Verdict, by_method, sweeps
+from reports.grid.holding import held_by
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
+from reports.grid.quantities import quantity
+from reports.grid.usual_steps import USUAL_STEPS, is_step, usual_variants
 from reports.pages.page import Page
-from reports.text.tables import markdown, milliseconds, number
+from reports.text.tables import NOTHING, markdown, number
 
-COLUMNS = tuple((engine, variant) for engine in ("pymunk", "mujoco") for variant in ("default", "tuned", "extended"))
-BEGIN, END = "<!-- overview: written by `crosscheck report` -->", "<!-- end of overview -->"
+Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
 
 
-def overview(entries: Iterable[tuple[Page, Sequence[Measurement]]], folder: str = "") -> str:
-    """The table; `entries` are a page and the judged rows of the scenes to show; `folder` is where the pages stand."""
+def overviews(entries: Iterable[Entry], steps: Sequence[str] = tuple(USUAL_STEPS), folder: str = "") -> dict[str, str]:
+    """Engine -> its table: the errors of its usual variants at these names of USUAL_STEPS, a line a scene.
+
+    `folder` is where the pages stand. No cell has a time: the same versions give the same table on every machine.
+    """
+    entries = tuple(entries)
+    usual = usual_variants((row.engine, row.variant) for _, rows in entries for row in rows)
+    return {engine: _table(entries, engine, variants, steps, folder) for engine, variants in usual.items()}
+
+
+def _table(entries: Sequence[Entry], engine: str, variants: Sequence[str], steps: Sequence[str], folder: str) -> str:
     lines = []
     for page, rows in entries:
         for scene in dict.fromkeys(row.scene for row in rows):
             own = [row for row in rows if row.scene == scene]
-            name = f"[{scene.replace('_', ' ')}]({folder}{page.name}.md)"
-            lines.append([name, *(_cell(own, page.quantity, *column) for column in COLUMNS)])
-    return markdown(["scene", *(" ".join(column) for column in COLUMNS)], lines, left=1 + len(COLUMNS))
+            unit = quantity(page.quantity).unit
+            name = f"[{scene.replace('_', ' ')}]({folder}{page.name}.md), {unit}"
+            lines.append([name, *(_cell(page, scene, own, engine, variant, steps) for variant in variants)])
+    return markdown(["scene", *(f"{engine} {variant}" for variant in variants)], lines, left=1 + len(variants))
 
 
-def _cell(rows: Sequence[Measurement], quantity: str, engine: str, variant: str) -> str:
-    """'1.7e-12 rad, 11 ms, order 6', '9e-3 rad, 2 ms, stays', or the outcome where no step gave an answer.
-
-    The last words say what a smaller step brings: an order only where the error falls to the finest step.
-    """
+def _cell(page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Sequence[str]) -> str:
+    """'0.32, 0.029, 0.01; plateau 0.011; engine', or the outcomes where no step gave an answer."""
     members = [row for row in rows if (row.engine, row.variant) == (engine, variant)]
-    best = best_of(members, engine, variant, quantity)
-    if best is None:
-        return ", ".join(dict.fromkeys(row.outcome for row in members)) or "-"
-    sweep = by_method(sweeps(members), quantity)[members[0].scene, engine, variant]
-    finest = min(members, key=lambda row: row.step)
+    if not members:
+        return NOTHING
+    if not any(Outcome(row.outcome).comparable for row in members):
+        told = ", ".join(dict.fromkeys(row.outcome for row in members))
+        return told if told == Outcome.UNSUPPORTED else f"{told}; {_holder(page, scene, engine, variant)}"
+    sweep = by_method(sweeps(members), page.quantity).get((scene, engine, variant))
+    at = [next((row for row in members if is_step(row.step, USUAL_STEPS[step])), None) for step in steps]
+    errors = [getattr(row, page.quantity) for row in at if row is not None and Outcome(row.outcome).comparable]
+    words = [_error(row, page.quantity) for row in at]
+    told = words if errors else list(dict.fromkeys(words))  # "saturated" once
+    end = _brought(sweep, members, errors) if sweep else ""
+    return "; ".join(filter(None, (", ".join(told), end, _holder(page, scene, engine, variant))))
+
+
+def _error(row: Measurement | None, name: str) -> str:
+    """The error at one step, the outcome where it can't be compared, a dash where the step was not run."""
+    if row is None:
+        return NOTHING
+    return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
+
+
+def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]) -> str:
+    """What a smaller step brings: an order only where the error falls to the finest step."""
+    finest = min((row for row in members if row.purpose == "sweep"), key=lambda row: row.step)
+    if not Outcome(finest.outcome).comparable:
+        return f"**{finest.outcome}** at {_step(finest.step)}"
     match sweep.verdict:
-        case _ if not Outcome(finest.outcome).comparable:
-            end = f", then **{finest.outcome}**"
         case Verdict.PLATEAU:
-            end = ", **stays**"
+            luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in told) else ""
+            return f"**plateau {number(sweep.plateau)}**{luck}"
         case Verdict.ROUNDING:
-            end = ", to rounding"
+            return "to rounding"
         case Verdict.FALLS if sweep.points >= 2:
-            end = f", order {sweep.order:.1f}"
+            return f"order {sweep.order:.1f}"
         case Verdict.LEVELS:
-            end = ", **levels off**"
-        case Verdict.GROWS:
-            end = ", **grows**"
-        case Verdict.ERRATIC:
-            end = ", **erratic**"
+            return "**levels off**"
+        case Verdict.GROWS | Verdict.ERRATIC:
+            return f"**least at {_step(sweep.best_step)}**, then worse"
         case _:
-            end = ""
-    return f"{number(getattr(best, quantity))} {sweep.quantity.unit}, {milliseconds(best.cpu)} ms{end}"
+            return ""
 
 
-def with_overview(text: str, table: str) -> str:
-    """A document with the table between its two marks; raises ValueError where a mark is missing."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"the document lacks the marks {BEGIN!r} and {END!r}")
-    return f"{before}{begin}\n{table}\n{end}{after}"
+def _step(step: float) -> str:
+    return f"{number(1e3 * step)} ms"
+
+
+def _holder(page: Page, scene: str, engine: str, variant: str) -> str:
+    """Who holds the scene's joints; empty for a method that is no longer in the page's list."""
+    for known in page.scenes:
+        for method in page.engines:
+            if (known.name, method.name, method.variant) == (scene, engine, variant):
+                held = held_by(method, known.mechanism())
+                # An engine as shipped has no joint that our code holds: that is what a user puts in its place.
+                return f"{held}, a user's trick" if variant == "default" and "ours" in held.split(": ") else held
+    return ""

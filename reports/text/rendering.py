@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
 
+from reference.scene import Scene
 from reports.charts import stability as maps
 from reports.charts import work_precision as charts
 from reports.charts.theme import svg
 from reports.grid.convergence import judged
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
+from reports.grid.usual_steps import USUAL_STEPS
+from reports.pages.findings.findings import findings, pictures
 from reports.pages.page import Material, Page, StabilityMap
+from reports.pages.symptoms import SYMPTOMS
 from reports.text import tables, unmeasured
 from reports.text.experiments import told_experiment
 from reports.text.holders import holders
-from reports.text.links import anchor
-from reports.text.overview import overview, with_overview
+from reports.text.links import anchor, link
+from reports.text.overview import overviews
+from reports.text.parts import with_part
 from reports.text.provenance import machine, today, versions
 from reports.text.told_scene import told_scene
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
 
-def environment() -> Environment:
-    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known."""
+def environment(folder: Path = TEMPLATES) -> Environment:
+    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
+
+    Those of another folder are found as "own/NAME"; so none of them hides "base.md".
+    """
     out = Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -39,6 +48,14 @@ def environment() -> Environment:
     )
     out.filters |= unmeasured.FILTERS | {"anchor": anchor}
     return out
+
+
+def template_of(page: Page, file: str, generic: str) -> Template:
+    """The page's own template `file` ("page.md" or "data.md"), that of its name here, or the generic one."""
+    if page.template is not None:
+        own = page.template if file == "page.md" else page.template.with_name(file)
+        return environment(own.parent).select_template([f"own/{own.name}", generic])
+    return environment().select_template([f"{page.name}/{file}", generic])
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
@@ -83,14 +100,10 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "foot": foot(command),
         **page.words(material),
     }
-    texts = {f"{page.name}.md": _written([f"{page.name}/page.md", "base.md"], given)}
+    texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
     if page.scenes:
-        texts[page.data_page] = _written([f"{page.name}/data.md", "data.md"], given)
-    return files | texts
-
-
-def _written(templates: list[str], given: Mapping[str, Any]) -> str:
-    return unmeasured.without_marks(environment().select_template(templates).render(given))
+        texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
+    return files | {name: unmeasured.without_marks(text) for name, text in texts.items()}
 
 
 def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> dict[str, str] | None:
@@ -106,25 +119,43 @@ def foot(command: str) -> str:
     return f"Made by `{command}` with {versions()}; timings on {machine()}."
 
 
-def render_index(pages: Iterable[tuple[Page, Material]], command: str) -> str:
-    """The index: every scene in a line, then every page with its lesson."""
-    pages = list(pages)
-    return (
+def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
+    """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
+    entries = [(page, _overview_rows(page, material, page.scenes)) for page, material in pages.items()]
+    told = findings(pages)
+    known = {page.name for page in pages}
+    text = (
         environment()
         .get_template("index.md")
         .render(
-            pages=[page for page, _ in pages],
-            overview=overview((page, judged(material.sweep(page.scenes), page.quantity)) for page, material in pages),
+            pages=list(pages),
+            titles={page.name: page.title for page in pages},
+            findings=[found for found in told if found.page in known],
+            symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
+            overviews=overviews(entries),
+            steps=list(USUAL_STEPS),
             outcomes=list(Outcome),
+            files=files,
             foot=foot(command),
         )
     )
+    return unmeasured.without_marks(text)
+
+
+def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> list[Measurement]:
+    return judged([*material.sweep(scenes), *material.usual(scenes)], page.quantity)
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with the line of each page's first scene in it; raises ValueError where its marks are missing."""
-    firsts = [(page, judged(material.sweep(page.scenes[:1]), page.quantity)) for page, material in pages.items()]
-    return with_overview(text, overview(firsts, "reports/results/"))
+    """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
+
+    Nothing in it depends on timings. Raises ValueError where the marks of a part are missing.
+    """
+    firsts = [(page, _overview_rows(page, material, page.scenes[:1])) for page, material in pages.items()]
+    shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
+    told = overviews(firsts, ("1 ms",), "reports/results/")
+    text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
+    return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
 
 
 def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:
@@ -134,7 +165,8 @@ def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:
     for page, material in pages.items():
         files.update(render_page(page, material, command))
         rows.update({row.key: row for row in material.rows.values()})
-    files["index.md"] = render_index(pages.items(), command)
+    files |= pictures(findings(pages))
+    files["index.md"] = render_index(pages, command, files)
     files["errors.csv"] = tables.as_csv(rows.values(), timings=False)
     header = f"{today()}\n{machine()}\n{versions()}\n{command}\nCPU seconds: cpu per simulated second; build once"
     files["descriptions.csv"] = tables.descriptions_csv(rows.values())

@@ -2,8 +2,9 @@
 
 A `PinJoint` keeps the distance of two points, so its row is their relative velocity along the line between them. With
 one end at the point and the other, in the first body, straight across the line from it, this is the row of a Slot or a
-Skate, whatever bodies they join. A `GrooveJoint` is not: it solves both directions and keeps the part along the normal,
-which is the right impulse only if the normal is an eigenvector of the two bodies' 2 by 2 inverse mass at the anchor.
+Skate, whatever bodies they join. A `GrooveJoint` is not: it solves both directions and keeps the part along the normal
+(applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c), which is the right impulse only if the normal is an
+eigenvector of the two bodies' 2 by 2 inverse mass at the anchor.
 """
 
 from __future__ import annotations

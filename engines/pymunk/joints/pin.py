@@ -1,13 +1,18 @@
-"""An ideal hinge in pymunk: a pivot with two anchors, never one world point, so that an open joint stays visible."""
+"""A Pin in pymunk: a pivot with two anchors, never one world point, so that an open joint stays visible.
+
+A pin to the ground of a body that the ground drives is no constraint: see `engines.pymunk.joints.drive`.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from reference.joints import Vector
+from reference.joints import Pin, Vector
 
 
-def pin(first: pymunk.Body, second: pymunk.Body, first_anchor: Vector, second_anchor: Vector) -> PivotJoint:
-    """Two rows that hold the two points together; anchors [m] are from the origins of the engine's bodies."""
-    return PivotJoint(first, second, first_anchor, second_anchor)
+def pin(joint: Pin, first: pymunk.Body, second: pymunk.Body, own: Callable[[str | None, Vector], Vector]) -> PivotJoint:
+    """Two rows that hold the two points together; `own(body, point)` is a point [m] from the engine's origin."""
+    return PivotJoint(first, second, own(joint.first, joint.first_point), own(joint.second, joint.second_point))

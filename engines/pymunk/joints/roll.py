@@ -13,6 +13,7 @@ For one body on the ground a Roll can also be held by reflection: `engines.pymun
 from __future__ import annotations
 
 import math
+from cmath import rect
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -23,9 +24,9 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.constraints import PivotJoint
 
 from engines import Unsupported
-from engines.pymunk.contacts import Touch
+from engines.rolling_table import rolled, unplaced
 from reference.curves.circles_lines import Circle, Line
-from reference.curves.curve import Curve, Placed, Vector
+from reference.curves.curve import Curve, Vector
 from reference.kinds import from_to
 from reference.rolling.roll import Roll
 from reference.validation import Fraction, NonNegative, Valid
@@ -88,19 +89,15 @@ def touching(
 def _shape(
     joint: Roll, curve: Curve, body: pymunk.Body, own: Callable[[Vector], Vector], contact: Contact
 ) -> pymunk.Shape:
-    inner, turn, shift = curve, 0.0, np.zeros(2)
-    while isinstance(inner, Placed):
-        moved = _turned(turn, inner.shift)
-        inner, turn, shift = inner.curve, turn + inner.turn, shift + moved
+    inner, shift, turn = unplaced(curve)
     if isinstance(inner, Circle):
-        x, y = _turned(turn, inner.centre) + shift
-        return pymunk.Circle(body, inner.radius, own((float(x), float(y))))
+        centre = rect(1.0, turn) * complex(*inner.centre) + shift
+        return pymunk.Circle(body, inner.radius, own((centre.real, centre.imag)))
     if isinstance(inner, Line):
-        heading = turn + inner.heading
-        below = contact.thickness * np.array([-math.sin(heading), math.cos(heading)])  # material is to the left
-        through = _turned(turn, inner.through) + shift + below
-        reach = REACH * np.array([math.cos(heading), math.sin(heading)])
-        back, front = (own((float(x), float(y))) for x, y in (through - reach, through + reach))
+        along = rect(1.0, turn + inner.heading)
+        below = contact.thickness * 1j * along  # material is to the left
+        through = rect(1.0, turn) * complex(*inner.through) + shift + below
+        back, front = (own((end.real, end.imag)) for end in (through - REACH * along, through + REACH * along))
         return pymunk.Segment(body, back, front, contact.thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
@@ -111,11 +108,6 @@ def _shape(
         raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} has no end, and a polygon closes")
     corners = curve.point(np.linspace(0.0, curve.length, contact.vertices, endpoint=False))
     return pymunk.Poly(body, [own((float(x), float(y))) for x, y in corners])
-
-
-def _turned(angle: float, point: Vector) -> np.ndarray:
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return np.array([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])
 
 
 class MovedPivot:
@@ -129,9 +121,9 @@ class MovedPivot:
         origins: tuple[Vector, Vector],
         predicted: bool,
     ) -> None:
-        self._touch = Touch(joint.rolling)
+        self._contact = rolled(joint.rolling).contact
         self._bodies, self._predicted = (first._body, second._body), predicted
-        self._from_first, self._from_second = origins
+        self._from_first, self._from_second = (complex(*origin) for origin in origins)
         self.constraint = PivotJoint(first, second, (0.0, 0.0), (0.0, 0.0))
         self._pointer = self.constraint._constraint
 
@@ -141,6 +133,8 @@ class MovedPivot:
             ahead = 0.0
         rotation = lib.cpBodyGetAngle(second) - lib.cpBodyGetAngle(first)
         rotation += ahead * (lib.cpBodyGetAngularVelocity(second) - lib.cpBodyGetAngularVelocity(first))
-        (x1, y1), (x2, y2) = self._touch.on_both(rotation)
-        lib.cpPivotJointSetAnchorA(self._pointer, (x1 - self._from_first[0], y1 - self._from_first[1]))
-        lib.cpPivotJointSetAnchorB(self._pointer, (x2 - self._from_second[0], y2 - self._from_second[1]))
+        on_first, on_second = self._contact(rotation)
+        on_first -= self._from_first
+        on_second -= self._from_second
+        lib.cpPivotJointSetAnchorA(self._pointer, (on_first.real, on_first.imag))
+        lib.cpPivotJointSetAnchorB(self._pointer, (on_second.real, on_second.imag))

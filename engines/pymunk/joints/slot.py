@@ -3,7 +3,8 @@
 - "exact": a `GrooveJoint` if the groove is in a body of known motion and its anchor at the centre of mass of the second
   body, or that body can't turn: then pushing along the normal moves the anchor along the normal. Else a `Link`.
 - "groove": a `GrooveJoint` wherever the point is, as a user would. Off the centre of mass of a body that turns, its
-  impulse is not the one that stops the motion across the groove: it settles at a wrong one, at any step.
+  impulse is not the one that stops the motion across the groove, at any step, unless the arm from the centre of mass to
+  the point lies along or across the groove: see `engines.pymunk.joints.link`; measured in `tests/test_pymunk_slots.py`.
 """
 
 from __future__ import annotations

@@ -162,7 +162,7 @@ class Refereed(Task):
 
     @property
     def cost(self) -> float:
-        return SAMPLES * self.referee.step_cost(QUESTIONS[self.question].mechanism())
+        return SAMPLES * self.engine.step_cost(QUESTIONS[self.question].mechanism())
 
     @property
     def label(self) -> str:

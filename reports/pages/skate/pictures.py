@@ -7,7 +7,7 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.mechanism import Triple
+from reference.body import Triple
 from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
 from reference.skate.slopes import SkateOnSlope
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths

@@ -9,7 +9,7 @@ about a time constant times the missing acceleration, and converges with the fir
 
 from __future__ import annotations
 
-import math
+from cmath import rect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -20,7 +20,7 @@ from engines import Unsupported
 from engines.mujoco.construction import Building, Callback, Hooks
 from engines.mujoco.joints.roll.shapes import RoundShape, add_shapes
 from engines.mujoco.stiffness import STIFFEST, Shipped
-from engines.rolling_table import RollTable
+from engines.rolling_table import rolled
 from reference.rolling.roll import Roll
 from reference.validation import InvalidMechanism, Positive, Valid
 
@@ -36,9 +36,10 @@ CONVEX = 1e-14
 class RollContact(Valid):
     """Collision and friction: public settings only, the shipped ones unless said otherwise.
 
-    `friction`: the coefficient. `steps`: the contact's time constant in steps (MuJoCo clamps it at two) with its
-    impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator allows, at the
-    rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo has it in the elliptic cone only. `round_shape`: what a circle is.
+    `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped as `engines.mujoco.stiffness`
+    says) with its impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator
+    allows, at the rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo reads `solreffriction` with the elliptic cone only (a
+    test in `tests/test_mujoco_rolls.py` asks it). `round_shape`: what a circle is.
     """
 
     friction: Positive = 1.0
@@ -143,7 +144,7 @@ def _add_pair(
 
 def _missing(building: Building, roll: Roll, address: Sequence[int]) -> Callable[[Any, Any], complex]:
     """-(dJ/dt) v of rolling as a function of (qpos, qvel): what J a should be in the world, x + i y [m/s^2]."""
-    table = RollTable(roll.rolling)
+    table = rolled(roll.rolling)
     links = {link.body: link for link in building.tree.links}
     angles = []
     for name in (roll.first, roll.second):
@@ -164,7 +165,7 @@ def _missing(building: Building, roll: Roll, address: Sequence[int]) -> Callable
         turned, omega = base + position[first], velocity[first]
         rate = velocity[second] - omega
         place, once, twice = table.place(start + position[second] - turned)
-        way = complex(math.cos(turned), math.sin(turned))
+        way = rect(1.0, turned)
         return way * (twice * rate**2 + 2j * omega * rate * once - omega**2 * place)
 
     return over_body

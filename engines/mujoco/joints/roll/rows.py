@@ -8,7 +8,7 @@ Both hold the body's origin where rolling puts it at its rotation, P(theta) of `
 
 from __future__ import annotations
 
-import math
+from cmath import rect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +19,7 @@ from engines import Unsupported
 from engines.mujoco.construction import Binder, Building, Hooks
 from engines.mujoco.tree import Link
 from engines.mujoco.written_rows import Row, State, WrittenJoint
-from engines.rolling_table import RollTable
+from engines.rolling_table import Rolled, rolled
 from reference.rolling.roll import Roll
 from reference.validation import Valid
 
@@ -32,7 +32,7 @@ class RollRows(Valid):
         """Add rows that a callback writes."""
         stiffness, damping = building.stiffness.gains(building.mechanism, building.dt)
         for roll in rolls:
-            link, table = _free_on_ground(building, roll), RollTable(roll.rolling)
+            link, table = _free_on_ground(building, roll), rolled(roll.rolling)
             if link is not None:
                 names = _add_equalities(building, roll, link)
                 building.binders.append(_own_rows(table, names, link, building, stiffness, damping))
@@ -67,7 +67,7 @@ def _add_equalities(building: Building, roll: Roll, link: Link, against: str = "
 
 
 def _own_rows(
-    table: RollTable, names: Sequence[str], link: Link, building: Building, stiffness: float, damping: float
+    table: Rolled, names: Sequence[str], link: Link, building: Building, stiffness: float, damping: float
 ) -> Binder:
     """Rows (1, 0, -X') and (0, 1, -Y') in a body's own x, y, angle.
 
@@ -108,18 +108,18 @@ def _own_rows(
     return bind
 
 
-def roll_rows(table: RollTable, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:
+def roll_rows(table: Rolled, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:
     """The rows of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0, in x and in y, and J a = -(dJ/dt) v - b J v - k gap.
 
     The same two conditions as those of `reference.rolling.roll` along tangent and normal, in directions that rest.
     """
-    place_at, cosine_of, sine_of = table.place, math.cos, math.sin
+    place_at = table.place
 
     def rows(_t: float, first: State, second: State) -> Sequence[Row]:
         x1, y1, angle1, vx1, vy1, omega1 = first
         x2, y2, angle2, vx2, vy2, omega2 = second
         place, once, twice = place_at(angle2 - angle1)
-        way = complex(cosine_of(angle1), sine_of(angle1))
+        way = rect(1.0, angle1)
         place, once, twice = way * place, way * once, way * twice
         carried = 1j * place - once  # d(e^(i phi_1) P) / d phi_1
         rate = omega2 - omega1
@@ -152,10 +152,10 @@ class RollEquality(Valid):
                     "rolling is only for a free body on the ground"
                 )
             names = _add_equalities(building, roll, link, f"coordinate {link.rotation}")
-            laws.append((RollTable(roll.rolling), names, link.columns[-1], building.mechanism.bodies[link.body].pose))
+            laws.append((rolled(roll.rolling), names, link.columns[-1], building.mechanism.bodies[link.body].pose))
 
         def bind(compiled: Any, address: Sequence[int]) -> Hooks:
-            def rewriting(table: RollTable, names: Sequence[str], rotation: int, pose: Sequence[float]) -> Any:
+            def rewriting(table: Rolled, names: Sequence[str], rotation: int, pose: Sequence[float]) -> Any:
                 row_x, row_y = (compiled.equality(name).id for name in names)
                 where, (start_x, start_y, start) = address[rotation], pose
                 coefficients = compiled.eq_data

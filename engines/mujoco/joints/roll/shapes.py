@@ -10,14 +10,16 @@ start angle. In the plane a sphere is a circle, and it touches in one point wher
 from __future__ import annotations
 
 import math
+from cmath import rect
 from typing import Any, Literal
 
 import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building
+from engines.rolling_table import unplaced
 from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve, Placed
+from reference.curves.curve import Curve
 from reference.curves.ellipse import Ellipse
 from reference.rolling.roll import Roll
 
@@ -33,14 +35,14 @@ def add_shapes(building: Building, roll: Roll, round_shape: RoundShape) -> tuple
 
 
 def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, round_shape: RoundShape) -> str:
-    curve, shift, angle = _unplaced(curve)
+    curve, shift, angle = unplaced(curve)
     index = building.index(owner)
     body = building.spec.worldbody if index is None else building.spec.body(f"body {index}")
     start = 0.0 if index is None else building.mechanism.bodies[index].pose[2]
     name = f"{roll.name}: {'ground' if owner is None else owner}"
 
     def add(kind: Any, inside: complex, quaternion: list[float], size: list[float]) -> str:
-        place = _unit(start) * (shift + _unit(angle) * inside)
+        place = rect(1.0, start) * (shift + rect(1.0, angle) * inside)
         body.add_geom(
             name=name,
             type=kind,
@@ -58,7 +60,7 @@ def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, 
     match curve:
         case Line() if owner is None:
             # A plane's face is along its z axis: a quarter turn lays that out of the material, which is on the left.
-            out, quarter = -1j * _unit(curve.heading + angle), math.sqrt(0.5)
+            out, quarter = -1j * rect(1.0, curve.heading + angle), math.sqrt(0.5)
             upright = [quarter, -quarter * out.imag, quarter * out.real, 0.0]
             return add(mujoco.mjtGeom.mjGEOM_PLANE, complex(*curve.through), upright, [1.0, 1.0, 1.0])
         case Line():
@@ -82,15 +84,3 @@ def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, 
                 f"roll {roll.name!r}: MuJoCo has no shape like a {type(curve).__name__.lower()}; it has planes, "
                 "circles and ellipses"
             )
-
-
-def _unit(angle: float) -> complex:
-    return complex(math.cos(angle), math.sin(angle))
-
-
-def _unplaced(curve: Curve) -> tuple[Curve, complex, float]:
-    """The curve inside any number of placings, its shift [m] as x + i y, and its turn [rad]."""
-    if not isinstance(curve, Placed):
-        return curve, 0j, 0.0
-    inner, shift, angle = _unplaced(curve.curve)
-    return inner, complex(*curve.shift) + _unit(curve.turn) * shift, angle + curve.turn

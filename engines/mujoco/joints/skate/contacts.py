@@ -22,7 +22,8 @@ from engines.mujoco.stiffness import Shipped
 from engines.mujoco.tree import world_offset
 from reference.joints import Skate
 
-# Along and across the blade: as in the maintainers' own answer to how one skates on ice, a capsule on a plane.
+# Along and across the blade. A capsule on a plane, because there the frame of the contact lies along the capsule: so
+# the answer of one of MuJoCo's maintainers to how one skates on ice, github.com/google-deepmind/mujoco/issues/67.
 BLADE_FRICTION = (1e-5, 10.0)
 TILT = 0.5  # rad: only the blade's lower end touches
 GRAVITY = 9.81  # m/s^2, what presses the mechanism on the ground that it stands on

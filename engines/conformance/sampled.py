@@ -1,0 +1,178 @@
+"""Checks of what a run gives: its start, shapes, instants, cost, and that the same run gives the same bits again."""
+
+from __future__ import annotations
+
+import copy
+import math
+import time
+
+import numpy as np
+
+from engines import Size
+from engines.conformance.check import SAMPLES, STEP, Check, Fails, Subject, finite, stepped
+from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
+from reference.trajectory import Trajectory
+
+# Of a coordinate's size: what placing a body, and taking its place back from the engine's own coordinates, may take.
+ROUNDING = 1e-12
+SELDOM = (2, 3)  # samples, and steps between them
+# The same steps are taken, so rounding is all that may differ; extrapolation weighs it with up to a hundred.
+SAMPLED = 1e-9
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(np.max(np.abs(values), initial=0.0))
+
+
+def told_in_shape(subject: Subject, world: World) -> None:
+    """A run gives a Trajectory of samples + 1 poses, twists and reactions, in the order of bodies and rows."""
+    run = subject.run(world.mechanism)
+    if not isinstance(run, Trajectory):
+        raise Fails(f"a {type(run).__name__}", "a Trajectory", "the run gives the engine's own arrays")
+    bodies, rows = len(world.mechanism.bodies), world.mechanism.row_count
+    for name, shape in (
+        ("t", (SAMPLES + 1,)),
+        ("pose", (SAMPLES + 1, bodies, 3)),
+        ("twist", (SAMPLES + 1, bodies, 3)),
+        ("reaction", (SAMPLES + 1, rows)),
+    ):
+        found = np.shape(getattr(run, name))
+        if found != shape:
+            raise Fails(
+                f"{name} of the shape {found}", f"{shape}", "the first sample, the start, is left out or counted twice"
+            )
+    for name, value, kinds in (
+        ("warnings", run.warnings, tuple),
+        ("reset_at", run.reset_at, (float, type(None))),
+        ("estimate", run.estimate, (np.ndarray, type(None))),
+    ):
+        if not isinstance(value, kinds):
+            raise Fails(
+                f"{name} of the type {type(value).__name__}", "what Trajectory says", "a field is filled by place"
+            )
+
+
+def told_size(subject: Subject, world: World) -> None:
+    """A built model says how large it is, by a Size of counts that are not below zero."""
+    size = getattr(subject.build(world.mechanism), "size", None)
+    if not isinstance(size, Size):
+        raise Fails(f"size = {size!r}", "a Size", "the run has no property of that name")
+    for name in ("bodies", "coordinates", "rows", "solver_rows"):
+        value = getattr(size, name)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+            raise Fails(f"size.{name} = {value!r}", "a count", "it is taken from an array of the engine as it is")
+
+
+def told_at_the_instants(subject: Subject, world: World) -> None:
+    """Sample k stands at k times `every` times dt, beginning with t = 0."""
+    for samples, every in ((SAMPLES, 1), SELDOM):
+        run = subject.run(world.mechanism, STEP, samples, every)
+        late = _largest(run.t - np.arange(samples + 1) * every * STEP)
+        if not late <= ROUNDING:
+            raise Fails(
+                f"an instant that is {late:.3g} s off with {every} steps a sample",
+                f"multiples of {every * STEP:g} s",
+                "`every` is left out, or time is counted from the first step on",
+            )
+
+
+def told_what_it_cost(subject: Subject, world: World) -> None:
+    """`stepping` is CPU time of this process: not below zero, and not more than it used during the run."""
+    run = subject.build(world.mechanism)
+    begin = time.process_time()
+    stepping = stepped(run, SAMPLES, 1).stepping
+    used = time.process_time() - begin
+    if not (math.isfinite(stepping) and 0 <= stepping <= used):
+        raise Fails(
+            f"stepping = {stepping!r} s",
+            f"from 0 to the {used:.3g} s of CPU time that the whole call took",
+            "the wall's clock is read, or milliseconds, or nothing",
+        )
+
+
+def starts_at_the_pose(subject: Subject, world: World) -> None:
+    """The first sample's poses are the mechanism's start."""
+    _starts(subject.run(world.mechanism).pose[0], world.mechanism.pose, "pose")
+
+
+def starts_at_the_twist(subject: Subject, world: World) -> None:
+    """The first sample's twists are the mechanism's start."""
+    _starts(subject.run(world.mechanism).twist[0], world.mechanism.twist, "twist")
+
+
+def _starts(found: np.ndarray, start: np.ndarray, what: str) -> None:
+    off = _largest(found - start)
+    if not off <= ROUNDING * (1 + _largest(start)):
+        body, place = np.unravel_index(int(np.argmax(np.abs(found - start))), start.shape)
+        raise Fails(
+            f"a {what} that is {off:.3g} off in {('x', 'y', 'the angle')[place]} of body {body}",
+            f"the start to {ROUNDING:g} of its size",
+            "the first sample is taken after the first step, or the engine's own frame is not the centre of mass",
+        )
+
+
+def gives_the_same_bits(subject: Subject, world: World) -> None:
+    """Two builds, both made before either is run, give the same bits."""
+    runs = [subject.build(world.mechanism), subject.build(world.mechanism)]
+    first, second = (stepped(run, SAMPLES, 1) for run in runs)
+    for name in ("t", "pose", "twist", "reaction"):
+        one, other = getattr(first, name), getattr(second, name)
+        if not np.array_equal(one, other, equal_nan=True):
+            raise Fails(
+                f"a {name} that differs by {_largest(np.nan_to_num(one - other)):.3g}",
+                "the same bits",
+                "two models share something, or a solver begins with random numbers or with what was left before",
+            )
+
+
+def leaves_the_mechanism_alone(subject: Subject, world: World) -> None:
+    """Building and running change nothing in the mechanism that was given."""
+    given = copy.deepcopy(world.mechanism)
+    kept = (repr(given), given.pose.copy(), given.twist.copy(), given.inertias.copy(), given.rate.copy())
+    stepped(subject.engine.build(given, STEP), SAMPLES, 1)
+    for name, before, now in zip(
+        ("description", "pose", "twist", "inertias", "rate"),
+        kept,
+        (repr(given), given.pose, given.twist, given.inertias, given.rate),
+        strict=True,
+    ):
+        if not np.array_equal(before, now):
+            raise Fails(f"another {name}", "what was given", "an array of the mechanism is written into without a copy")
+
+
+def gives_the_same_however_often_it_is_sampled(subject: Subject, world: World) -> None:
+    """Every third state of a run is that of a run sampled a third as often, to rounding."""
+    samples, every = SELDOM
+    often, seldom = subject.run(world.mechanism), subject.run(world.mechanism, STEP, samples, every)
+    for name in ("pose", "twist"):
+        whole = getattr(often, name)
+        off = _largest(getattr(seldom, name) - whole[: samples * every + 1 : every])
+        if not off <= SAMPLED * (1 + _largest(whole)):
+            raise Fails(
+                f"a {name} that differs by {off:.3g}",
+                f"at most {SAMPLED:g} of its size",
+                "`every` changes the step, or sampling disturbs what the engine goes on from",
+            )
+
+
+def does_not_wrap_angles(subject: Subject, world: World) -> None:
+    """An angle goes on beyond a whole turn, and starts where the mechanism says though that is several turns."""
+    run = finite(subject.run(world.mechanism))
+    off = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])
+    # A turn is 6.3 rad, and a step 0.6 rad of it.
+    if not off <= 1.0:
+        raise Fails(f"an angle that is {off:.3g} rad off", "at most 1 rad", "angles are taken from a sine and a cosine")
+
+
+CHECKS = (
+    Check(told_in_shape, WORLDS),
+    Check(told_size, WORLDS),
+    Check(told_at_the_instants, MOVING),
+    Check(told_what_it_cost, MOVING),
+    Check(starts_at_the_pose, (*WORLDS, SPINNING)),
+    Check(starts_at_the_twist, (*WORLDS, SPINNING)),
+    Check(gives_the_same_bits, MOVING),
+    Check(leaves_the_mechanism_alone, MOVING),
+    Check(gives_the_same_however_often_it_is_sampled, MOVING),
+    Check(does_not_wrap_angles, (SPINNING,)),
+)

@@ -1,0 +1,84 @@
+"""What distributions register under an entry point group, ours first, each found by `engines.loading`.
+
+Ours stand in `pyproject.toml` like those of anybody else. In a checkout that file itself is read: so a clone that was
+never installed has them, and one that was installed before the file changed has the present ones.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from engines.loading import Kind, load
+
+OURS = "planar-crosscheck"
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class Registered:
+    """What a group holds, and a line about each entry point that can't be used; it names the distribution."""
+
+    values: tuple[Any, ...]
+    troubles: tuple[str, ...] = ()
+
+
+def registered(
+    group: str, kind: Kind, name: Callable[[Any], str], known: Mapping[str, Any] = MappingProxyType({})
+) -> Registered:
+    """All values of a group, no two of one `name`; of two, ours stays, or that of the first distribution.
+
+    `known`: what is registered elsewhere already, by name: another value of such a name is left out too.
+    """
+    values: dict[str, Any] = {}
+    owners = dict.fromkeys(known, "another group")
+    troubles: list[str] = []
+    for owner, key, reference in (*_ours(group), *_theirs(group)):
+        about = f"{group}: {key!r} of the distribution {owner}"
+        try:
+            found = load(reference, kind)
+        except ValueError as reason:
+            troubles.append(f"{about} is left out: {reason}")
+            continue
+        for value in found:
+            word = name(value)
+            if word in owners and value != {**known, **values}[word]:
+                troubles.append(f"{about}: {word!r} is left out, since {owners[word]} has a {kind.word} of this name")
+            elif word not in values:
+                values[word], owners[word] = value, owner
+    return Registered(tuple(values.values()), tuple(troubles))
+
+
+@cache
+def _checkout() -> dict[str, Any] | None:
+    """The project table of the pyproject.toml beside these packages; None where there is none, or another project's."""
+    file = ROOT / "pyproject.toml"
+    if not file.is_file():
+        return None
+    with file.open("rb") as stream:
+        project = tomllib.load(stream).get("project", {})
+    return project if project.get("name") == OURS else None
+
+
+def _ours(group: str) -> list[tuple[str, str, str]]:
+    """(distribution, key, reference) of what we register, in the order of the file."""
+    project = _checkout()
+    if project is not None:
+        return [(OURS, key, value) for key, value in project.get("entry-points", {}).get(group, {}).items()]
+    return [(OURS, point.name, point.value) for point in metadata.entry_points(group=group) if _owner(point) == OURS]
+
+
+def _theirs(group: str) -> list[tuple[str, str, str]]:
+    """(distribution, key, reference) of what others register, in an order that does not depend on the path."""
+    points = [(_owner(point), point.name, point.value) for point in metadata.entry_points(group=group)]
+    return sorted(point for point in points if point[0] != OURS)
+
+
+def _owner(point: metadata.EntryPoint) -> str:
+    return point.dist.name if point.dist is not None else "unknown"

@@ -1,0 +1,30 @@
+"""A skate that slips when it would have to give more than a limit: the friction loss of MuJoCo's tendon."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from engines.mujoco.engine import MuJoCo
+from engines.mujoco.methods import SKATES
+from reference.mechanism import Mechanism
+
+_FRICTION = next(engine for engine in SKATES if engine.variant == "tendon friction")
+
+
+@dataclass(frozen=True)
+class LimitedTendon(MuJoCo):
+    """A tendon whose friction gives way beyond `limit` [N]."""
+
+    limit: float = float("inf")
+
+    def model(self, mechanism: Mechanism, dt: float) -> Any:
+        model = super().model(mechanism, dt)
+        model.compiled.tendon_frictionloss[:] = self.limit
+        return model
+
+
+def limited_tendon(limit: float) -> LimitedTendon:
+    """The tendon with a limit [N] on its friction."""
+    settings = {name: value for name, value in vars(_FRICTION).items() if name != "variant"}
+    return LimitedTendon("tendon with friction loss", **settings, limit=limit)

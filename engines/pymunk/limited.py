@@ -1,0 +1,27 @@
+"""A skate that slips when it would have to give more than a limit: pymunk's groove, with its `max_force`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from engines.pymunk.engine import Pymunk
+from reference.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class LimitedGroove(Pymunk):
+    """A groove that gives way when it would need more than `limit` [N], like dry friction."""
+
+    limit: float = float("inf")
+
+    def model(self, mechanism: Mechanism, dt: float, iterations: int | None = None) -> Any:
+        model = super().model(mechanism, dt, iterations)
+        for constraint in model.space.constraints:
+            constraint.max_force = self.limit
+        return model
+
+
+def limited_groove(limit: float) -> LimitedGroove:
+    """The groove with a limit [N] on its force."""
+    return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)

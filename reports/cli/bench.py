@@ -1,0 +1,40 @@
+"""`crosscheck bench`: what stepping costs beside bare loops, and the reference beside another library."""
+
+from __future__ import annotations
+
+from reports.cli.options import Scenes
+from reports.cli.terminal import Terminal, print_table
+
+
+def bench(scene: Scenes = None) -> None:
+    """Time `run` against bare stepping loops, and the reference against another library; prints, asserts nothing."""
+    from engines.registry import ENGINES
+    from reports.bench import four_bar
+    from reports.bench.loops import loop_costs
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_scenes
+    from reports.text.provenance import machine, versions
+    from reports.text.tables import number
+
+    console = Terminal(140)
+    known, names, _ = with_words(registered(), scene or (), None)
+    for one in choose_scenes(names, known.scenes, known.pages):
+        costs = loop_costs(ENGINES, one.mechanism(), one.spacing / 10, one.samples, 10)
+        body = [
+            (f"{c.engine.name} {c.engine.variant}", number(1e6 * c.bare), number(1e6 * c.run), f"{c.ratio:.3f}")
+            for c in costs
+        ]
+        if body:
+            header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
+            print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
+            console.print()
+    floor = four_bar.floor_ratio()
+    console.print(f"four-bar kinematics, {floor['count']} crank angles, all six outputs: {floor['ours']:.3f} s,")
+    console.print(f"  {floor['ratio']:.2f} times one tan and two arctan2 an angle")
+    try:
+        other = four_bar.pylinkage_ratio()
+    except RuntimeError as reason:
+        console.print(f"  {reason}: pip install -e '.\\[bench]'")
+    else:
+        console.print(f"  pylinkage {other['pylinkage']:.3f} s, {other['ratio']:.1f} times ours")
+    console.print(f"{versions()}; {machine()}")

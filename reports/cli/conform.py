@@ -1,0 +1,82 @@
+"""`crosscheck conform`: whether an engine does what the contract of `engines` says, one line a check."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.grid.ending import BadInput, Broken
+
+if TYPE_CHECKING:
+    from engines import Engine
+    from engines.conformance import Case, Result, Status
+
+WIDTH = 150  # into a file or a pipe
+
+
+def conform(
+    engine: Annotated[str, typer.Argument(help="An engine's name, or package.module:NAME of anybody's.")],
+    variant: Annotated[str | None, typer.Option("--variant", help="Only this variant.")] = None,
+) -> None:
+    """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
+    from engines.conformance import cases
+    from reports.cli.terminal import Terminal
+
+    screen = Terminal(WIDTH)
+    broken = []
+    for each in named_engines(engine, variant):
+        screen.say(f"{each.name} {each.variant}")
+        count = 0
+        for status, line in verdicts((case, case.result()) for case in cases(each)):
+            screen.say(f"  {status:<14} {line}")
+            count += status == "fails"
+        screen.say(f"  {'every check holds' if not count else f'{count} checks fail'}")
+        if count:
+            broken.append(f"{each.name} {each.variant}")
+    if broken:
+        raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
+
+
+def named_engines(word: str, variant: str | None) -> tuple[Engine, ...]:
+    """The engines of a name or of package.module:NAME, of this variant if one is given. Raises BadInput."""
+    from engines.registry import ENGINES, load
+    from reports.cli.selection import choose_engines
+
+    if ":" not in word:
+        return choose_engines(word, variant, ENGINES)
+    try:
+        return choose_engines(None, variant, load(word))
+    except ValueError as error:
+        raise BadInput(str(error)) from None
+
+
+def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, str]]:
+    """The status and the line of every check, and a line for every reason why something was not asked, once."""
+    said: set[str] = set()
+    for check, group in groupby(results, key=lambda found: found[0].check):
+        told = list(group)
+        failed, held = _of(told, "fails"), _of(told, "holds")
+        if failed:
+            yield "fails", f"{_names(failed)}{failed[0][1].sentence}"
+        elif held:
+            share = "" if not check.worlds else f" ({len(held)} of {len(told)} mechanisms)"
+            yield "holds", f"{check.name}{share}"
+        for status in ("not supported", "not asked"):
+            for case, result in _of(told, status):
+                words = f"{_names([(case, result)])}{result.sentence}"
+                if words not in said:
+                    yield status, words if held or failed or case.world is None else f"{check.name}: {words}"
+                said.add(words)
+
+
+def _of(told: Sequence[tuple[Case, Result]], status: str) -> list[tuple[Case, Result]]:
+    return [found for found in told if found[1].status == status]
+
+
+def _names(told: Sequence[tuple[Case, Result]]) -> str:
+    """In which mechanisms, and with which joints."""
+    names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in told if case.world is not None]
+    return f"in {'; '.join(names)}: " if names else ""

@@ -1,0 +1,164 @@
+"""What a command works with: registered scenes, engines and pages, and what its words or its store name beside them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from engines import Engine, registry
+from engines.loading import is_reference, load
+from reference.scene import Scene
+from reference.variation import told_apart, with_settings
+from reports.cli.selection import known_engines, nearest
+from reports.grid.ending import BadInput
+from reports.pages import catalogue
+from reports.pages.page import Page
+
+
+@dataclass(frozen=True)
+class Given:
+    """A scene or an engine that is not registered, in words that find it again: a store keeps these, no objects.
+
+    word: a reference (`engines.loading`), or a registered scene's name; folder: where it counts from; settings: the
+    numbers of the scene that are set, as they were typed.
+    """
+
+    kind: str  # "scene" or "engine"
+    word: str
+    folder: str
+    settings: tuple[tuple[str, str], ...] = ()
+
+    def text(self) -> str:
+        return json.dumps([self.kind, self.word, self.folder, self.settings])
+
+    @classmethod
+    def of_text(cls, text: str) -> Given:
+        """Raises ValueError for a text that is none of these."""
+        try:
+            kind, word, folder, settings = json.loads(text)
+            return cls(str(kind), str(word), str(folder), tuple((str(name), str(value)) for name, value in settings))
+        except (TypeError, ValueError):
+            raise ValueError(f"{text!r} names no scene or engine") from None
+
+
+@dataclass(frozen=True)
+class Known:
+    """Scenes and engines that can be named, and pages that tell of all of them; `given`: those that words brought."""
+
+    scenes: tuple[Scene, ...]
+    engines: tuple[Engine, ...]
+    pages: tuple[Page, ...]
+    given: tuple[Given, ...] = ()
+
+    def with_(self, given: Given) -> tuple[Known, tuple[Any, ...]]:
+        """(this and what is given, the scenes or engines that it stands for). Raises ValueError, a sentence."""
+        if given.kind == "engine":
+            found = registry.load(given.word, Path(given.folder))
+            new = _new(found, self.engines, registry.method, given)
+            pages = catalogue.with_engines(self.pages, new)
+            out = replace(self, engines=(*self.engines, *new), pages=pages)
+        else:
+            found = told_apart(tuple(with_settings(each, dict(given.settings)) for each in self._scenes_of(given)))
+            new = _new(found, self.scenes, lambda scene: scene.name, given)
+            compared = tuple(dict.fromkeys([*registry.VARIANTS, *self._given_engines()]))
+            pages = catalogue.with_scenes(self.pages, new, compared)
+            out = replace(self, scenes=(*self.scenes, *new), pages=pages)
+        return replace(out, given=(*out.given, given)) if new else out, found
+
+    def _given_engines(self) -> tuple[Engine, ...]:
+        registered = set(known_engines(catalogue.PAGES))
+        return tuple(engine for engine in self.engines if engine not in registered)
+
+    def _scenes_of(self, given: Given) -> tuple[Scene, ...]:
+        if is_reference(given.word):
+            return load(given.word, catalogue.SCENE, Path(given.folder))
+        by_name = {scene.name: scene for scene in catalogue.SCENES}
+        if given.word not in by_name:
+            raise ValueError(f"no scene is called {given.word!r}")
+        return (by_name[given.word],)
+
+
+def _new(found: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], given: Given) -> tuple[Any, ...]:
+    """Those that are not known yet. Raises ValueError for another one of a known name."""
+    by_name = {name(each): each for each in known}
+    new = []
+    for each in found:
+        if name(each) not in by_name:
+            by_name[name(each)] = each
+            new.append(each)
+        elif by_name[name(each)] != each:
+            raise ValueError(f"{given.word}: another {given.kind} is called {name(each)!r}; give this one another name")
+    return tuple(new)
+
+
+def registered() -> Known:
+    """What is registered. What is wrong there is told on stderr, a line each, and left out."""
+    for line in catalogue.TROUBLES:
+        print(f"crosscheck: {line}", file=sys.stderr)
+    return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
+
+
+def with_remembered(known: Known, texts: Iterable[str]) -> Known:
+    """What a store remembers too. What can't be found any more is told on stderr, a line each, and left out."""
+    for text in texts:
+        try:
+            known, _ = known.with_(Given.of_text(text))
+        except ValueError as reason:
+            print(f"crosscheck: left out, since it is not as it was when it was run: {reason}", file=sys.stderr)
+    return known
+
+
+def with_words(
+    known: Known, scenes: Sequence[str], engine: str | None, settings: Sequence[str] = ()
+) -> tuple[Known, tuple[str, ...], tuple[Engine, ...]]:
+    """(this and what the words bring, the names of the scenes meant, the engines meant if `engine` is a reference).
+
+    Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. Raises BadInput.
+    """
+    folder = str(Path.cwd())
+    values = _settings(settings)
+    if values and not scenes:
+        raise BadInput("--set changes the numbers of scenes: name a scene before it")
+    names: list[str] = []
+    engines: tuple[Engine, ...] = ()
+    try:
+        if engine is not None and is_reference(engine):
+            known, engines = known.with_(Given("engine", engine, folder))
+        for word in scenes:
+            for each in _words_of(known, word) if values else [word]:
+                if values or is_reference(each):
+                    known, found = known.with_(Given("scene", each, folder, tuple(values.items())))
+                    names += [scene.name for scene in found]
+                else:
+                    names.append(each)
+    except ValueError as reason:
+        raise BadInput(str(reason)) from None
+    return known, tuple(names), engines
+
+
+def _words_of(known: Known, word: str) -> list[str]:
+    """A reference or a scene's name as it is; a page's name as those of its scenes. Raises BadInput."""
+    if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
+        return [word]
+    for page in known.pages:
+        if page.name == word and page.scenes:
+            return [scene.name for scene in page.scenes]
+    raise nearest("scene", word, (scene.name for scene in catalogue.SCENES))
+
+
+def _settings(words: Sequence[str]) -> dict[str, str]:
+    """Numbers to set, by name. Raises BadInput."""
+    out: dict[str, str] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        name = name.strip()
+        if not (name and equals and value.strip()):
+            raise BadInput(f"--set is {word!r}; give NAME=VALUE")
+        if name in out:
+            raise BadInput(f"--set gives {name} twice")
+        out[name] = value.strip()
+    return out

@@ -1,0 +1,31 @@
+"""The options that several commands have, and the folder of the results."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+# Below the current folder, in the checkout too: no command writes to what is published.
+FOLDER = Path("crosscheck-results")
+STORE = "cells.sqlite"
+REFERENCES = "package.module:NAME, or path/to/file.py"
+
+Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]
+Scenes = Annotated[
+    list[str] | None,
+    typer.Argument(help=f"Scenes or pages by name, or {REFERENCES}; all that are registered if none is named."),
+]
+EngineName = Annotated[str | None, typer.Option("--engine", help=f"Only this engine: its name, or {REFERENCES}.")]
+VariantName = Annotated[str | None, typer.Option("--variant", help="Only this variant.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Another value for a number of the scene (repeatable)."),
+]
+
+
+def with_folder(command: str, results: Path) -> str:
+    """A command as it is to be typed for this folder of results."""
+    return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"

@@ -1,0 +1,88 @@
+"""`crosscheck run`: the cells that are not stored yet, with a bar of progress, or a line now and then into a file."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from reports.cli.interruption import kept
+from reports.cli.options import FOLDER, STORE, EngineName, Folder, Scenes, Settings, VariantName, with_folder
+from reports.cli.terminal import Terminal, print_table, progress
+from reports.grid.cells import Cell
+from reports.grid.ending import BadInput
+from reports.grid.measure import Measurement
+from reports.grid.store import Store
+from reports.grid.tasks import Task
+
+
+def run(
+    scene: Scenes = None,
+    engine: EngineName = None,
+    variant: VariantName = None,
+    settings: Settings = None,
+    full: Annotated[bool, typer.Option("--full/--quick", help="Fine steps and stability maps too.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
+    every: Annotated[list[int] | None, typer.Option(help="Only this many steps between samples (repeatable).")] = None,
+    step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
+    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
+    results: Folder = FOLDER,
+) -> None:
+    """Run the cells that are not stored yet; what is done survives an interruption."""
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
+
+    if not 0 < limit < float("inf"):
+        raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
+    known, names, given = with_words(registered(), scene or (), engine, settings or ())
+    scenes = choose_scenes(names, known.scenes, known.pages)
+    engines = choose_engines(None if given else engine, variant, given or known.engines)
+    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or ())
+    # Steps that are named are asked of the grid alone.
+    items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
+    console = Terminal(140)
+    with Store(results / STORE) as store:
+        if store.notice:
+            print(f"crosscheck: {store.notice}", file=sys.stderr)
+        store.remember(each.text() for each in known.given)
+        count = run_interruptible(console, store, items, fresh, limit)
+        print_summary(console, list(store.get(cells).values()))
+    following = with_folder("crosscheck report", results)
+    console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
+
+
+def run_interruptible(console: Terminal, store: Store, items: Sequence[Cell | Task], fresh: bool, limit: float) -> int:
+    """Run cells and tasks with a bar of progress; how many were run.
+
+    Raises KeyboardInterrupt, having said what is stored.
+    """
+    from reports.grid.running import missing, run_into
+
+    with kept() as check:
+        waiting = len(items) if fresh else len(missing(items, store, limit))
+        try:
+            with progress(console, waiting, check) as (done, watch):
+                count = run_into(store, items, fresh, limit, done=done, watch=watch)
+            check()
+        except KeyboardInterrupt:
+            stored = len(items) - len(missing(items, store, limit))
+            console.say(f"Stopped: {stored} of {len(items)} cells are stored; the next run goes on from there.")
+            raise
+    return count
+
+
+def print_summary(console: Terminal, rows: list[Measurement]) -> None:
+    """A table a scene, a line a method; then what became of the experiments outside the sweeps."""
+    from reports.grid.convergence import judged
+    from reports.text.tables import SUMMARY_HEADER, summary_rows
+
+    told = judged(rows)
+    for scene in dict.fromkeys(row.scene for row in told if row.purpose == "sweep"):
+        print_table(console, scene, SUMMARY_HEADER, summary_rows([row for row in told if row.scene == scene]), 1)
+        console.print()
+    extra = Counter(str(row.outcome) for row in rows if row.purpose != "sweep")
+    if extra:
+        console.print("Failure experiments and maps: " + ", ".join(f"{n} {o}" for o, n in sorted(extra.items())))

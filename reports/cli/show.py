@@ -1,0 +1,67 @@
+"""`crosscheck show`: a scene's stored numbers on the terminal."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Annotated
+
+import typer
+
+from reports.cli.options import (
+    FOLDER,
+    REFERENCES,
+    STORE,
+    EngineName,
+    Folder,
+    Settings,
+    VariantName,
+    with_folder,
+)
+from reports.cli.terminal import Terminal, print_table
+from reports.grid.ending import BadInput
+from reports.grid.store import Store
+
+
+def show(
+    scene: Annotated[str, typer.Argument(help=f"A scene or a page by name, or {REFERENCES}.")],
+    engine: EngineName = None,
+    variant: VariantName = None,
+    settings: Settings = None,
+    results: Folder = FOLDER,
+) -> None:
+    """Print a scene's stored numbers."""
+    from reports.cli.known import registered, with_remembered, with_words
+    from reports.cli.selection import choose_engines, choose_scenes, grid_engines
+    from reports.grid.cells import FULL, sweep_cells
+    from reports.grid.convergence import judged, sweeps
+    from reports.grid.quantities import QUANTITIES
+    from reports.text.tables import ERROR_HEADER, error_rows, order_rows
+
+    known = registered()
+    remembered: tuple[str, ...] = ()
+    there = (results / STORE).exists()
+    if there:
+        with Store.read(results / STORE) as store:
+            remembered = store.remembered()
+    known, names, given = with_words(with_remembered(known, remembered), [scene], engine, settings or ())
+    chosen = choose_scenes(names, known.scenes, known.pages)
+    words = shlex.join([scene, *(f"--set={each}" for each in settings or ())])
+    command = with_folder(f"crosscheck run {words}", results)
+    nothing = BadInput(f"{results} holds nothing for {scene!r} and the present sources: {command}")
+    if not there:
+        raise nothing
+    engines = choose_engines(None if given else engine, variant, given or known.engines)
+    cells = [c for one in chosen for c in sweep_cells((one,), grid_engines(one, engines, known.pages), FULL)]
+    with Store.read(results / STORE) as store:
+        rows = judged(store.get(cells).values())
+    if not rows:
+        raise nothing
+    console = Terminal(140)
+    for one in chosen:
+        own = [row for row in rows if row.scene == one.name]
+        print_table(console, f"{one.name}, {one.source}", ERROR_HEADER, error_rows(own), 2)
+        console.print()
+        names = [q.name for q in QUANTITIES]
+        orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
+        header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
+        print_table(console, f"{one.name}: order and plateau", header, orders, 9)

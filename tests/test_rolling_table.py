@@ -1,0 +1,167 @@
+"""The fast contact that all adapters share: the reference's own, to rounding, for every pair that rolls."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from reference.rolling.limits import DiscInHole
+
+from engines import rolling_table
+from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
+from reference.curves.circles_lines import Circle, Line, Ring, Side
+from reference.curves.curve import Placed
+from reference.curves.ellipse import Ellipse
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.rolling.scenes import (
+    RollingCam,
+    RollingDisc,
+    RollingDownhill,
+    RollingEllipse,
+    RollingInRing,
+    RollingOnCircle,
+)
+from reference.scene import Scene
+
+
+def rolling_of(scene: Scene) -> Rolling:
+    return next(joint.rolling for joint in scene.mechanism().joints if isinstance(joint, Roll))
+
+
+# A disc, with its middle off its origin, and with the ground somewhere: nothing in the closed forms may rest on zeros.
+DISC = Placed(Circle(0.25, (0.05, -0.02)), turn=0.7, shift=(0.03, 0.04))
+HILL = Placed(Circle(0.9, (0.2, 0.1)), turn=-0.4, shift=(0.5, 1.0))
+PAIRS = {
+    **{
+        scene.name: rolling_of(scene)
+        for scene in (
+            *(RollingEllipse(), RollingDisc(), RollingCam(), RollingDownhill(), RollingInRing(), RollingOnCircle()),
+            *(EllipticGears(), DiscInHole(clearance=0.2)),
+        )
+    },
+    "placed disc on a slope": Rolling.at_angle(DISC, Placed(Line(math.pi + 0.2, (1.0, 2.0)), turn=0.1), 0.3, -0.6),
+    "placed disc on a placed hill": Rolling.at_angle(DISC, HILL, 1.1, 0.4),
+    "placed disc in a hole": Rolling.at_angle(DISC, Ring(0.8, (0.1, 0.2)), -0.5, 0.7),
+    "ring round a disc": Rolling.at_angle(Ring(0.8, (0.1, 0.2)), Circle(0.3), 0.2, 0.1),
+    "ellipse on a disc": Rolling.at_angle(Ellipse(0.5, 0.45), Circle(1.0), 0.0, 0.2),
+    "disc on an ellipse": Rolling.at_angle(Circle(0.1), Ellipse(0.5, 0.3), 0.0, 0.2),
+}
+every_pair = pytest.mark.parametrize("rolling", PAIRS.values(), ids=PAIRS.keys())
+
+
+def as_complex(vectors: np.ndarray) -> np.ndarray:
+    return vectors[..., 0] + 1j * vectors[..., 1]
+
+
+def far_and_back(rolling: Rolling) -> np.ndarray:
+    """Rotations [rad] in both directions, far beyond what a table lays at first, and in leaps."""
+    theta = rolling.theta + np.concatenate([np.linspace(-9.0, 9.0, 203), [7.3, -2.0, 4.0]])
+    low, high = rolling.limits
+    return theta[(low < theta) & (theta < high)]
+
+
+@every_pair
+def test_places_are_the_references_to_rounding(rolling: Rolling) -> None:
+    theta = far_and_back(rolling)
+    place, first, second = (
+        np.array(values) for values in zip(*map(rolled(rolling).place, theta.tolist()), strict=True)
+    )
+    rate = np.ones_like(theta)
+    # Lengths of about 1 m and a few roundings each; of pairs in a hole the contact runs round four times as fast as
+    # the body turns, and the reference finds it by a search to 1e-14.
+    assert np.abs(place - as_complex(rolling.pose(theta))).max() < 2e-14
+    assert np.abs(first - as_complex(rolling.velocity(theta, rate))).max() < 1e-13
+    assert np.abs(second - as_complex(rolling.acceleration(theta, rate, 0 * rate))).max() < 5e-13
+
+
+@every_pair
+def test_contacts_and_arms_are_the_references_to_rounding(rolling: Rolling) -> None:
+    fast = rolled(rolling)
+    for theta in far_and_back(rolling).tolist():
+        exact = rolling.contact(theta)
+        ground, own = fast.contact(theta)
+        arm = complex(as_complex(exact.arm))
+        assert abs(ground - complex(as_complex(exact.point))) < 1e-13  # m: rounding of an arc of a few metres
+        assert abs(fast.arm(theta) - arm) < 1e-13
+        assert abs(own + arm * cmath.rect(1.0, -theta)) < 1e-13
+
+
+def test_round_pairs_are_in_closed_form_and_others_are_not() -> None:
+    kinds = {name: type(rolled(rolling)) for name, rolling in PAIRS.items()}
+    assert {name for name, kind in kinds.items() if kind is RoundOnLine} == {"rolling_disc", "placed disc on a slope"}
+    assert {name for name, kind in kinds.items() if kind is RoundOnRound} == {
+        *("rolling_on_circle", "disc_in_hole", "placed disc on a placed hill", "placed disc in a hole"),
+        "ring round a disc",
+    }
+    assert kinds["rolling_ellipse"] is kinds["ellipse on a disc"] is kinds["disc on an ellipse"] is Table
+
+
+def test_an_ellipse_has_the_height_of_its_support_function() -> None:
+    scene = RollingEllipse()
+    fast = rolled(rolling_of(scene))
+    for theta in np.linspace(-4.0, 4.0, 57).tolist():
+        height = math.hypot(scene.along_x * math.sin(theta), scene.along_y * math.cos(theta))
+        assert abs(fast.place(theta)[0].imag - height) < 1e-15
+
+
+def test_a_disc_that_nearly_fits_its_hole_is_where_forty_digits_put_it() -> None:
+    """Its contact runs round 1e5 times as fast as it turns, and leaves the reference's search seven digits only."""
+    clearance, theta = 1e-5, 5.0
+    rolling = rolling_of(DiscInHole(clearance=clearance))
+    with mp.workdps(40):
+        hole, radius = mp.mpf(1.0), mp.mpf(DiscInHole(clearance=clearance).radius)
+        start = mp.mpf(float(rolling.contact(rolling.theta).tangent_angle))
+        angle = start + radius / (radius - hole) * (mp.mpf(theta) - mp.mpf(rolling.theta))
+        arm = complex(-1j * radius * mp.expj(angle))
+    # An angle of 5e5 rad as a double is rounded by 6e-11 rad.
+    assert abs(rolled(rolling).arm(theta) - arm) < 1e-10
+    assert abs(complex(as_complex(rolling.contact(theta).arm)) - arm) < 1e-6
+
+
+def test_a_pair_that_fits_too_closely_for_a_table_asks_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    rolling = PAIRS["disc on an ellipse"]
+    tabled = Table(rolling)
+    monkeypatch.setattr(rolling_table, "POOR", 0.0)
+    asking = Table(rolling)
+    assert not asking._cells
+    for theta in (0.0, 1.0, 4.0):
+        assert np.allclose(asking.place(theta), tabled.place(theta), rtol=0, atol=1e-12)
+        assert np.allclose(asking.contact(theta), tabled.contact(theta), rtol=0, atol=1e-13)
+        assert abs(asking.arm(theta) - tabled.arm(theta)) < 1e-13
+
+
+def test_where_the_curves_end_there_is_no_place_and_no_contact() -> None:
+    rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.4), turn=math.pi))
+    low, high = rolling.limits
+    fast = rolled(rolling)
+    assert abs(high - 2.0) < 1e-12  # 0.2 m of a circle of 0.1 m
+    assert abs(fast.place(high - 1e-9)[0] - complex(*rolling.pose(high - 1e-9)[:2])) < 1e-15
+    for beyond in (low - 1e-3, high + 1e-3, math.inf, math.nan):
+        assert math.isnan(fast.place(beyond)[0].real)
+        with pytest.raises(ValueError, match=r"rolling|theta"):
+            fast.arm(beyond)
+        with pytest.raises(ValueError, match=r"rolling|theta"):
+            fast.contact(beyond)
+
+
+@pytest.mark.parametrize("name", ["rolling_disc", "rolling_on_circle", "rolling_ellipse"])
+def test_an_infinite_rotation_has_no_place_and_no_contact(name: str) -> None:
+    fast = rolled(PAIRS[name])
+    assert math.isnan(fast.place(math.inf)[0].real)
+    for asked in (fast.arm, fast.contact):
+        with pytest.raises(ValueError):  # noqa: PT011 - of the mathematics library, or of the reference
+            asked(math.inf)
+
+
+def test_models_of_one_mechanism_share_a_table_and_the_oldest_tables_are_forgotten() -> None:
+    first = rolling_of(RollingCam())
+    fast = rolled(first)
+    assert rolled(first) is fast
+    for number in range(20):
+        rolled(Rolling.at_angle(Circle(0.1 + number / 100), Line()))
+    assert rolled(first) is not fast

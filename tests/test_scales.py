@@ -1,0 +1,75 @@
+"""A mechanism's length against all pairs of its joint points, and for more of them than pairs could be counted."""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+
+from reference.joints import Pin
+from reference.mechanism import Body, Mechanism
+from reference.scales import convex_hull, diameter
+
+RNG = np.random.default_rng(5)
+TURN = 0.3  # rad: no side of a turned figure is parallel to an axis, and parallel sides are so up to rounding only
+
+
+def ring(corners, turn=0.0):
+    angle = 2 * np.pi * np.arange(corners) / corners + turn
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def turned(points):
+    return points @ np.array([[math.cos(TURN), math.sin(TURN)], [-math.sin(TURN), math.cos(TURN)]])
+
+
+GRID = np.array(list(product(range(5), range(4))), dtype=float)
+FIGURES = {
+    "one point": np.array([[0.4, -2.0]]),
+    "two points": np.array([[0.4, -2.0], [1.0, 3.0]]),
+    "a point twice": np.array([[1.0, 2.0], [1.0, 2.0]]),
+    "points on a line": np.outer(RNG.uniform(-3, 3, 20), [0.3, 0.7]),
+    "a square": np.array(list(product((0.0, 1.0), repeat=2))),
+    "a grid": GRID,
+    "a turned grid": turned(GRID),
+    "a turned rectangle": turned(np.array(list(product((0.0, 3.0), (0.0, 1.0))))),
+    # Far away its sides are parallel up to the rounding of the places, which decides what is opposite.
+    "a thin parallelogram far away": np.array(
+        [
+            [1537.764128567019, 1459.6705384725906],
+            [1538.4570513442366, 1458.427049168372],
+            [1537.7614366163036, 1459.6716395237834],
+            [1538.4543593935211, 1458.4281502195647],
+        ]
+    ),
+    "a parallelogram": np.array([[0.0, 0.0], [4.0, 0.0], [5.0, 1.0], [1.0, 1.0]]),
+    **{f"a ring of {n}": ring(n, 0.1 * n) for n in (3, 4, 5, 6, 7, 12, 33)},
+    **{f"a cloud {k}": RNG.normal(size=(40, 2)) * (1.0, 10.0**-k) for k in range(6)},
+}
+
+
+@pytest.mark.parametrize("points", FIGURES.values(), ids=FIGURES.keys())
+def test_the_diameter_is_the_largest_of_all_distances(points):
+    own = [(float(x), float(y)) for x, y in points]
+    largest = max(math.dist(p, q) for p in own for q in own)
+    for _ in range(5):
+        RNG.shuffle(own)
+        assert diameter(own) == pytest.approx(largest, rel=1e-15)
+
+
+def test_the_hull_goes_round_every_point_and_has_no_corner_too_many():
+    points = [tuple(point) for point in RNG.normal(size=(200, 2)).tolist()]
+    hull = np.array(convex_hull(points))
+    side, towards = np.roll(hull, -1, axis=0) - hull, np.array(points)[:, None] - hull
+    assert np.min(side[:, 0] * towards[..., 1] - side[:, 1] * towards[..., 0]) > -1e-14
+    before = np.roll(side, 1, axis=0)
+    assert np.all(before[:, 0] * side[:, 1] - before[:, 1] * side[:, 0] > 0)
+    assert sorted(convex_hull([(0.0, 0.0), (2.0, 0.0), (1.0, 0.0), (1.0, 1.0)])) == [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]
+
+
+def test_a_body_with_many_joints_has_its_length_without_a_look_at_every_pair():
+    # Twenty thousand joints: all pairs would be 4e8 distances, minutes of them.
+    rim = ring(20_000).tolist()
+    wheel = Body("wheel", 1.0, 1.0, (0.0, 0.0, 0.0))
+    pins = tuple(Pin(f"pin {i}", None, "wheel", (x, y), (x, y)) for i, (x, y) in enumerate(rim))
+    assert Mechanism((wheel,), pins).length_scale == pytest.approx(2.0, rel=1e-15)
