@@ -181,7 +181,7 @@ def test_a_page_can_be_written_from_nothing_and_from_a_few_rows(page):
     text = files[f"{page.name}.md"]
     assert page.title in text
     assert "stroboscope" in text
-    assert re.search(r"^\| mujoco \| [^|]* \| \*\*\w+\*\* \| [\d.e-]+ \|", text, re.MULTILINE)  # what to set
+    assert re.search(r"^\| mujoco \| [^|]* \| \*\*\w+\*\* \| engine \| [\d.e-]+ \|", text, re.MULTILINE)  # what to set
     shown = set(re.findall(r"\]\((\w+\.svg)\)", text))
     assert shown == {name for name in files if name.endswith(".svg")}
     assert " - rad" not in text.split("## Errors and costs")[0]  # a dash is what an unknown number is printed as

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from reports.pages.page import Page
+from reports.text.links import anchor, headings
 from reports.text.programs import PAGES as FOLDER
 from reports.text.programs import program
-from reports.text.templates import anchor
 from tests import test_any_rows as rendering
 from tests.test_any_rows import FROM_ROWS, cheap, whole, written
 
@@ -45,15 +45,12 @@ def test_a_page_is_read_in_five_minutes(page, undrawn):
 def test_a_page_and_its_data_page_link_to_each_other_and_every_link_has_its_heading(page, undrawn):
     found = texts(page)
     assert set(found) == {f"{page.name}.md", page.data_page}
-    headings = {
-        name: {anchor(title) for title in re.findall(r"^#+ (.*)$", rendering.prose(text), re.MULTILINE)}
-        for name, text in found.items()
-    }
+    places = {name: {anchor(title) for title in headings(text)} for name, text in found.items()}
     for name, text in found.items():
         (other,) = set(found) - {name}
         assert f"]({other})" in text
         for target, heading in re.findall(r"\]\((\w+\.md)?#([^)]*)\)", text):
-            assert heading in headings[target or name], (name, target, heading)
+            assert heading in places[target or name], (name, target, heading)
 
 
 @named

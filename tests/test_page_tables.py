@@ -17,10 +17,10 @@ from reports.grid.tasks import Answer, answered
 from reports.pages.page import Failure, Material, Observation
 from reports.text.experiments import compared_only, happened, told_experiment
 from reports.text.holders import holders
+from reports.text.links import anchor
 from reports.text.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
 from reports.text.programs import advised_settings, compact
 from reports.text.tables import markdown, outcome_grid
-from reports.text.templates import anchor
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 

@@ -126,16 +126,6 @@ class Store:
         with _sentences(self.path):
             return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
 
-    def remember(self, words: Iterable[str]) -> None:
-        """Keep words that find a scene or an engine again which is not registered, so that a report shows it too."""
-        with _sentences(self.path), self._connection:
-            self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
-
-    def remembered(self) -> tuple[str, ...]:
-        """What `remember` was given, in that order."""
-        with _sentences(self.path):
-            return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
-
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
         """The stored rows of these cells.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
 
 from reports.pages.page import Page
 from reports.text import unmeasured
+from reports.text.links import anchor
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
@@ -37,8 +37,3 @@ def template_of(page: Page, file: str, generic: str) -> Template:
         own = page.template if file == "page.md" else page.template.with_name(file)
         return environment(own.parent).select_template([f"own/{own.name}", generic])
     return environment().select_template([f"{page.name}/{file}", generic])
-
-
-def anchor(heading: str) -> str:
-    """What a link to a heading of Markdown ends with, as GitHub makes it: lower case, no punctuation, hyphens."""
-    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from typing import Any
 
@@ -39,6 +40,8 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
     engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
+        if method not in engines:
+            return math.nan
         return declared_error(material.answers, scene, engines[method], page.quantity, step)
 
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
