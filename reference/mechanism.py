@@ -217,8 +217,8 @@ class Mechanism(Valid):
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         size = np.where(self.turning, self.length_scale, 1.0)
-        excess = np.asarray(excess)
-        return reactions(self.rows(pose), inertias.reshape(-1), excess.reshape((*excess.shape[:-2], -1)), size)
+        stacked = excess.reshape((*excess.shape[:-2], 3 * len(self.bodies)))
+        return reactions(self.rows(pose), inertias.reshape(-1), stacked, size)
 
     @validated
     def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:

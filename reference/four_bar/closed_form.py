@@ -1,24 +1,27 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations, block by block in the cache.
 
-In the frame whose x axis points from A to D, with d = |AD|, theta' = theta - arg(D), and the mirror image taken for the
-other branch, the triangle B C D has the side s = |DB| and, as exact differences that keep their relative accuracy,
+The diagonal B D, of length s, cuts the loop into the triangles A B D and B C D. In the frame whose x axis points from A
+to D, with d = |AD| and theta' = theta - arg(D), and as exact differences that keep their relative accuracy,
 
     s^2               = (l1 - d)^2              + 4 l1 d sin^2(theta'/2)
     U = (l2+l3)^2-s^2 = (l2+l3)^2 - (l1+d)^2    + 4 l1 d cos^2(theta'/2)
                       = (l2+l3)^2 - (l1-d)^2    - 4 l1 d sin^2(theta'/2)
     W = s^2-(l2-l3)^2 = (l1-d)^2 - (l2-l3)^2    + 4 l1 d sin^2(theta'/2)
                       = (l1+d)^2 - (l2-l3)^2    - 4 l1 d cos^2(theta'/2)
-    q = 4 area(BCD) = sqrt(U W)                       (Heron)
-    p = s^2 + l3^2 - l2^2,  r = s^2 - l3^2 + l2^2     (2 s l3 cos, 2 s l2 cos of the triangle's angles at D and B)
 
-so that C - D is B - D turned by -arg(p + i q) and scaled, and C - B is D - B turned by arg(r + i q). With
-g = gx + i gy = (B - D) e^{-i theta} and y = gy / q, the chapter's (18.71), (18.70) and derivatives become rational:
+    A B D:  m = s^2 + l1^2 - d^2     n = s^2 + d^2 - l1^2     h = 2 l1 d sin(theta')     (4 areas, and the rate of s^2)
+    B C D:  p = s^2 + l3^2 - l2^2    r = s^2 + l2^2 - l3^2    q = sqrt(U W)              (4 areas, by Heron)
 
-    beta'  = (gx - y p) l1 / s^2,                          phi'  = beta'  + 2 l1 y
-    beta'' = (gy (1 - beta' - phi') - y' p) l1 / s^2,      phi'' = beta'' + 2 l1 y'
-    y'     = (l1 - gx - 2 l1 y^2 (l2^2 + l3^2 - s^2)) / q
+q has the sign of the branch: + for C left of B -> D. Each pair is an angle: arg(m + i h) at B and arg(n + i h)
+at D in A B D, arg(r + i q) at B and arg(p + i q) at D in B C D; sums of these are beta and phi. With y = h / q, the
+chapter's (18.71), (18.70) and their derivatives are rational:
 
-One tangent of the half crank angle and two arctangents are all the transcendental functions needed.
+    beta'  = (m - y p) / (2 s^2)                           phi'  = beta'  + y
+    beta'' = (h (1 - beta' - phi') - y' p) / (2 s^2)       phi'' = beta'' + y'
+    y'     = (h' - y^2 (l2^2 + l3^2 - s^2)) / q            h'    = 2 l1^2 - m
+
+A prime of beta, phi, y, h is a derivative by theta. One tangent of half the crank angle and two arctangents are all the
+transcendental functions needed.
 """
 
 from __future__ import annotations
@@ -32,7 +35,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# All buffers of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
+# All arrays of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
 BLOCK = 8192
 # A crank angle is a rounded number: one that misses the reachable range by this many roundings is taken as its end.
 ROUNDINGS = 16
@@ -94,7 +97,19 @@ class Constants:
         )
 
 
-def sweep(
+class Triangles(NamedTuple):
+    """A B D and B C D at crank angles (n,), in the letters of the formulas above [m^2]."""
+
+    square: Array  # s^2
+    m: Array
+    n: Array
+    h: Array
+    p: Array
+    r: Array
+    area: Array  # |q|
+
+
+def closed_form(
     constants: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array, order: int
 ) -> tuple[Array, ...]:
     """The first 2 (order + 1) fields of Kinematics, flat, for flat theta (n,) and others of n or 1 elements.
@@ -102,110 +117,95 @@ def sweep(
     Raises OutOfReach. At the ends of the reachable range rates and accelerations are not finite.
     """
     out = tuple(np.empty(theta.size) for _ in range(2 * (order + 1)))
-    work = np.empty((14, min(BLOCK, theta.size)))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for start in range(0, theta.size, BLOCK):
             piece = slice(start, min(start + BLOCK, theta.size))
-            rate, bend, sign = (value if value.size == 1 else value[piece] for value in (theta_dot, theta_ddot, branch))
-            results = [column[piece] for column in out]
+            others = (value if value.size == 1 else value[piece] for value in (theta_dot, theta_ddot, branch))
             try:
-                _block(constants, theta[piece], rate, bend, sign, results, work[:, : piece.stop - start], order)
+                _fill([column[piece] for column in out], constants, theta[piece], *others)
             except OutOfReach as refusal:
                 raise OutOfReach(start + refusal.index, refusal.undetermined) from None
     return out
 
 
-def _block(
-    c: Constants,
-    theta: Array,
-    theta_dot: Array,
-    theta_ddot: Array,
-    branch: Array,
-    out: list[Array],
-    work: Array,
-    order: int,
-) -> None:
-    half, cosine, sine, gx, gy, s, u, w, q, p, r, vx, vy, spare = work
-    mirrored = branch.size > 1 or branch.flat[0] != 1
+def _fill(out: list[Array], c: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array) -> None:
+    """One block of `closed_form`, into as many columns as are given."""
+    triangles = _triangles(c, theta)
+    _fill_angles(out, c, triangles, theta, branch)
+    if len(out) == 2:
+        return
+    square, m, _, h, p, _, area = triangles
+    q, half = area if _all_one(branch) else branch * area, 0.5 / square
+    y = h / q
+    beta_1 = (m - y * p) * half
+    phi_1 = beta_1 + y
+    np.multiply(beta_1, theta_dot, out=out[2])
+    np.multiply(phi_1, theta_dot, out=out[3])
+    if len(out) == 4:
+        return
+    y_1 = (2 * c.l1**2 - m - y * y * (c.l2**2 + c.l3**2 - square)) / q
+    beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
+    phi_2 = beta_2 + y_1
+    np.multiply(beta_2, theta_dot**2, out=out[4])
+    np.multiply(phi_2, theta_dot**2, out=out[5])
+    if np.any(theta_ddot):
+        out[4] += beta_1 * theta_ddot
+        out[5] += phi_1 * theta_ddot
 
-    # sin^2 and cos^2 of theta'/2, and 2 d sin cos = d sin theta'.
-    np.multiply(theta, 0.5, out=half)
-    np.tan(half, out=half)
-    if c.heading == 0:
-        if mirrored:
-            half *= branch
-        np.multiply(half, half, out=sine)
-        np.add(sine, 1, out=cosine)
-        np.divide(1, cosine, out=cosine)
-        sine *= cosine
-        np.multiply(half, cosine, out=gy)
-    else:
-        turn_x, turn_y = math.cos(c.heading / 2), math.sin(c.heading / 2)
-        np.multiply(half, turn_y, out=cosine)
-        cosine += turn_x
-        half *= turn_x
-        half -= turn_y
-        if mirrored:
-            half *= branch
-        np.multiply(half, half, out=sine)
-        np.multiply(cosine, half, out=gy)
-        cosine *= cosine
-        np.add(cosine, sine, out=spare)
-        np.divide(1, spare, out=spare)
-        sine *= spare
-        cosine *= spare
-        gy *= spare
-    gy *= 2 * c.d
 
-    cosine *= 4 * c.l1 * c.d
-    np.multiply(sine, 4 * c.l1 * c.d, out=s)
+def _triangles(c: Constants, theta: Array) -> Triangles:
+    """Raises OutOfReach where B C D doesn't close."""
+    sine, cosine, product = _half_angle(theta, c.heading)
+    fourfold = 4 * c.l1 * c.d
+    along = fourfold * sine
     # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
-    if abs(c.outer_near) < abs(c.outer_far):
-        np.subtract(c.outer_near, s, out=u)
-    else:
-        np.add(cosine, c.outer_far, out=u)
-    if abs(c.inner_near) < abs(c.inner_far):
-        np.add(s, c.inner_near, out=w)
-    else:
-        np.subtract(c.inner_far, cosine, out=w)
-    s += (c.l1 - c.d) ** 2
-    _refuse_out_of_reach(c, u, w, s)
-    np.multiply(u, w, out=q)
-    np.sqrt(q, out=q)
+    near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
+    across = 0.0 if near_u and near_w else fourfold * cosine
+    u = c.outer_near - along if near_u else c.outer_far + across
+    w = c.inner_near + along if near_w else c.inner_far - across
+    square = along + (c.l1 - c.d) ** 2
+    u, w = _within_reach(c, u, w, square)
     excess = (c.l3 - c.l2) * (c.l3 + c.l2)
-    np.add(s, excess, out=p)
-    np.subtract(s, excess, out=r)
-    np.multiply(sine, 2 * c.d, out=gx)
-    gx += c.l1 - c.d
+    return Triangles(
+        square=square,
+        m=along + 2 * c.l1 * (c.l1 - c.d),
+        n=along + 2 * c.d * (c.d - c.l1),
+        h=fourfold * product,
+        p=square + excess,
+        r=square - excess,
+        area=np.sqrt(u * w),
+    )
 
-    # B - D seen from the direction that it never turns away from by a right angle: D -> A, or A -> B if that is longer.
+
+def _half_angle(theta: Array, heading: float) -> tuple[Array, Array, Array]:
+    """sin^2 and cos^2 of theta'/2, theta' = theta - heading, and their sine times their cosine; from one tangent."""
+    half = np.tan(0.5 * theta)
+    if heading == 0:
+        square = half * half
+        scale = 1 / (square + 1)
+        return square * scale, scale, half * scale
+    turn_x, turn_y = math.cos(heading / 2), math.sin(heading / 2)
+    sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
+    product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
+    scale = 1 / (cosine + sine)
+    return sine * scale, cosine * scale, product * scale
+
+
+def _fill_angles(out: list[Array], c: Constants, triangles: Triangles, theta: Array, branch: Array) -> None:
+    """beta and phi (n,) [rad], continuous in theta, into the first two columns."""
+    _, m, n, h, p, r, area = triangles
+    # v is B - D, scaled, seen from the direction that it never turns away from by a right angle: D -> A, or A -> B if
+    # that is longer.
     winding = c.l1 > c.d
-    if winding:
-        vx, vy = gx, gy
-    else:
-        np.multiply(sine, 2 * c.l1, out=vx)
-        vx += c.d - c.l1
-        np.multiply(gy, -c.l1 / c.d, out=vy)
+    vx, vy = (m, h) if winding else (n, -h)
     # That turn and the triangle's angle add up to less than a whole turn: one arctangent, a quarter turn off its cut.
-    beta, phi = out[0], out[1]
-    real, imaginary = cosine, u
-    np.multiply(vx, q, out=w)
-    np.multiply(vy, q, out=spare)
-    np.multiply(vy, r, out=real)
-    real += w
-    np.multiply(vx, r, out=imaginary)
-    np.subtract(spare, imaginary, out=imaginary)
-    np.arctan2(imaginary, real, out=beta)
-    np.multiply(vy, p, out=real)
-    np.subtract(w, real, out=real)
-    np.multiply(vx, p, out=imaginary)
-    imaginary += spare
-    np.arctan2(imaginary, real, out=phi)
-    beta += math.pi / 2
-    phi -= math.pi / 2
-    if mirrored:
-        beta *= branch
-        phi *= branch
+    if not _all_one(branch):
+        p, r = branch * p, branch * r
+    wide_x, wide_y = vx * area, vy * area
+    beta = np.arctan2(wide_y - vx * r, vy * r + wide_x, out=out[0])
+    phi = np.arctan2(vx * p + wide_y, wide_x - vy * p, out=out[1])
+    beta += branch * (math.pi / 2)
+    phi -= branch * (math.pi / 2)
     if winding:
         beta += theta
         beta -= math.pi
@@ -213,58 +213,20 @@ def _block(
     else:
         beta += c.heading
         phi += c.heading + math.pi
-    if order == 0:
-        return
-
-    # half, cosine, sine, u, w, spare and (unless winding) vx, vy are free from here on.
-    ratio, y, beta_slope, phi_slope = half, w, u, cosine
-    np.divide(c.l1, s, out=ratio)
-    np.divide(gy, q, out=y)
-    np.multiply(y, p, out=beta_slope)
-    np.subtract(gx, beta_slope, out=beta_slope)
-    beta_slope *= ratio
-    np.multiply(y, 2 * c.l1, out=phi_slope)
-    phi_slope += beta_slope
-    np.multiply(beta_slope, theta_dot, out=out[2])
-    np.multiply(phi_slope, theta_dot, out=out[3])
-    if order == 1:
-        return
-
-    y_slope, bend = y, sine
-    y_slope *= y
-    np.subtract(c.l2**2 + c.l3**2, s, out=bend)
-    y_slope *= bend
-    y_slope *= -2 * c.l1
-    y_slope -= gx
-    y_slope += c.l1
-    y_slope /= q
-    np.add(beta_slope, phi_slope, out=bend)
-    np.subtract(1, bend, out=bend)
-    bend *= gy
-    np.multiply(y_slope, p, out=spare)
-    bend -= spare
-    bend *= ratio  # beta''
-    y_slope *= 2 * c.l1
-    y_slope += bend  # phi''
-    square = branch * theta_dot**2
-    np.multiply(bend, square, out=out[4])
-    np.multiply(y_slope, square, out=out[5])
-    if theta_ddot.size > 1 or theta_ddot.flat[0] != 0:
-        beta_slope *= theta_ddot
-        phi_slope *= theta_ddot
-        out[4] += beta_slope
-        out[5] += phi_slope
 
 
-def _refuse_out_of_reach(c: Constants, u: Array, w: Array, s: Array) -> None:
-    """Raise OutOfReach unless every triangle closes; misses by rounding are made exact zeros."""
-    lowest = min(float(np.min(u)), float(np.min(w)))
-    if not lowest >= 0:  # a NaN fails too
+def _all_one(branch: Array) -> bool:
+    return branch.size == 1 and branch.flat[0] == 1
+
+
+def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
+    """U and W, misses by rounding made exact zeros; raises OutOfReach unless every triangle closes."""
+    if not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
         allowed = -ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)
         if np.any(bad):
             raise OutOfReach(int(np.argmax(bad)))
-        np.maximum(u, 0, out=u)
-        np.maximum(w, 0, out=w)
-    if c.l1 == c.d and float(np.min(s)) == 0:
-        raise OutOfReach(int(np.argmin(s)), undetermined=True)
+        u, w = np.maximum(u, 0), np.maximum(w, 0)
+    if c.l1 == c.d and float(np.min(square)) == 0:
+        raise OutOfReach(int(np.argmin(square)), undetermined=True)
+    return u, w

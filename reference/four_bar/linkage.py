@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, difference, sweep
+from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, closed_form, difference
 from reference.four_bar.forces import Densities, Forces, bar_forces
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
 from reference.plane import from_complex
@@ -92,12 +92,12 @@ class FourBar(Valid):
     @validated
     def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
         """beta and phi [rad] in closed form; the chapter calls that impossible, and integrates rates instead."""
-        return self._sweep(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
+        return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
     @validated
     def rates(self, theta: ArrayLike, theta_dot: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
         """beta_dot (18.71) and phi_dot (18.70) [rad/s]."""
-        return self._sweep(theta, theta_dot, 0.0, branch, order=1)[2:]  # type: ignore[return-value]
+        return self._evaluated(theta, theta_dot, 0.0, branch, order=1)[2:]  # type: ignore[return-value]
 
     @validated
     def accelerations(
@@ -111,9 +111,9 @@ class FourBar(Valid):
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> Kinematics:
         """All six at once: the fast way for many crank angles."""
-        return Kinematics(*self._sweep(theta, theta_dot, theta_ddot, branch, order=2))
+        return Kinematics(*self._evaluated(theta, theta_dot, theta_ddot, branch, order=2))
 
-    def _sweep(
+    def _evaluated(
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike, branch: ArrayLike, order: int
     ) -> tuple[Any, ...]:
         arguments = [np.asarray(value, dtype=float) for value in (theta, theta_dot, theta_ddot, branch)]
@@ -128,7 +128,7 @@ class FourBar(Valid):
             value.ravel() if value.size == 1 else np.broadcast_to(value, shape).ravel() for value in arguments[1:]
         ]
         try:
-            columns = sweep(self._constants, angle, *others, order=order)
+            columns = closed_form(self._constants, angle, *others, order=order)
         except OutOfReach as refusal:
             raise self._refusal(float(angle[refusal.index]), refusal.undetermined) from None
         return tuple(column.reshape(shape)[()] for column in columns)
