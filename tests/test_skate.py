@@ -294,7 +294,7 @@ def test_a_long_run_keeps_its_digits():
 
 
 def test_a_stiff_sleigh_settles_and_is_then_followed_for_ever():
-    for sleigh in (ChaplyginSleigh(speed=1e5), ChaplyginSleigh(offset=-1e-3, inertia=1e-9)):
+    for sleigh in (ChaplyginSleigh(speed=1e5, duration=1e3), ChaplyginSleigh(offset=-1e-3, inertia=1e-9, duration=1e3)):
         long, settled = sleigh.skate_pose([1e-2 + sleigh._settled, 1000.0]), sleigh.total_heading_change()
         gone = long[1] - long[0]
         top = math.copysign(sleigh._top_speed * (1000 - 1e-2 - sleigh._settled), sleigh.offset)

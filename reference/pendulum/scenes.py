@@ -56,7 +56,9 @@ class LinkPendulum(Scene):
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """Angles and rates (times, links) at times t >= 0 [s]."""
-        times = self.times(t)
+        return self._states(self.times(t))
+
+    def _states(self, times: Array) -> tuple[Array, Array]:
         require_room(f"scene {self.name!r}: a trajectory", (len(times), self.links, 3))
         until = max(self.duration, float(times.max(initial=0.0)))
         state = _integrated(self.chain, self.angle, self.rate, until)(times)
@@ -87,7 +89,7 @@ class LinkPendulum(Scene):
         return Mechanism(bodies, joints, (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
-        angle, rate = self.states(times)
+        angle, rate = self._states(times)
         pose, twist, _ = self.chain.placement(angle, rate, np.zeros_like(angle))
         return Trajectory(times, pose, twist, self.chain.forces(angle, rate).reshape(len(times), -1))
 

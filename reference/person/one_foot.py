@@ -145,7 +145,9 @@ class OneFoot(Scene):
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """u and u' (times, freedoms) at times t >= 0 [s]."""
-        times = self.times(t)
+        return self._states(self.times(t))
+
+    def _states(self, times: Array) -> tuple[Array, Array]:
         state = _integrated(self, max(self.duration, float(times.max(initial=0.0))))(times)
         half = state.shape[-1] // 2
         return state[:, :half], state[:, half:]
@@ -173,16 +175,19 @@ class OneFoot(Scene):
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self.placement(times)
+        pose, twist, acceleration = self._placement(times)
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     @cached_property
     def _mechanism(self) -> Mechanism:
         return self.mechanism()
 
-    def placement(self, t: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 5, 3)."""
-        coordinates, rates = self.states(t)
+    def placement(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 5, 3) at times t >= 0 [s]."""
+        return self._placement(self.times(t))
+
+    def _placement(self, times: Array) -> tuple[Array, Array, Array]:
+        coordinates, rates = self._states(times)
         step = 1e-100
         pose, tangent = self.tangent(coordinates)
         _, moved = self.tangent(coordinates + 1j * step * rates)

@@ -21,7 +21,7 @@ from reference.mechanism import Body, Mechanism
 from reference.numerics.antiderivative import Antiderivative
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism, NonNegative, Positive, sample_times, validated
+from reference.validation import InvalidMechanism, NonNegative, Positive, validated
 
 Array = NDArray[np.float64]
 
@@ -137,7 +137,9 @@ class ChaplyginSleigh(Scene):
 
     def skate_pose(self, t: ArrayLike) -> Array:
         """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding of the distance."""
-        t = sample_times(self._owner(), t)
+        return self._skate_pose(self.times(t))
+
+    def _skate_pose(self, t: Array) -> Array:
         heading, (x, y, angle) = self.heading(t), self.start
         if self.turning_rate == 0 or self.offset == 0:
             half = 0.5 * self.turning_rate * t
@@ -150,8 +152,10 @@ class ChaplyginSleigh(Scene):
 
     def lateral_force(self, t: ArrayLike) -> Array:
         """The skate's force on the body, to the left of its heading [N]: I u w / k^2."""
-        speed, turning = self.rates(sample_times(self._owner(), t))
-        return self.inertia * speed * turning / self._arm**2
+        return self._lateral_force(*self.rates(self.times(t)))
+
+    def _lateral_force(self, speed: Array, turning_rate: Array) -> Array:
+        return self.inertia * speed * turning_rate / self._arm**2
 
     def mechanism(self) -> Mechanism:
         motion = self.motion(0.0)
@@ -161,13 +165,13 @@ class ChaplyginSleigh(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         t = times
-        pose = self.skate_pose(t)
+        pose = self._skate_pose(t)
         speed, turning = self.rates(t)
         cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         across = self.offset * turning
         centre = pose + np.stack([self.offset * cosine, self.offset * sine, np.zeros_like(t)], axis=-1)
         twist = np.stack([speed * cosine - across * sine, speed * sine + across * cosine, turning], axis=-1)
-        return Trajectory(t, centre[:, None, :], twist[:, None, :], self.lateral_force(t)[:, None])
+        return Trajectory(t, centre[:, None, :], twist[:, None, :], self._lateral_force(speed, turning)[:, None])
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,11 @@ class CarAndTrailer(Scene):
 
     def way(self, t: ArrayLike) -> Array:
         """The rear axle's way s (times,) [m], backwards negative."""
-        goal = abs(self.speed) * self.times(t)
+        return self._way(self.times(t))
+
+    def _way(self, times: Array) -> Array:
+        """Newton's method, held between two places by halving."""
+        goal = abs(self.speed) * times
         first = float(self.apparent_mass(0.0))
         low, high = np.zeros_like(goal), goal.copy()
         while np.any(short := self._stretch(high) < goal):
@@ -182,7 +186,7 @@ class CarAndTrailer(Scene):
         return pose, per_way * speeds, acceleration
 
     def _motion(self, times: Array) -> Trajectory:
-        way = self.way(times)
+        way = self._way(times)
         speed = self.speed * np.sqrt(self.apparent_mass(0.0) / self.apparent_mass(way))
         pose, twist, acceleration = self._moving(way, speed)
         return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))

@@ -77,7 +77,9 @@ class CoastingScene(Scene):
 
     def states(self, t: ArrayLike) -> Array:
         """(times, states) at times t >= 0."""
-        times = self.times(t)
+        return self._states(self.times(t))
+
+    def _states(self, times: Array) -> Array:
         last = float(times.max(initial=0.0))
         motion = self._integrated if last <= self.duration else integrate(self.rates, self.start, last)
         return motion(times)
@@ -87,7 +89,7 @@ class CoastingScene(Scene):
         return error_of(self.rates, self.start, self.times(t))
 
     def _motion(self, times: Array) -> Trajectory:
-        state = self.states(times)
+        state = self._states(times)
         c, nu = state[:, : self.coordinates], state[:, self.coordinates :]
         _, velocity, acceleration = self._accelerations(c, nu)
         pose = self.poses(c)
