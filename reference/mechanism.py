@@ -217,7 +217,6 @@ class Mechanism(Valid):
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         size = np.where(self.turning, self.length_scale, 1.0)
-        excess = np.asarray(excess)
         stacked = excess.reshape((*excess.shape[:-2], 3 * len(self.bodies)))
         return reactions(self.rows(pose), inertias.reshape(-1), stacked, size)
 

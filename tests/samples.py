@@ -20,6 +20,7 @@ from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Pa
 from reference.four_bar import OverdrivenFourBar, Parallelogram
 from reference.four_bar.free_motion import CurveMotion
 from reference.four_bar.linkage import FourBar
+from reference.four_bar.moving import MovingFourBar
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Body
 from reference.pendulum.chain import Chain
@@ -62,7 +63,15 @@ INSTANCES: tuple[Any, ...] = (
     *(Cam(1.0, (0.1, 0.05), (0.05, 0.02)), Catenary(1.0), Circle(1.0), Ellipse(2.0, 1.0), Line(), LogSpiral(1.0, 0.5)),
     *(Parabola(1.0), Placed(Circle(1.0), (0.5, 0.0), 0.5), Ring(2.0), Side(1.0)),
     *(Traced(_times, np.stack([_times, _times**2], axis=-1)), _centrodes, shapes.shapes_of(_centrodes, 5)),
-    *(_curve.four_bar, _curve, Chain((1.0, 0.5), (1.0, 2.0)), Pendulum(2.0, 0.5, 0.5), THIGH, Move(0.5, 0.5)),
+    *(
+        _curve.four_bar,
+        _curve,
+        MovingFourBar(_curve.four_bar),
+        Chain((1.0, 0.5), (1.0, 2.0)),
+        Pendulum(2.0, 0.5, 0.5),
+        THIGH,
+        Move(0.5, 0.5),
+    ),
     *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),

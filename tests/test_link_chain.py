@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import jn_zeros
 
 from reference.numerics.integration import IntegrationFailed, integrate
@@ -232,3 +234,34 @@ def test_a_pendulum_with_a_very_heavy_tip_moves_as_a_light_link_on_it_must() -> 
     almost, more = (LinkPendulum(tip=ratio, duration=0.5).motion([0.5]).pose[0, :, 2] for ratio in (1e5, 1e6))
     assert np.abs(almost - more).max() < 2e-5
     assert np.abs(almost - more).max() > 1e-7
+
+
+def test_a_chain_moves_from_unequal_angles_as_by_lagranges_equations() -> None:
+    chain, t = Chain((0.5, 1.0, 0.8), (1.0, 0.3, 2.0)), [0.0, 0.3, 0.9]
+    start = ([0.4, -1.1, 2.0], [1.0, 0.0, -3.0])
+    angles, rates, accelerations = chain.motion(*start, t)
+
+    def slope(_: float, state: Any) -> Any:  # no joint force in it
+        return np.concatenate([state[3:], chain.lagrangian_accelerations(state[:3], state[3:])])
+
+    other = solve_ivp(slope, (0, 0.9), np.concatenate(start), "DOP853", t, rtol=1e-13, atol=1e-13).y.T
+    assert np.abs(np.concatenate([angles, rates], axis=1) - other).max() < 1e-10
+    for angle, rate, acceleration in zip(angles, rates, accelerations, strict=True):
+        assert acceleration == pytest.approx(chain.lagrangian_accelerations(angle, rate), rel=1e-10)
+    energy = chain.energy(angles, rates)
+    assert np.abs(energy - energy[0]).max() < 1e-11 * np.abs(energy).max()
+    assert chain.truth_error(*start, t).max() < 1e-10
+    equal = chain.motion([0.4] * 3, [0.0] * 3, t)[0]
+    assert np.abs(equal - angles).max() > 0.1
+    with pytest.raises(InvalidMechanism, match="a number a link"):
+        chain.motion([0.4, 0.1], [0.0, 0.0], t)
+
+
+def test_a_chain_takes_lists_and_tuples_as_it_takes_arrays() -> None:
+    chain, angle, rate = Chain((1.0, 2.0), (1.0, 3.0)), [0.3, 1], (0, -2.0)
+    arrays = np.array(angle), np.array(rate)
+    for method in (chain.forces, chain.accelerations, chain.lagrangian_accelerations, chain.energy):
+        assert np.array_equal(method(angle, rate), method(*arrays))
+    for ours, theirs in zip(chain.placement(angle, rate, rate), chain.placement(*arrays, arrays[1]), strict=True):
+        assert np.array_equal(ours, theirs)
+    assert np.array_equal(chain.divergence(angle, rate, [0.1]), chain.divergence(*arrays, [0.1]))

@@ -3,6 +3,7 @@
 from reference.four_bar.closed_form import Kinematics
 from reference.four_bar.forces import Forces
 from reference.four_bar.linkage import FourBar, PointMotion, Unreachable
+from reference.four_bar.moving import MovingFourBar
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 
@@ -12,6 +13,7 @@ __all__ = [
     "FourBar",
     "FreeFourBar",
     "Kinematics",
+    "MovingFourBar",
     "OverdrivenFourBar",
     "Parallelogram",
     "PointMotion",

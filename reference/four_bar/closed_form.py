@@ -160,7 +160,7 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
     along = fourfold * sine
     # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
     near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
-    across = 0.0 if near_u and near_w else fourfold * cosine
+    across: Any = 0.0 if near_u and near_w else fourfold * cosine
     u = c.outer_near - along if near_u else c.outer_far + across
     w = c.inner_near + along if near_w else c.inner_far - across
     square = along + (c.l1 - c.d) ** 2

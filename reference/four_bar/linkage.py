@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, closed_form, difference
 from reference.four_bar.forces import Densities, Forces, bar_forces
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
+from reference.joints import Vector
 from reference.plane import from_complex
 from reference.validation import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 
@@ -157,6 +158,15 @@ class FourBar(Valid):
             return ((c.heading + inner, c.heading + 2 * math.pi - inner),)
         return ((c.heading - outer, c.heading - inner), (c.heading + inner, c.heading + outer))
 
+    def rocker_limits(self) -> tuple[Interval, ...] | None:
+        """The intervals (low, high) of phi [rad] that the rocker reaches, up to whole turns; None if it turns fully.
+
+        At their ends crank and coupler are in line. Seen from the rocker, as if it were the crank, these are the limits
+        of the crank. A crank that turns fully swings the rocker through one interval, another on each branch.
+        """
+        x, y = self.ground
+        return FourBar(self.rocker, self.coupler, self.crank, (-x, -y)).crank_limits()
+
     def grashof(self) -> str:
         """The class by name, from the shortest bar s, the longest l and the others p, q.
 
@@ -223,7 +233,7 @@ class FourBar(Valid):
         theta_ddot: ArrayLike = 0.0,
         branch: Signs = 1,
         density: Densities = 1.0,
-        gravity: tuple[float, float] = (0.0, -9.81),
+        gravity: Vector = (0.0, -9.81),
     ) -> Forces:
         """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] that this motion of uniform bars needs.
 
@@ -249,7 +259,7 @@ class FourBar(Valid):
         theta_ddot: ArrayLike = 0.0,
         branch: Signs = 1,
         density: Densities = 1.0,
-        gravity: tuple[float, float] = (0.0, -9.81),
+        gravity: Vector = (0.0, -9.81),
     ) -> tuple[Any, Any, Any, Any]:
         """The pin forces at A, B, C, D of `forces`, signs and arguments as there."""
         return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity)[:4]
@@ -262,7 +272,7 @@ class FourBar(Valid):
         theta_ddot: ArrayLike = 0.0,
         branch: Signs = 1,
         density: Densities = 1.0,
-        gravity: tuple[float, float] = (0.0, -9.81),
+        gravity: Vector = (0.0, -9.81),
     ) -> Any:
         """The torque [N m] of `forces` on the crank, counter-clockwise positive; arguments as there."""
         return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity).torque

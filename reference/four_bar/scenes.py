@@ -9,9 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.four_bar.forces import Densities, three_densities
+from reference.four_bar.forces import Densities
 from reference.four_bar.free_motion import BarAngles, CurveMotion
 from reference.four_bar.linkage import FourBar, Unreachable
+from reference.four_bar.moving import MovingFourBar
 from reference.joints import Drive, Joint, Pin, Vector
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
@@ -54,10 +55,14 @@ class FourBarScene(Scene):
         return FourBar(self.crank, self.coupler, self.rocker, self.ground)
 
     @property
+    def moving(self) -> MovingFourBar:
+        """The bars in the crank's angle: reduced inertia, potential, free acceleration."""
+        return MovingFourBar(self.four_bar, self.density, self.gravity)
+
+    @property
     def masses(self) -> tuple[float, float, float]:
         """Of crank, coupler and rocker [kg]."""
-        crank, coupler, rocker = three_densities(self.density)
-        return crank * self.crank, coupler * self.coupler, rocker * self.rocker
+        return self.moving.masses
 
     @validated
     def branch_of(self, pose: Poses) -> NDArray[np.int_]:

@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
 from reference.memory import require_room
@@ -69,9 +69,9 @@ class Chain(Valid):
         return self._mass * self._length**2 / 12
 
     @validated
-    def forces(self, angle: Array, rate: Array) -> Array:
+    def forces(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """The force of every joint on the link below it (..., links, 2) [N], for angles and rates (..., links)."""
-        self._refuse_other_shapes(angle, rate)
+        angle, rate = self._alike(angle, rate)
         return self._forces(angle, rate).astype(float)
 
     def _forces(self, angle: Array, rate: Array) -> Any:
@@ -112,13 +112,16 @@ class Chain(Valid):
             forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
         return forces
 
-    def _refuse_other_shapes(self, *states: Array) -> None:
+    def _alike(self, *given: ArrayLike) -> list[Array]:
+        """Angles, rates and accelerations as arrays; raises InvalidMechanism unless they have a number a link."""
+        states = [np.asarray(state, dtype=float) for state in given]
         shapes = [state.shape for state in states]
         if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):
             raise InvalidMechanism(
                 f"chain: angles and rates have the shapes {', '.join(map(str, shapes))}; "
                 f"all must be of one shape (..., {self.links}), a number a link"
             )
+        return states
 
     def _parting(self, angle: Array, rate: Array, forces: Any) -> Any:
         """How fast the joints would part under these forces (..., links, 2) [m/s^2], in extended precision."""
@@ -134,9 +137,9 @@ class Chain(Valid):
         return out
 
     @validated
-    def accelerations(self, angle: Array, rate: Array) -> Array:
+    def accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """angle'' (..., links) [rad/s^2] from the joint forces."""
-        self._refuse_other_shapes(angle, rate)
+        angle, rate = self._alike(angle, rate)
         return self._accelerations(angle, rate)
 
     def _accelerations(self, angle: Array, rate: Array) -> Array:
@@ -149,6 +152,17 @@ class Chain(Valid):
         """d/dt of (angles, rates) (..., 2 links): what is integrated, so nothing is checked here."""
         angle, rate = state[..., : self.links], state[..., self.links :]
         return np.concatenate([rate, self._accelerations(angle, rate)], axis=-1)
+
+    @validated
+    def motion(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> tuple[Array, Array, Array]:
+        """Angles, rates and accelerations (times, links) [rad, rad/s, rad/s^2] at times t (times,) [s].
+
+        From any start, an angle [rad] and a rate [rad/s] a link (links,); integrated, see `truth_error`.
+        """
+        times, start = sample_times("chain", t), self._start(angle, rate)
+        state = integrate(self.rates, start, max(float(times.max(initial=0.0)), math.ulp(1.0)))(times)
+        angles, rates = state[:, : self.links], state[:, self.links :]
+        return angles, rates, self._accelerations(angles, rates)
 
     @cached_property
     def inertia_matrix(self) -> Array:
@@ -171,11 +185,11 @@ class Chain(Valid):
         return self.gravity * self._length * (self._mass / 2 + below)
 
     @validated
-    def lagrangian_accelerations(self, angle: Array, rate: Array) -> Array:
+    def lagrangian_accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """angle'' (links,) [rad/s^2] by Lagrange's equations, dense: O(links^3), no joint force in it; the second
         opinion.
         """
-        self._refuse_other_shapes(angle, rate)
+        angle, rate = self._alike(angle, rate)
         difference = angle[:, None] - angle
         right = -(self.inertia_matrix * np.sin(difference)) @ rate**2 - self.stiffness * np.sin(angle)
         solution: Any = np.linalg.solve(self.inertia_matrix * np.cos(difference), right)
@@ -189,9 +203,9 @@ class Chain(Valid):
         return np.sqrt(squares), shapes
 
     @validated
-    def energy(self, angle: Array, rate: Array) -> Array:
+    def energy(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         """Kinetic and potential energy (...) [J] by Lagrange's constants; zero potential at the pin."""
-        self._refuse_other_shapes(angle, rate)
+        angle, rate = self._alike(angle, rate)
         sine, cosine = np.sin(angle) * rate, np.cos(angle) * rate
         kinetic = 0.5 * (
             np.einsum("...i,ij,...j", cosine, self.inertia_matrix, cosine)
@@ -200,9 +214,9 @@ class Chain(Valid):
         return kinetic - np.sum(self.stiffness * np.cos(angle), axis=-1)
 
     @validated
-    def placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+    def placement(self, angle: ArrayLike, rate: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations of the centres of mass (..., links, 3), the body's x axis down the link."""
-        self._refuse_other_shapes(angle, rate, acceleration)
+        angle, rate, acceleration = self._alike(angle, rate, acceleration)
         half = 0.5 * self._length[:, None] * direction_of(angle)
 
         def centres(steps: Array) -> Array:
@@ -217,7 +231,7 @@ class Chain(Valid):
         )
 
     @validated
-    def divergence(self, angle: Array, rate: Array, t: Times, starts: Count = 3) -> Array:
+    def divergence(self, angle: ArrayLike, rate: ArrayLike, t: Times, starts: Count = 3) -> Array:
         """How many times larger a small difference of starts has become at times t (times,) [s]: the worst of some.
 
         Measured, not guessed: `starts` neighbours are integrated beside the motion, their angles moved by NUDGE in
@@ -237,7 +251,7 @@ class Chain(Valid):
         return growth
 
     @validated
-    def horizon(self, angle: Array, rate: Array, until: Positive) -> tuple[float, float]:
+    def horizon(self, angle: ArrayLike, rate: ArrayLike, until: Positive) -> tuple[float, float]:
         """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth from there to
         `until`).
 
@@ -254,10 +268,9 @@ class Chain(Valid):
         return float(t[first]), float(np.polyfit(t[first:], np.log(growth[first:]), 1)[0])
 
     @validated
-    def truth_error(self, angle: Array, rate: Array, t: Times) -> Array:
+    def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
         return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
 
-    def _start(self, angle: Array, rate: Array) -> Array:
-        self._refuse_other_shapes(angle, rate)
-        return np.concatenate([angle, rate])
+    def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
+        return np.concatenate(self._alike(angle, rate))

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         RollingScene,
     )
     from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+    from reference.rolling.spinning_ring import SpinningRing
 
 __all__ = [
     "Contact",
@@ -41,10 +42,11 @@ __all__ = [
     "RollingInRing",
     "RollingOnCircle",
     "RollingScene",
+    "SpinningRing",
     "SquareOnCatenaries",
 ]
 
-LOADED_LATER = ("body", "scenes", "singular_cases", "elliptic_gears")
+LOADED_LATER = ("body", "scenes", "singular_cases", "elliptic_gears", "spinning_ring")
 
 
 def __getattr__(name: str) -> Any:

@@ -58,22 +58,84 @@ class Tow(Valid):
         """The angle at which the towed wheel settles [rad], on its own circle; None for R < L, when it never does."""
         return -math.asin(self.length * self.curvature) if self._discriminant >= 0 else None
 
+    @cached_property
+    def _start(self) -> tuple[float, float, float]:
+        """sin and cos of psi at the start, and -L psi' there."""
+        sine = 0.0 if abs(self.angle) == math.pi else math.sin(self.angle)
+        return sine, math.cos(self.angle), sine + self.length * self.curvature
+
     @validated
     def relative_angle(self, way: ArrayLike) -> Array:
         """psi [rad, not wrapped] after the hitch has gone `way` s [m] (...); negative when it is pushed back."""
         way = np.asarray(way, dtype=float)
-        sine, cosine = (0.0 if abs(self.angle) == math.pi else math.sin(self.angle)), math.cos(self.angle)
-        swing = sine + self.length * self.curvature  # -L psi' at the start
-        if self._discriminant < 0:
-            rate = math.sqrt(-self._discriminant) / (2 * self.length)
-            half_turns = np.round(rate * way / math.pi)
-            rest = rate * way - half_turns * math.pi
-            turned = np.arctan2(-np.sin(rest) * swing, np.cos(rest) * 2 * self.length * rate + np.sin(rest) * cosine)
-            return self.angle + 2 * (turned - math.copysign(math.pi, self.radius) * half_turns)
-        return self.angle + 2 * self._half_turned(way, swing, sine, cosine)
+        across, along, _ = self._moved(way)
+        # The turn of (q, p) is half that of psi, and monotonous; it is less than pi unless the wheel goes round.
+        half_turns = np.round(self._rate * way / math.pi) if self._discriminant < 0 else 0.0
+        return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
-    def _half_turned(self, way: Array, swing: float, sine: float, cosine: float) -> Array:
-        """The turn of (q, p), half that of psi and monotonous, so less than pi: no branch to choose."""
+    @validated
+    def wheel_advance(self, way: ArrayLike) -> Array:
+        """How far the wheel has rolled (...) [m] along its heading, less what it was pushed back: int cos psi ds.
+
+        From the linear system, (p^2 + q^2)' = (q^2 - p^2) / L = cos psi (p^2 + q^2) / L, so it is L ln(p^2 + q^2).
+        """
+        way = np.asarray(way, dtype=float)
+        _, cosine, swing = self._start
+        if swing == 0:
+            return cosine * way  # psi stays as it is
+        across, along, scale = self._moved(way)
+        return 2 * self.length * (np.log(np.hypot(across, along)) + scale)
+
+    @validated
+    def wheel_path_length(self, way: ArrayLike) -> Array:
+        """The length (...) [m] of the towed wheel's path after the hitch has gone `way` s [m], back or ahead.
+
+        The wheel turns back at cusps, where the drawbar is square to the hitch's travel; between them the advance is
+        monotonous.
+        """
+        way = np.asarray(way, dtype=float)
+        low, high = min(0.0, float(np.min(way, initial=0.0))), max(0.0, float(np.max(way, initial=0.0)))
+        knots = np.unique([low, 0.0, high, *self.cusps(low, high)])
+        advance = self.wheel_advance(knots)
+        gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(advance)))])
+        before = np.searchsorted(knots, way, side="right") - 1
+        length = gone[before] + np.abs(self.wheel_advance(way) - advance[before])
+        return np.abs(length - gone[np.searchsorted(knots, 0.0)])
+
+    @validated
+    def cusps(self, low: float, high: float) -> Array:
+        """The ways s [m] of the hitch in [low, high] at which the wheel stands still and turns back: cos psi = 0."""
+        _, cosine, swing = self._start
+        found: list[float] = []
+        for square in (math.pi / 2, -math.pi / 2):
+            half = (square - self.angle) / 2  # what (q, p) must turn by
+            across, along = -math.sin(half), swing * math.cos(half) + cosine * math.sin(half)
+            if self._discriminant < 0:  # tan(rate s) / (2 L rate) = across / along, again and again
+                first = math.atan2(2 * self.length * self._rate * across, along) / self._rate
+                every = math.pi / self._rate
+                found += [
+                    first + every * k for k in range(math.ceil((low - first) / every), 1 + int((high - first) // every))
+                ]
+            else:  # tanh(m s) / (2 L m) = across / along, once or never
+                root = math.sqrt(self._discriminant)
+                if abs(root * across) < abs(along):
+                    ratio = across / along
+                    found.append(2 * self.length * (math.atanh(root * ratio) / root if root else ratio))
+        return np.sort([way for way in found if low <= way <= high])
+
+    @cached_property
+    def _rate(self) -> float:
+        """Of the turn of (q, p) where the wheel goes round for ever [rad/m]."""
+        return math.sqrt(-self._discriminant) / (2 * self.length)
+
+    def _moved(self, way: Array) -> tuple[Array, Array, Array]:
+        """(q, p), that began as a unit vector, across and along its start; both times e^scale."""
+        sine, cosine, swing = self._start
+        if self._discriminant < 0:
+            rest = self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+            double = 2 * self.length * self._rate
+            across, along = -np.sin(rest) * swing, np.cos(rest) * double + np.sin(rest) * cosine
+            return across, along, np.full(way.shape, -math.log(double))
         root = math.sqrt(self._discriminant)  # 2 L m
         size = root * np.abs(way) / (2 * self.length)
         near = size < 0.5
@@ -89,7 +151,8 @@ class Tow(Valid):
         forward = np.where(way >= 0, growing + ratio * dying, ratio * growing + dying)
         across = np.where(near, -tangent * swing, np.sign(way) * swing * np.expm1(-2 * size))
         along = np.where(near, 1 + tangent * cosine, forward)
-        return np.arctan2(across, along)
+        far = np.where(near, 0.0, size) - math.log(2 * root) if root else np.zeros(way.shape)
+        return across, along, np.where(near, np.log(np.cosh(np.where(near, size, 0.0))), far)
 
     @validated
     def heading(self, way: ArrayLike) -> Array:
