@@ -11,7 +11,6 @@ from reference.scene import Scene
 from reports.gate.baseline import Old
 from reports.gate.change import moved
 from reports.gate.prediction import Prediction, kinds, prediction
-from reports.gate.promises import promised
 from reports.gate.verdicts import Case, checks
 from reports.grid.cells import FULL, Cell, estimated_cost
 from reports.grid.measure import Measurement, measure
@@ -82,7 +81,8 @@ def sightings(trial: Trial, judge: Prediction) -> Mapping[Mistake, Sighting]:
     """
     scene, engine = trial.scene, trial.engine
     page = next(page for page in PAGES if scene.name in {each.name for each in page.scenes})
-    case = Case(scene, engine, promised(page.orders, scene.name, trial.method))
+    promise = page.orders.get((scene.name, trial.method)) or engine.order(scene.mechanism())
+    case = Case(scene, engine, promise)
     found: dict[Mistake, Sighting] = {}
     waiting = {mistake: Sighting() for mistake in trial.mistakes}
     rights: list[Measurement] = []

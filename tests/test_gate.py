@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from engines import EXACT, Promise, Softness
+from engines import EXACT, Promise, Softness, Unpromised
 from engines.altered import Altered
 from reports.gate.baseline import BadBaseline, Baseline, Old, identity, read_baseline
 from reports.gate.change import change, drift
@@ -17,21 +17,29 @@ from reports.gate.checks import Check, Deviation, complaints, nearest
 from reports.gate.nudged import Nudge, nudged_cells
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction
-from reports.gate.promises import promised
 from reports.gate.table import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, theory
-from reports.gate.verdicts import Case, checks
+from reports.gate.verdicts import Case, cases, checks
 from reports.gate.walk import Verdict, walk
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank, measure
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES
+from reports.pages.page import Page
 from reports.text.tables import as_csv
 from tests.toys import Disc, Toy
 
 SCENE = Disc()
 # A judge whose errors are round numbers: second order 1e-4, fourth 1e-8 at a step of 1e-2, so a factor of 100 an order.
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
+
+
+class Slow(Disc):
+    """Another scene."""
+
+    name = "slow disc"
+
+
 JUDGE = Prediction(
     step=1e-2,
     second=dict.fromkeys(NAMES, 1e-4),
@@ -85,15 +93,25 @@ def test_softness_costs_in_proportion_to_compliance_over_stiffness():
     assert JUDGE.give("angle", None) == 0
 
 
-def test_a_promise_for_one_quantity_is_for_that_alone_and_that_of_a_scene_goes_first():
-    promise, own = Promise(4, rate=2, gap=EXACT, reaction=0), Promise(1)
+def test_a_promise_for_one_quantity_is_for_that_alone():
+    promise = Promise(4, rate=2, gap=EXACT, reaction=0)
     named = ("angle", "position", "rate", "velocity", "gap", "slip", "energy", "reaction")
     assert [promise.of(quantity) for quantity in named] == [4, 4, 2, 2, EXACT, 4, 4, 0]
-    promises = {"toy default": promise, ("disc", "toy default"): own}
-    assert promised(promises, "disc", "toy default") is own
-    assert promised(promises, "bar", "toy default") is promise
     assert of(theory(JUDGE, promise, None, row(rate=1e-6)), "rate").passed
     assert not of(theory(JUDGE, Promise(4), None, row(rate=1e-6)), "rate").passed
+
+
+def test_where_nothing_is_promised_the_outcome_alone_is_held():
+    nothing = Unpromised("nobody knows")
+    assert [check.name for check in theory(JUDGE, nothing, None, row(angle=0.1))] == ["outcome"]
+    assert not any(check.passed for check in theory(JUDGE, nothing, None, row(outcome=Outcome.TORN)))
+    assert order(nothing, falling(2)) == ()
+
+
+def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
+    own = Promise(1)
+    page = Page("discs", "Discs", "Discs turn.", (SCENE, Slow()), (Toy(),), orders={("disc", "toy default"): own})
+    assert [case.promise for case in cases([page])] == [own, Promise(2)]
 
 
 def test_no_bound_is_above_what_the_outcome_refuses():
@@ -316,7 +334,7 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
 SUITE = """
 import pytest
 from reports.gate.verdicts import Case
-from reports.gate.promises import Promise
+from engines import Promise
 from tests.toys import Disc, Toy
 
 CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]

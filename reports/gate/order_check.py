@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from engines import EXACT, Promise
+from engines import EXACT, Promise, Unpromised
 from reports.gate.checks import Check
 from reports.grid.convergence import ENOUGH, Verdict, fit
 from reports.grid.measure import Measurement
@@ -21,13 +21,13 @@ ABOVE = 0.95
 PROPORTIONAL = 0.1
 
 
-def order(promise: Promise, rows: Sequence[Measurement]) -> tuple[Check, ...]:
+def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[Check, ...]:
     """The check of one method's rows, if they can tell: three points that are above rounding and small enough.
 
     measured: how far the observed order is from the promised one, in multiples of what it may be. An error that levels
     off, grows or jumps about has the order 0.
     """
-    if promise.order == EXACT:
+    if isinstance(promise, Unpromised) or promise.order == EXACT:
         return ()
     usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]
     found = fit([row.step for row in usable], [row.angle for row in usable], quantity("angle").rounding)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from engines import EXACT, Promise, Softness
+from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.checks import Check
 from reports.gate.prediction import Prediction
 from reports.grid.measure import Measurement
@@ -55,7 +55,7 @@ def terms(
 
 def theory(
     prediction: Prediction,
-    promise: Promise,
+    promise: Promise | Unpromised,
     softness: Softness | None,
     row: Measurement,
     coarser: Sequence[Measurement] = (),
@@ -63,12 +63,13 @@ def theory(
     """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
 
     `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too.
+    Where no order is promised the outcome alone is held.
     """
     outcome = Outcome(row.outcome)
     if outcome is Outcome.UNSUPPORTED:
         return ()
     checks = [Check("outcome", "outcome", 0.0 if outcome.comparable else math.inf, 1.0, sentence=f", {row.outcome}")]
-    if not outcome.comparable:
+    if not outcome.comparable or isinstance(promise, Unpromised):
         return tuple(checks)
     usable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
     for name, quantities in HELD.items():

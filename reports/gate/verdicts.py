@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from engines import Engine, Promise
+from engines import Engine, Promise, Unpromised
 from reference.scene import Scene
 from reports.gate.checks import Check, Deviation
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction, kinds, prediction
-from reports.gate.promises import promised
 from reports.gate.theory import theory
 from reports.grid.cells import QUICK, Cell, sweep_cells
 from reports.grid.measure import Measurement
@@ -28,7 +27,7 @@ class Case:
 
     scene: Scene
     engine: Engine
-    promise: Promise
+    promise: Promise | Unpromised
     known: tuple[tuple[str, Deviation], ...] = ()
 
     @property
@@ -45,7 +44,7 @@ class Case:
 
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
-    """The grid. Raises KeyError for a method without a promise."""
+    """The grid: what an engine promises of a scene's mechanism, unless the page knows better of that motion."""
     return tuple(
         _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
     )
@@ -54,7 +53,8 @@ def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
 def _case(page: Page, scene: Scene, engine: Engine) -> Case:
     method = f"{engine.name} {engine.variant}"
     known = {check: value for (name, own, check), value in page.known.items() if (name, own) == (scene.name, method)}
-    return Case(scene, engine, promised(page.orders, scene.name, method), tuple(known.items()))
+    promise = page.orders.get((scene.name, method)) or engine.order(scene.mechanism())
+    return Case(scene, engine, promise, tuple(known.items()))
 
 
 def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:

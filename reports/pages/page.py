@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from engines import Engine
+from engines import Engine, Promise
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
 from reports.gate.declared import soft_tasks
-from reports.gate.promises import Promises
 from reports.grid.cells import Cell, Purpose
 from reports.grid.measure import Measurement
 from reports.grid.tasks import Answer, Motion, Task, trajectory_of
@@ -124,8 +123,8 @@ class Page:
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.grid.quantities`.
     advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
-    orders: what theory promises of a method ("pymunk tuned"), and of one in a scene where that differs. known: (scene,
-    method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
+    orders: (scene, method) -> what is promised where the motion, not the mechanism alone, makes it another than the
+    engine says. known: (scene, method, check) -> by how much that check (`reports.gate.checks`) is missed, and why.
     """
 
     name: str
@@ -143,7 +142,7 @@ class Page:
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
-    orders: Promises = field(default_factory=dict, compare=False)
+    orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
     tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
 

@@ -11,7 +11,6 @@ from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.grid.outcomes import Outcome
-from reports.pages.chain_orders import CLOSED, from_rest
 from reports.pages.n_four_bar.expectations import KNOWN
 from reports.pages.n_four_bar.experiments import FAILURES, MAPS, SOFT
 from reports.pages.page import Material, Page
@@ -68,6 +67,5 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders={**CLOSED, **from_rest(scene.name for scene in SCENES)},
     known=KNOWN,
 )

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from engines import Promise, mujoco
+from engines import mujoco
 from engines.registry import VARIANTS
 from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
-from reports.pages.chain_orders import OPEN, from_rest
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
 from reports.pages.pendulum.experiments import FAILURES, MAPS, SOLVED
@@ -56,11 +55,5 @@ PAGE = Page(
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
     words=words,
-    orders={
-        **OPEN,
-        "mujoco default, free coordinates": Promise(1),
-        "mujoco extended, free, sparse Newton": Promise(4),
-        **from_rest(scene.name for scene in SCENES),
-    },
     known=KNOWN,
 )

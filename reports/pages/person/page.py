@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from engines.registry import VARIANTS
 from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.charts.stroboscope import Points, Strip, stroboscope
 from reports.charts.theme import svg
-from reports.pages.chain_orders import CLOSED, EXTRAPOLATED, OPEN, from_rest
 from reports.pages.page import Material, Page
-from reports.pages.person.expectations import KNOWN
+from reports.pages.person.expectations import KNOWN, ORDERS
 from reports.pages.person.experiments import FAILURES, MAPS
 from reports.text.lookups import told
 
@@ -56,13 +54,6 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders={
-        **CLOSED,
-        # On one foot nothing is closed.
-        **{(scene, method): promise for scene in ONE_FOOT for method, promise in OPEN.items()},
-        **from_rest(scene.name for scene in SCENES),
-        # Observed on all three: an error of the fifth power is left.
-        **{(scene.name, "pymunk extended"): replace(EXTRAPOLATED, order=5) for scene in SCENES},
-    },
+    orders=ORDERS,
     known=KNOWN,
 )

@@ -1,47 +1,14 @@
-"""What theory promises for rolling in each method, and where a method is known to fall short of it."""
+"""Where a method is known to fall short of theory in rolling, and where a motion asks for another promise."""
 
 from __future__ import annotations
 
-from engines import EXACT, Promise
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import (
-    RollingCam,
-    RollingDisc,
-    RollingDownhill,
-    RollingEllipse,
-    RollingInRing,
-    RollingOnCircle,
-)
+from engines import Promise
 from reports.gate.checks import Deviation
-from reports.gate.promises import Promises
-from reports.pages.chain_orders import EXTRAPOLATED, STEPPED
 
-ELLIPSE, DISC, CAM = RollingEllipse.name, RollingDisc.name, RollingCam.name
-INCLINE, RING = RollingDownhill.name, RollingInRing.name
-HILL, GEARS = RollingOnCircle.name, EllipticGears.name
-
-# A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it. A pivot at the
-# contact that is, instead of the one that will be, keeps half of that error, but closes its gap all the same.
-EQUALITY = "mujoco joint equality, rewritten"
-ORDERS: Promises = {
-    "pymunk default": STEPPED,
-    "pymunk tuned": STEPPED,
-    "pymunk extended": EXTRAPOLATED,
-    "mujoco default": Promise(1),
-    "mujoco tuned": Promise(1),
-    "mujoco extended": Promise(4),
-    "lagrange rk4 projection": Promise(4, gap=EXACT, slip=EXACT),
-    "pymunk roll: pivot, stale contact": Promise(1, gap=2, slip=2, differences=1),
-    "pymunk roll: pivot, predicted contact": Promise(2, differences=1),
-    # What a reflection lacks changes sign with every step, and the energy is kept.
-    "pymunk roll: reflection": Promise(2, energy=EXACT, differences=1),
-    "mujoco contact, stiff Euler": Promise(1),
-    EQUALITY: Promise(1, gap=2),
-    "mujoco contact, completed": Promise(4),
-    # Where nothing but the contact turns the body, its velocities' error of first order alternates and leaves no pose.
-    **{(scene, EQUALITY): Promise(2, rate=1, slip=1, energy=1, reaction=1) for scene in (ELLIPSE, RING)},
-    # Gears turn at a prescribed rate: what a stale contact lacks is in the forces alone.
-    (GEARS, "pymunk roll: pivot, stale contact"): Promise(2, reaction=1, differences=1),
+# Where nothing but the contact turns the body, its velocities' error of first order alternates and leaves no pose.
+ORDERS = {
+    (scene, "mujoco joint equality, rewritten"): Promise(2, rate=1, slip=1, energy=1, reaction=1)
+    for scene in ("rolling_ellipse", "rolling_in_ring")
 }
 
 POLYGON = "by design: a body that is not round is a polygon here, and rolls from corner to corner in blows"

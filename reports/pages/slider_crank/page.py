@@ -10,7 +10,6 @@ from engines.registry import VARIANTS
 from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
-from reports.pages.chain_orders import CLOSED, prescribed
 from reports.pages.page import Material, Page
 from reports.pages.slider_crank.expectations import KNOWN
 from reports.pages.slider_crank.experiments import FAILURES, MAPS
@@ -52,6 +51,5 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders={**CLOSED, **prescribed(DrivenSliderCrank.name)},
     known=KNOWN,
 )

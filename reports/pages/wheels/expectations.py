@@ -1,24 +1,8 @@
-"""What theory promises for vehicles on ideal wheels in each method, and where one is known to fall short of it."""
+"""Where a method is known to fall short of theory on ideal wheels, each with its reason."""
 
 from __future__ import annotations
 
-from engines import EXACT, Promise
 from reports.gate.checks import Deviation
-from reports.gate.promises import Promises
-from reports.pages.chain_orders import CLOSING, OPEN, STEPPED
-
-# As for one skate, see `skate_known`; with pins between them pymunk's best is a groove, extrapolated from order 1.
-# The weights of an extrapolation from the first power on add up to 66 in size.
-ORDERS: Promises = {
-    "pymunk default": STEPPED,
-    "pymunk tuned": CLOSING,
-    "pymunk extended": Promise(5, slip=4, reaction=2, differences=8, amplified=66.0),
-    "mujoco default": Promise(1, gap=EXACT),
-    "mujoco tuned": Promise(1, gap=EXACT, slip=2),
-    "mujoco extended": Promise(4, gap=EXACT),
-    "lagrange euler projection": OPEN["lagrange euler projection"],
-    "lagrange rk4 projection": OPEN["lagrange rk4 projection"],
-}
 
 ANOTHER_VEHICLE = "by design: the velocity across is set without the turning that a force at the wheel brings"
 SOFT = "by design: contacts as shipped are springs of 0.02 s and give way, whatever the step"

@@ -17,7 +17,7 @@ from reports.pages.page import Material, Page
 from reports.pages.skate.methods import method
 from reports.pages.skate.page import counted
 from reports.pages.wheels import pictures as wheels_pictures
-from reports.pages.wheels.expectations import KNOWN, ORDERS
+from reports.pages.wheels.expectations import KNOWN
 from reports.pages.wheels.experiments import FAILURES
 
 NAME = "wheels"
@@ -73,7 +73,6 @@ PAGE = Page(
     quantity="position",
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
     tasks=tuple(Motion(cell) for _, _, cells in COASTING for cell in cells.values()),
 )

@@ -1,0 +1,134 @@
+"""What an engine promises follows from its settings and the mechanism: no scene and no page is asked."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import pytest
+
+from engines import EXACT, Promise, Unpromised, mujoco, pymunk
+from engines.extrapolated import Extrapolated
+from engines.lagrange import TRUTH, Lagrange
+from engines.motions import is_prescribed, starts_at_rest, turns_steadily
+from engines.mujoco.methods import DRIVES, ROLLS, SKATES
+from engines.pymunk.methods import ROLL_STALE_PIVOT, SKATE_PROJECTED, SKATE_REFLECTED
+from reference.joints import Pin
+from reference.mechanism import Body, Mechanism
+from reference.pendulum.link import BarPendulum
+from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.scenes import RollingEllipse
+from reference.skate.sleigh import ChaplyginSleigh
+from reference.wheels.car_and_trailer import CarAndTrailer
+from tests.mechanisms import four_bar
+
+FREE, MOVING, DRIVEN = four_bar(), four_bar(crank_rate=2.0), four_bar(crank_rate=2.0, drive=2.0)
+HANGING = BarPendulum().mechanism()
+SKATE, CAR = ChaplyginSleigh().mechanism(), CarAndTrailer().mechanism()
+ROLL, GEARS = RollingEllipse().mechanism(), EllipticGears().mechanism()
+SPINNING = Mechanism(
+    (Body("disc", 1.0, 0.5, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0)),), (Pin("axle", None, "disc", (0.0, 0.0), (0.0, 0.0)),)
+)
+EULER, RK4 = Lagrange("euler", "projection"), Lagrange("rk4", "projection")
+
+
+def told(engine, mechanism) -> dict[str, float]:
+    """What a promise says beyond what it says by itself."""
+    promise = engine.order(mechanism)
+    assert isinstance(promise, Promise)
+    return {f.name: value for f in fields(promise) if (value := getattr(promise, f.name)) != f.default}
+
+
+def test_a_motion_is_known_by_its_joints_loads_and_start():
+    assert [starts_at_rest(each) for each in (FREE, MOVING, DRIVEN, SPINNING)] == [True, False, False, False]
+    assert [is_prescribed(each) for each in (FREE, MOVING, DRIVEN, SKATE, GEARS)] == [False, False, True, False, True]
+    assert [turns_steadily(each) for each in (SPINNING, HANGING, MOVING, SKATE)] == [True, False, False, False]
+    assert not turns_steadily(replace(SPINNING, gravity=(0.0, -9.81)))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "expected"),
+    [
+        (FREE, {"order": 1, "rate": 2, "gap": 2, "slip": 1, "differences": 1}),
+        (MOVING, {"order": 1, "gap": 2, "differences": 1}),
+        (DRIVEN, {"order": 2, "rate": 1, "slip": 1, "energy": 1, "reaction": 1, "differences": 1}),
+        (SPINNING, {"order": 2, "rate": 1, "slip": 1, "reaction": 1, "differences": 1}),
+        (SKATE, {"order": 1, "gap": 2, "slip": EXACT, "differences": 1}),
+        (CAR, {"order": 1, "gap": 2, "differences": 1}),
+        (ROLL, {"order": 1, "differences": 1}),
+    ],
+)
+def test_pymunk_tuned_promises_by_how_a_motion_starts_and_what_drives_it(mechanism, expected):
+    assert told(pymunk.TUNED, mechanism) == expected
+    # As shipped a tenth of a gap is closed in a sixtieth of a second: of first order whatever the motion.
+    assert told(pymunk.DEFAULT, mechanism) == {"order": 1, "differences": 1}
+
+
+def test_pymunks_other_constructions_promise_their_own():
+    assert told(pymunk.LEAPFROG, MOVING) == {"order": 2, "differences": 1}
+    assert told(pymunk.LEAPFROG, SKATE)["order"] == 1
+    assert told(SKATE_PROJECTED, SKATE)["slip"] == EXACT
+    assert told(SKATE_REFLECTED, SKATE) == {"order": 2, "energy": EXACT, "differences": 1}
+    assert told(ROLL_STALE_PIVOT, ROLL) == {"order": 1, "gap": 2, "slip": 2, "differences": 1}
+    assert told(ROLL_STALE_PIVOT, GEARS) == {"order": 2, "reaction": 1, "differences": 1}
+
+
+def test_an_extrapolation_promises_the_next_power_and_more_rounding():
+    promise = pymunk.EXTENDED.order(MOVING)
+    assert isinstance(promise, Promise)
+    assert (promise.order, promise.reaction, promise.differences) == (6, 4, 8)
+    assert promise.amplified == pytest.approx(16.5, abs=0.01)
+    assert told(Extrapolated(SKATE_REFLECTED, "twice", (2, 4), (2,)), SKATE)["order"] == 3
+    assert told(pymunk.EXTENDED, CAR)["order"] == 5
+
+
+def test_an_extrapolation_of_powers_that_the_error_has_not_promises_nothing():
+    wrong = Extrapolated(pymunk.TUNED, "wrong", (1, 2, 3), (2, 3)).order(MOVING)
+    assert isinstance(wrong, Unpromised)
+    assert "order 1" in wrong.reason
+    inside = Extrapolated(replace(mujoco.TUNED, drive="servo"), "servo", (1, 2), (4,)).order(DRIVEN)
+    assert isinstance(inside, Unpromised)
+    assert "servo" in inside.reason
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "default", "tuned", "extended"),
+    [
+        (HANGING, *({"order": order, "gap": EXACT, "slip": EXACT} for order in (1, 4, 4))),
+        (SPINNING, *({"order": EXACT} for _ in range(3))),
+        (
+            MOVING,
+            {"order": 1},
+            {"order": 2, "rate": 1, "slip": 1, "energy": 1, "reaction": 1, "integrator": 4},
+            {"order": 4},
+        ),
+        (SKATE, {"order": 1, "gap": EXACT}, {"order": 1, "gap": EXACT, "slip": 2}, {"order": 4, "gap": EXACT}),
+        (CAR, {"order": 1, "gap": EXACT}, {"order": 1, "gap": EXACT, "slip": 2}, {"order": 4, "gap": EXACT}),
+        (ROLL, {"order": 1}, {"order": 1}, {"order": 4}),
+    ],
+)
+def test_mujoco_promises_its_integrators_order_unless_a_row_knows_less(mechanism, default, tuned, extended):
+    found = [told(engine, mechanism) for engine in (mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED)]
+    assert found == [default, tuned, extended]
+
+
+def test_mujocos_other_constructions_promise_their_own():
+    stiff = next(engine for engine in mujoco.METHODS if engine.variant == "stiff Euler")
+    assert told(stiff, MOVING) == {"order": 1, "gap": 2}
+    assert told(stiff, DRIVEN) == {"order": 2, "rate": 1, "slip": 1, "energy": 1, "reaction": 1}
+    free = next(engine for engine in mujoco.METHODS if engine.variant == "extended, free coordinates")
+    assert told(free, HANGING) == {"order": 4}
+    leapfrog = next(engine for engine in SKATES if engine.variant == "leapfrog")
+    assert told(leapfrog, SKATE)["order"] == 2
+    assert [told(engine, ROLL)["order"] for engine in ROLLS] == [1, 1, 4]
+    for engine in DRIVES:
+        assert isinstance(engine.order(DRIVEN), Unpromised)
+        assert isinstance(engine.order(MOVING), Promise)
+
+
+def test_exact_multipliers_promise_their_integrators_order_less_what_a_spring_costs():
+    assert told(RK4, MOVING) == {"order": 4, "gap": EXACT, "slip": EXACT}
+    assert told(EULER, DRIVEN) == told(RK4, DRIVEN) == {"order": EXACT}
+    assert told(Lagrange("rk4", "none"), DRIVEN) == {"order": 4}
+    assert told(Lagrange("rk4", "baumgarte"), MOVING)["order"] == 2
+    assert told(Lagrange("dop853", "baumgarte"), MOVING) == {"order": 6}
+    assert isinstance(TRUTH.order(MOVING), Unpromised)
