@@ -11,14 +11,17 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from reports.charts import families
 from reports.charts import work_precision as charts
-from reports.charts.theme import DARK, LIGHT
+from reports.charts.families import role
+from reports.charts.theme import DARK, LIGHT, SERIES
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import quantity
 from reports.grid.scaling_fit import Point, Series, cost_exponent
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.scaling.chart import _spread, scaling_chart
 from tests.rows import falling, row_of
+from tests.toys import Toy
 
 ENGINES = ("pymunk", "mujoco", "lagrange", "other")
 
@@ -32,7 +35,7 @@ def series(panel: Axes) -> dict[tuple[str, str], list[tuple[float, float]]]:
     return {
         (to_hex(line.get_color()), str(line.get_linestyle())): points(line)
         for line in panel.get_lines()
-        if line.get_marker() in (*charts.MARKERS.values(), "D")
+        if line.get_marker() in families.MARKS
     }
 
 
@@ -185,25 +188,52 @@ def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slope
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 def test_an_engine_is_a_colour_and_a_mark_and_a_variant_a_line_and_a_filling(theme):
-    shown = ["default", "tuned", "extended", "fourth", "fifth"]
-    looks = {(engine, v): charts.look(engine, v, shown, theme) for engine in ENGINES for v in shown}
+    variants = ["default", "tuned", "extended", "fourth", "fifth"]
+    shown = dict.fromkeys(ENGINES, variants)
+    looks = {(engine, v): families.look(engine, v, shown, theme) for engine in ENGINES for v in variants}
     for engine in ENGINES:
-        own = [looks[engine, variant] for variant in shown]
-        assert {look["color"] for look in own} == {getattr(theme, engine, theme.fourth)}
-        assert {look["marker"] for look in own} == {charts.MARKERS.get(engine, "D")}
-        assert len({(str(look["linestyle"]), look["fillstyle"], look["markerfacecolor"]) for look in own}) == len(shown)
-        assert len({str(look["linestyle"]) for look in own}) == len(shown)
-    for variant in shown:
+        own = [looks[engine, variant] for variant in variants]
+        assert {look["color"] for look in own} == {getattr(theme, SERIES[ENGINES.index(engine)])}
+        assert {look["marker"] for look in own} == {families.MARKS[ENGINES.index(engine)]}
+        fillings = {(str(look["linestyle"]), look["fillstyle"], look["markerfacecolor"]) for look in own}
+        assert len(fillings) == len(variants)
+        assert len({str(look["linestyle"]) for look in own}) == len(variants)
+    for variant in variants:
         assert len({str(looks[engine, variant]["linestyle"]) for engine in ENGINES}) == 1
-    assert len(set(charts.MARKERS.values()) | {"D"}) == len(charts.MARKERS) + 1
-    assert len({charts.colour(engine, theme) for engine in ENGINES}) == len(ENGINES)
 
 
 def test_a_variant_looks_the_same_whichever_others_are_shown():
-    alone = charts.look("pymunk", "tuned", ["tuned"], LIGHT)
-    assert alone == charts.look("pymunk", "tuned", ["extended", "x", "tuned", "default"], LIGHT)
-    assert charts.look("pymunk", "x", ["x", "y"], LIGHT)["linestyle"] == charts.LINES[0]  # named methods alone
-    assert charts.look("pymunk", "x", ["default", "x"], LIGHT)["linestyle"] == charts.LINES[3]
+    def look(variant: str, *variants: str):
+        return families.look("pymunk", variant, {"other": ["x"], "pymunk": variants}, LIGHT)
+
+    assert look("tuned", "tuned") == look("tuned", "extended", "x", "tuned", "default")
+    assert look("x", "x", "y")["linestyle"] == families.LINES[0]  # named methods alone
+    assert look("x", "default", "x")["linestyle"] == families.LINES[3]
+
+
+def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_theirs():
+    strangers = [f"engine {number:02}" for number in range(60)]
+    pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
+    assert len(set(pairs.values())) == len(pairs)
+    assert pairs["mujoco"] == (families.role("mujoco"), families.mark("mujoco"))
+    assert pairs["engine 03"] == (families.role("engine 03", strangers[::-1]), families.mark("engine 03", strangers))
+    # The first nine differ in their marks alone, as on paper without colours.
+    assert len(set(families.MARKS)) == 9
+
+
+def test_engines_of_one_family_share_a_colour_and_differ_in_their_lines(monkeypatch):
+    relatives = (Toy(name="wide"), Relative("tuned", name="narrow"))
+    monkeypatch.setattr(families.registry, "ENGINES", (*families.registry.ENGINES, *relatives))
+    shown = {"wide": ["default"], "narrow": ["default", "tuned"]}
+    looks = [families.look(engine, v, shown, LIGHT) for engine, variants in shown.items() for v in variants]
+    assert len({(look["color"], look["marker"]) for look in looks}) == 1
+    assert len({str(look["linestyle"]) for look in looks}) == 3
+
+
+class Relative(Toy):
+    """Of the family of another engine."""
+
+    family = "wide"
 
 
 def test_a_chart_without_a_row_that_can_be_compared_is_empty_and_no_error():
@@ -247,7 +277,10 @@ def test_each_slope_stands_beside_its_own_last_point():
     assert not error.texts
     told = {text.get_text(): (text.xy, text.get_color()) for text in cost.texts}
     assert told == {
-        f"{cost_exponent(one)[0]:.1f}": ((100, pytest.approx(1e6 * one.points[-1].step)), getattr(LIGHT, one.engine))
+        f"{cost_exponent(one)[0]:.1f}": (
+            (100, pytest.approx(1e6 * one.points[-1].step)),
+            getattr(LIGHT, role(one.engine)),
+        )
         for one in found
     }
     assert set(told) == {"1.0", "2.0"}

@@ -66,14 +66,14 @@ def test_configurations_have_each_pose_under_its_title_and_methods_over_them_whe
     truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
     other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
     figure = drawings.configurations(
-        mechanism, truth, ["zero", "one", "two"], {"wrong": (other, "pymunk", "--"), "right": (truth, "mujoco", ":")}
+        mechanism, truth, ["zero", "one", "two"], {"wrong": (other, "first", "--"), "right": (truth, "second", ":")}
     )
     panels = figure.axes[:3]
     assert [panel.get_title(loc="left") for panel in panels] == ["zero", "one", "two"]
     for index, panel in enumerate(panels):
         assert all(has(panel, bar) for bar in drawings.body_points(mechanism, truth[index]).values())
-        assert (to_hex(LIGHT.pymunk) in colours(panel)) == (index == 1)
-        assert to_hex(LIGHT.mujoco) not in colours(panel)
+        assert (to_hex(LIGHT.first) in colours(panel)) == (index == 1)
+        assert to_hex(LIGHT.second) not in colours(panel)
     assert all(has(panels[1], bar) for bar in drawings.body_points(mechanism, other[1]).values())
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert words == ["truth", "wrong", "right: not visibly off"]
@@ -110,7 +110,7 @@ def test_a_stroboscope_has_every_pose_of_its_scene_the_last_in_full_ink():
         points = np.asarray(line.get_xydata(), dtype=float)
         assert points[:2] == pytest.approx(np.array([[0, 0], [math.cos(angle), math.sin(angle)]]), abs=1e-12)
         assert line.get_alpha() == pytest.approx(alpha)
-    [trace] = [line for line in panel.get_lines() if line.get_color() == LIGHT.mujoco]
+    [trace] = [line for line in panel.get_lines() if line.get_color() == LIGHT.second]
     points = np.asarray(trace.get_xydata(), dtype=float)
     assert points[0] == pytest.approx([0.0, 1.0])
     assert points[-1] == pytest.approx([-math.sin(2.0), math.cos(2.0)])
@@ -142,7 +142,7 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     wrong = [[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]]
     blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
     first = Panel(
-        "first", [Path(near, "truth"), Path(wrong, "wrong", "pymunk", "--", framed=False, dot=True)], [blades],
+        "first", [Path(near, "truth"), Path(wrong, "wrong", "first", "--", framed=False, dot=True)], [blades],
         [Note((0.25, 1.5), "here", "center")],
     )  # fmt: skip
     second = Panel(
@@ -161,7 +161,7 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
     legend = left.figure.legends[0]
     assert [text.get_text() for text in legend.get_texts()] == ["truth", "wrong"]
-    assert [to_hex(handle.get_color()) for handle in legend.legend_handles] == [to_hex(LIGHT.ink), to_hex(LIGHT.pymunk)]
+    assert [to_hex(handle.get_color()) for handle in legend.legend_handles] == [to_hex(LIGHT.ink), to_hex(LIGHT.first)]
     # What is not framed does not stretch the picture.
     assert left.get_xlim()[1] < 2
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
@@ -213,7 +213,7 @@ def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_trut
     assert second[:, 1] == pytest.approx(truth[:, 1])
     assert (rates.get_xlabel(), rates.get_ylabel()) == ("time [s]", "rate [rad/s]")
     words = {text.get_text(): text.get_color() for text in rates.texts}
-    assert words == {"first gear": LIGHT.pymunk, "second gear": LIGHT.mujoco}
+    assert words == {"first gear": LIGHT.first, "second gear": LIGHT.second}
 
 
 def test_roulettes_have_their_point_on_their_path():

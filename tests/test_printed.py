@@ -10,8 +10,10 @@ from importlib import metadata
 from rich.console import Console
 
 from reports.cli.terminal import print_table
-from reports.text.provenance import machine, versions
+from reports.text import provenance
+from reports.text.provenance import machine, still_installed, versions
 from reports.text.rendering import foot
+from tests.toys import Toy
 
 
 def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
@@ -25,7 +27,24 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
     monkeypatch.setattr(metadata, "version", version)
     monkeypatch.setattr(platform, "python_version", lambda: "3.99")
     assert versions() == "Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed"
+    assert still_installed("Python 3.99, scipy 2.2")
+    assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
+    assert not still_installed("Python 3.99, scipy 2.3")
+    assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
     assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
+
+
+def test_what_another_engine_depends_on_is_printed_too_and_leaves_a_baseline_valid(monkeypatch):
+    before = versions()
+    monkeypatch.setattr(provenance.registry, "ENGINES", (*provenance.registry.ENGINES, Elsewhere()))
+    assert versions() == f"{before}, another-engine not installed"
+    assert still_installed(before)
+
+
+class Elsewhere(Toy):
+    """Depends on a package that is not here."""
+
+    packages = ("another-engine", "numpy")
 
 
 def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):

@@ -15,7 +15,7 @@ from jinja2 import UndefinedError
 
 from reports import __main__ as command_line
 from reports.charts import work_precision as charts
-from reports.charts.theme import DARK, LIGHT, svg
+from reports.charts.theme import DARK, LIGHT, SERIES, svg
 from reports.cli.selection import BadInput, choose_cells, choose_engines, choose_scenes, nearest, steps_per_sample
 from reports.grid.cells import QUICK, Cell, sweep_cells
 from reports.grid.convergence import judged
@@ -147,7 +147,7 @@ def test_ink_can_be_read_on_every_paper_it_stands_on(theme):
     # Contrast as the web content guidelines define it: 4.5 for text, 3 for lines and marks.
     for ground in (theme.paper, theme.good, theme.middling, theme.bad, theme.worse, theme.grid):
         assert contrast(theme.ink, ground) >= 4.5
-    for mark in (theme.pymunk, theme.mujoco, theme.lagrange, theme.fourth, theme.quiet):
+    for mark in (*(getattr(theme, name) for name in SERIES), theme.quiet):
         assert contrast(mark, theme.paper) >= 3
 
 

@@ -126,7 +126,7 @@ def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float,
         t = strip.times()
         body, point = strip.trace
         line = path(strip.scene, body, point, np.linspace(t[0], t[-1], 40 * len(t)))
-        panel.plot(line[:, 0], line[:, 1], color=theme.mujoco, linewidth=0.9, zorder=2)
+        panel.plot(line[:, 0], line[:, 1], color=theme.second, linewidth=0.9, zorder=2)
     crowd = max(len(bodies) for bodies in poses)
     dots = {"marker": "o", "markersize": 3.0, "markerfacecolor": theme.paper, "markeredgecolor": theme.ink}
     for index, bodies in enumerate(poses):

@@ -24,10 +24,14 @@ class Theme:
     ink: str
     quiet: str
     grid: str
-    pymunk: str
-    mujoco: str
-    lagrange: str
+    first: str
+    second: str
+    third: str
     fourth: str
+    fifth: str
+    sixth: str
+    seventh: str
+    eighth: str
     good: str
     middling: str
     bad: str
@@ -39,10 +43,14 @@ LIGHT = Theme(
     ink="#1f2328",
     quiet="#5d6670",
     grid="#dfe3e8",
-    pymunk="#c2410c",
-    mujoco="#1d5fbf",
-    lagrange="#2f7d4f",
+    first="#c2410c",
+    second="#1d5fbf",
+    third="#2f7d4f",
     fourth="#8b3fa0",
+    fifth="#0b7a8f",
+    sixth="#94610a",
+    seventh="#b8336a",
+    eighth="#55606e",
     good="#cfe8d5",
     middling="#fae3a8",
     bad="#f0a58f",
@@ -53,15 +61,22 @@ DARK = Theme(
     ink="#e6eaef",
     quiet="#9aa4af",
     grid="#333b45",
-    pymunk="#ff9457",
-    mujoco="#74aefc",
-    lagrange="#6fcf97",
+    first="#ff9457",
+    second="#74aefc",
+    third="#6fcf97",
     fourth="#d79be8",
+    fifth="#4fcfe3",
+    sixth="#e6b84a",
+    seventh="#f78bb6",
+    eighth="#b9c3ce",
     good="#24503a",
     middling="#6b5617",
     bad="#8c3b29",
     worse="#55437f",
 )
+
+# The roles of lines that are told apart: families of engines in charts, whatever a picture shows elsewhere.
+SERIES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 SETTINGS = {
     "svg.hashsalt": "crosscheck",

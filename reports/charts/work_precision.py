@@ -1,57 +1,29 @@
 """Rows to charts: work and precision, error against step. Pure functions that give a figure.
 
-Engine is colour and marker shape; variant is line style and marker filling, so that a chart survives without colours.
+What a method looks like is in `reports.charts.families`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from reports.charts.families import look
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 from reports.grid.convergence import groups
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import quantity
 
-MARKERS = {"pymunk": "o", "mujoco": "s", "lagrange": "^"}
-LINES: tuple[Any, ...] = (":", "--", "-", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 3)), (0, (4, 1, 1, 1)))
-FILLS = ("empty", "left", "full", "bottom", "top", "right", "empty", "full")
-# An engine's three variants look the same in every chart, whichever of them are shown.
-VARIANTS = ("default", "tuned", "extended")
 COLUMNS = 2
 LONG_NAME = 30  # letters: beyond, four names don't fit side by side
 
 Featured = Callable[[Measurement], bool]
-
-
-def colour(engine: str, theme: Theme) -> str:
-    return getattr(theme, engine) if engine in MARKERS else theme.fourth
-
-
-def look(engine: str, variant: str, variants: Sequence[str], theme: Theme) -> dict[str, Any]:
-    """Line and marker of one method among the variants of its engine that are shown."""
-    named = [other for other in variants if other not in VARIANTS]
-    first = 0 if len(named) == len(variants) else len(VARIANTS)
-    index = VARIANTS.index(variant) if variant in VARIANTS else first + named.index(variant)
-    paint, fill = colour(engine, theme), FILLS[index % len(FILLS)]
-    return {
-        "color": paint,
-        "linestyle": LINES[index % len(LINES)],
-        "marker": MARKERS.get(engine, "D"),
-        "fillstyle": "full" if fill == "empty" else fill,
-        "markerfacecolor": theme.paper if fill == "empty" else paint,
-        "markerfacecoloralt": theme.paper,
-        "markeredgecolor": paint,
-        "markersize": 5.5,
-        "linewidth": 1.5,
-    }
 
 
 def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -120,7 +92,7 @@ def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
 
 def _handles(variants: dict[str, list[str]], theme: Theme) -> list[Line2D]:
     return [
-        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, shown, theme))
+        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants, theme))
         for engine, shown in variants.items()
         for variant in shown
     ]
@@ -148,7 +120,7 @@ def work_precision(
                 panel.plot(*zip(*others, strict=True), ".", color=theme.quiet, markersize=3, zorder=2)
             for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
                 series = [(1e3 * row.cpu, getattr(row, field)) for row in members]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants[engine], theme))
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.set_xlabel("CPU time per simulated second [ms]")
             if panels.index(panel) % COLUMNS == 0:
                 panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
@@ -174,7 +146,7 @@ def error_against_step(
             here = [row for row in rows if row.scene == scene]
             for (_, engine, variant), members in groups(here).items():
                 series = [(row.step, getattr(row, field)) for row in members]
-                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants[engine], theme))
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
             _guides(panel, [row.step for row in here], quantity(field).rounding, theme)
             panel.set_xlabel("step [s]")

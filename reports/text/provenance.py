@@ -8,18 +8,31 @@ from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 
-PACKAGES = ("numpy", "scipy", "pymunk", "mujoco-core")
+from engines import registry
+
+# What every number depends on, whatever the engine: the truth and the errors are made with these.
+MEASURED_WITH = ("numpy", "scipy")
+
+
+def packages() -> tuple[str, ...]:
+    """The distributions whose versions are printed: ours for the measuring, and those that registered engines name."""
+    return tuple(dict.fromkeys([*MEASURED_WITH, *(name for engine in registry.ENGINES for name in engine.packages)]))
 
 
 def versions() -> str:
     """'Python 3.11.7, numpy 2.4.0, ...' of what the numbers depend on."""
     found = [f"Python {platform.python_version()}"]
-    for package in PACKAGES:
+    for package in packages():
         try:
             found.append(f"{package} {metadata.version(package)}")
         except metadata.PackageNotFoundError:
             found.append(f"{package} not installed")
     return ", ".join(found)
+
+
+def still_installed(told: str) -> bool:
+    """Whether all that such a line names is here in the same versions; what else is installed by now doesn't count."""
+    return set(told.split(", ")) <= set(versions().split(", "))
 
 
 def machine() -> str:

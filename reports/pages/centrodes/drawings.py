@@ -34,16 +34,16 @@ def draw_centrodes(
                 if isinstance(joint, Pin) and joint.first is None and joint.second != joints:
                     line = np.stack([np.asarray(joint.first_point), centre])
                     panel.plot(*line.T, color=theme.grid, linewidth=1.2, zorder=0)
-            panel.plot(*curves.space.T, color=theme.pymunk, linewidth=2, zorder=1)
+            panel.plot(*curves.space.T, color=theme.first, linewidth=2, zorder=1)
             moved = rotated(np.asarray(pose[body, 2]), curves.body) + pose[body, :2]
-            panel.plot(*moved.T, color=theme.mujoco, linewidth=2, linestyle="--", zorder=2)
+            panel.plot(*moved.T, color=theme.second, linewidth=2, linestyle="--", zorder=2)
             draw_ground(panel, mechanism, theme)
             draw_pose(panel, mechanism, pose, color=theme.ink, linewidth=2, marker="o", markersize=4.5,
                       markerfacecolor=theme.paper, markeredgecolor=theme.ink, zorder=3)  # fmt: skip
             panel.plot(*centre, "o", color=theme.fourth, markersize=6, zorder=4)
         handles = [
-            Line2D([], [], color=theme.pymunk, linewidth=2, label="fixed centrode"),
-            Line2D([], [], color=theme.mujoco, linewidth=2, linestyle="--", label="moving centrode"),
+            Line2D([], [], color=theme.first, linewidth=2, label="fixed centrode"),
+            Line2D([], [], color=theme.second, linewidth=2, linestyle="--", label="moving centrode"),
             Line2D([], [], color=theme.fourth, marker="o", linestyle="none", label="instant centre"),
         ]
         for text in figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False).get_texts():
@@ -58,7 +58,7 @@ def draw_rate(curves: Centrodes, theme: Theme = LIGHT) -> Figure:
     with settings():
         figure = new_figure(4.0, theme)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-        above.plot(degrees, curves.rate, color=theme.pymunk, linewidth=4, alpha=0.5, label="ds/dθ, way of the centre")
+        above.plot(degrees, curves.rate, color=theme.first, linewidth=4, alpha=0.5, label="ds/dθ, way of the centre")
         above.plot(degrees, total, color=theme.ink, linewidth=1.2, label="1/($\\kappa_A+\\kappa_B$), both curvatures")
         below.semilogy(degrees, np.maximum(np.abs(total / curves.rate - 1), 1e-17), color=theme.ink, linewidth=1)
         for panel, up in ((above, "m/rad"), (below, "relative\ndifference")):

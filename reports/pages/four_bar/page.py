@@ -25,7 +25,7 @@ SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
 # The nine poses of Fig. 18.66 stand at the ends of eight equal parts: the last is the first again.
 PARTS = 8
 SAMPLES_A_PART = 8  # so that the engines' step is about 1e-2 s
-OVERLAID = {"pymunk default": ("pymunk", "--"), "mujoco default": ("mujoco", ":")}
+OVERLAID = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
 
 POSED = {

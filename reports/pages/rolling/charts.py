@@ -30,8 +30,8 @@ def draw_acceleration(theme: Theme = LIGHT) -> Figure:
         pinned = np.linalg.norm(rolling.pinned_acceleration(theta, 1.0, 0.0), axis=-1)
         term = np.linalg.norm(rolling.rolling_acceleration(theta, 1.0), axis=-1)
         for values, name, colour, place in (
-            (pinned, "pinned at C: $\\omega^2 r$", theme.mujoco, 200),
-            (term, "rolling: $\\omega^2/(\\kappa_A+\\kappa_B)$", theme.pymunk, 30),
+            (pinned, "pinned at C: $\\omega^2 r$", theme.second, 200),
+            (term, "rolling: $\\omega^2/(\\kappa_A+\\kappa_B)$", theme.first, 30),
         ):
             left.plot(np.degrees(theta), values, color=colour, linewidth=2)
             left.annotate(name, (np.degrees(theta[place]), values[place]), xytext=(4, 6), textcoords="offset points",
@@ -45,12 +45,12 @@ def draw_acceleration(theme: Theme = LIGHT) -> Figure:
         )
         left.set_xticks([0, 45, 90, 135, 180])
         fit = np.geomspace(1e-3, 30, 200)  # (kappa_A + kappa_B) / kappa_B of a disc
-        right.plot(fit, 1 / fit, color=theme.pymunk, linewidth=2)
-        right.axhline(1.0, color=theme.mujoco, linewidth=2)
+        right.plot(fit, 1 / fit, color=theme.first, linewidth=2)
+        right.axhline(1.0, color=theme.second, linewidth=2)
         right.annotate("as if pinned at C", (1.2e-3, 1.0), xytext=(0, -12), textcoords="offset points",
-                       color=theme.mujoco)  # fmt: skip
+                       color=theme.second)  # fmt: skip
         right.annotate("what rolling adds", (2e-3, 500), xytext=(12, 2), textcoords="offset points",
-                       color=theme.pymunk)  # fmt: skip
+                       color=theme.first)  # fmt: skip
         for place, word in ((1.0, "flat"), (10.0, "sharp"), (0.01, "hole 1 %\nlarger")):
             right.axvline(place, color=theme.quiet, linewidth=0.8, linestyle=":")
             right.annotate(
@@ -79,19 +79,19 @@ def draw_friction(scenes: Sequence[RollingScene], theme: Theme = LIGHT) -> Figur
             panel.plot(t, law.required_friction(t), color=theme.ink, linewidth=1.8)
             for friction in COEFFICIENTS:
                 slip = law.slip(friction, scene.duration)
-                panel.axhline(friction, color=theme.mujoco, linewidth=1.0, linestyle="--")
+                panel.axhline(friction, color=theme.second, linewidth=1.0, linestyle="--")
                 panel.annotate(f"given $\\mu$ = {friction:g}", (0.0, friction), xytext=(2, 2),
-                               textcoords="offset points", color=theme.mujoco, fontsize=8)  # fmt: skip
+                               textcoords="offset points", color=theme.second, fontsize=8)  # fmt: skip
                 if slip is not None:
-                    panel.plot(slip, friction, "o", color=theme.pymunk, markersize=6, zorder=4)
+                    panel.plot(slip, friction, "o", color=theme.first, markersize=6, zorder=4)
                     early = slip < 0.3 * scene.duration
                     panel.annotate(f"slips {slip:.3f} s", (slip, friction), xytext=(7, -11) if early else (-7, 4),
-                                   textcoords="offset points", color=theme.pymunk, fontsize=8,
+                                   textcoords="offset points", color=theme.first, fontsize=8,
                                    ha="left" if early else "right")  # fmt: skip
             if scene.hop is not None:
-                panel.axvline(scene.hop, color=theme.pymunk, linewidth=1.4)
+                panel.axvline(scene.hop, color=theme.first, linewidth=1.4)
                 panel.annotate(f"hops {scene.hop:.3f} s", (scene.hop, 1.45), xytext=(-14, 0),
-                               textcoords="offset points", color=theme.pymunk, fontsize=8, ha="right")  # fmt: skip
+                               textcoords="offset points", color=theme.first, fontsize=8, ha="right")  # fmt: skip
             panel.set_ylim(0, 1.6)
             panel.set_xlim(0, scene.duration)
             title = scene.name.replace("_", " ")
@@ -121,7 +121,7 @@ def draw_plateaus(
 
 def _by_step(panel: Axes, rows: Sequence[tuple[float, Measurement]], theme: Theme) -> None:
     """One line a step, the value across; a failed run has no point. Raises ValueError for more steps than looks."""
-    looks = (("o", theme.pymunk, "-"), ("s", theme.mujoco, "--"), ("^", theme.lagrange, ":"))
+    looks = (("o", theme.first, "-"), ("s", theme.second, "--"), ("^", theme.third, ":"))
     steps = sorted({row.step for _, row in rows}, reverse=True)
     if len(steps) > len(looks):
         raise ValueError(f"plateaus: there are {len(steps)} steps, and {len(looks)} looks to tell them apart")

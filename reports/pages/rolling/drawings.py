@@ -126,9 +126,9 @@ def draw_roulettes(chosen: Sequence[Roulette], theme: Theme = LIGHT, columns: in
                 panel.plot(*placed(body, pose).T, color=theme.quiet, linewidth=1.0)
                 arm = one.rolling.position(theta, one.point)
                 panel.plot(*np.stack([one.rolling.contact(theta).point, arm]).T, color=theme.quiet, linewidth=0.8)
-                panel.plot(*arm, "o", color=theme.pymunk, markersize=4.5, zorder=4)
+                panel.plot(*arm, "o", color=theme.first, markersize=4.5, zorder=4)
             path = one.rolling.position(np.linspace(*one.path, 2 * POINTS), one.point)
-            panel.plot(*path.T, color=theme.pymunk, linewidth=2.0, zorder=3)
+            panel.plot(*path.T, color=theme.first, linewidth=2.0, zorder=3)
     return figure
 
 
@@ -158,7 +158,7 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
             turn = np.linspace(0, 2 * math.pi, POINTS)
             circle = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
             panel.plot(*(point + normal / b + circle / b).T, color=theme.fourth, linewidth=1.2, linestyle=":")
-            for vector, name, colour in ((tangent, "$e_t$", theme.pymunk), (normal, "$e_n$", theme.mujoco)):
+            for vector, name, colour in ((tangent, "$e_t$", theme.first), (normal, "$e_n$", theme.second)):
                 tip = point + 0.45 * vector
                 panel.annotate(
                     "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
@@ -190,7 +190,7 @@ def draw_gears(scene: EllipticGears, theme: Theme = LIGHT) -> Figure:
         for index in range(4):
             panel = figure.add_subplot(grid[0, index])
             _blank(panel, f"t = {times[index]:.2f} s", theme)
-            for gear, colour in ((0, theme.pymunk), (1, theme.mujoco)):
+            for gear, colour in ((0, theme.first), (1, theme.second)):
                 pose = truth.pose[index, gear]
                 panel.plot(*placed(rim, pose).T, color=colour, linewidth=1.8)
                 panel.plot(2 * scene.major * gear, 0.0, "^", color=theme.ink, markersize=6)
@@ -203,13 +203,13 @@ def draw_gears(scene: EllipticGears, theme: Theme = LIGHT) -> Figure:
         style_axes(panel, theme)
         t = np.linspace(0, 2 * turn, 400)
         rates = scene.motion(t).twist[:, :, 2]
-        panel.plot(t, rates[:, 0], color=theme.pymunk, linewidth=1.8)
-        panel.plot(t, rates[:, 1], color=theme.mujoco, linewidth=1.8)
+        panel.plot(t, rates[:, 0], color=theme.first, linewidth=1.8)
+        panel.plot(t, rates[:, 1], color=theme.second, linewidth=1.8)
         panel.annotate("first gear", (t[-1], rates[-1, 0]), xytext=(-4, 5), textcoords="offset points", ha="right",
-                       color=theme.pymunk)  # fmt: skip
+                       color=theme.first)  # fmt: skip
         low = int(np.argmin(rates[:, 1]))
         panel.annotate("second gear", (t[low], rates[low, 1]), xytext=(28, 4), textcoords="offset points",
-                       color=theme.mujoco)  # fmt: skip
+                       color=theme.second)  # fmt: skip
         panel.set_xlabel("time [s]")
         panel.set_ylabel("rate [rad/s]")
     return figure

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
+from reports.charts.families import look
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
-from reports.charts.work_precision import look
 from reports.grid.scaling_fit import Series, cost_exponent
 
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
@@ -25,7 +25,7 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
     variants: dict[str, list[str]] = {}
     for series in found:
         variants.setdefault(series.engine, []).append(series.variant)
-    looks = {s.method: _look(s, variants[s.engine], theme) for s in found}
+    looks = {s.method: _look(s, variants, theme) for s in found}
     with settings():
         figure = new_figure(5.6, theme)
         cost, error = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.25, 1]})
@@ -52,10 +52,10 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
     return figure
 
 
-def _look(series: Series, variants: Sequence[str], theme: Theme) -> dict[str, Any]:
+def _look(series: Series, variants: Mapping[str, Sequence[str]], theme: Theme) -> dict[str, Any]:
     """As in all charts; a fourth and fifth method of an engine, whose half-filled marks are too alike, get others."""
     own = look(series.engine, series.variant, variants, theme)
-    index = variants.index(series.variant)
+    index = variants[series.engine].index(series.variant)
     return own | ({"marker": FURTHER[index - 3], "fillstyle": "full"} if index in (3, 4) else {})
 
 

@@ -43,11 +43,11 @@ COMPARED = 1e-3
 BLADES = 7  # skates drawn on the way
 # Name -> colour, dashes. A construction that is not visibly off is not worth a line.
 OVERLAID: dict[str, tuple[str, Any]] = {
-    "pymunk skate: centre's velocity zeroed": ("pymunk", "--"),
-    "pymunk skate: point's velocity zeroed": ("pymunk", ":"),
-    "pymunk tuned": ("pymunk", "-"),
-    "mujoco default": ("mujoco", "--"),
-    "mujoco tuned": ("mujoco", ":"),
+    "pymunk skate: centre's velocity zeroed": ("first", "--"),
+    "pymunk skate: point's velocity zeroed": ("first", ":"),
+    "pymunk tuned": ("first", "-"),
+    "mujoco default": ("second", "--"),
+    "mujoco tuned": ("second", ":"),
 }
 # One of each kind: five looks an engine are what a chart can tell apart.
 CHARTED = (

@@ -30,8 +30,8 @@ def parking() -> Figure:
         Panel(
             "the commutator's way over both moves",
             [
-                Path(np.column_stack([-np.log10(sizes), moved[:, 1]]), "sideways, towards 1", "lagrange"),
-                Path(np.column_stack([-np.log10(sizes), moved[:, 0]]), "along, towards 0", "pymunk", "--"),
+                Path(np.column_stack([-np.log10(sizes), moved[:, 1]]), "sideways, towards 1", "third"),
+                Path(np.column_stack([-np.log10(sizes), moved[:, 0]]), "along, towards 0", "first", "--"),
             ],
             plane=False,
             across="both moves are 10 to minus this [rad, m]",
@@ -44,7 +44,7 @@ def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
     way, poses = trace(start, moves), stops(start, moves)
     return Panel(
         title,
-        [Path(way[:, :2], "path of C", "mujoco", "-", 1.6)],
+        [Path(way[:, :2], "path of C", "second", "-", 1.6)],
         [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)],
         [
             Note((poses[0][0], poses[0][1] - 0.16), "from", "center"),
@@ -65,7 +65,7 @@ def slope() -> Figure:
         panels.append(
             Panel(
                 title,
-                [Path(poses[:, :2], "path of C; down the slope is down", "mujoco", "-", 1.6, dot=True)],
+                [Path(poses[:, :2], "path of C; down the slope is down", "second", "-", 1.6, dot=True)],
                 [Blades(poses[::60], BLADE, "ink", 2.2)],
             )
         )

@@ -24,10 +24,10 @@ NAME = "wheels"
 SCENES = (CarAndTrailer(), Cart())
 
 OVERLAID: dict[str, tuple[str, Any]] = {
-    "pymunk default": ("pymunk", "--"),
-    "pymunk tuned": ("pymunk", "-"),
-    "mujoco default": ("mujoco", "--"),
-    "mujoco tuned": ("mujoco", ":"),
+    "pymunk default": ("first", "--"),
+    "pymunk tuned": ("first", "-"),
+    "mujoco default": ("second", "--"),
+    "mujoco tuned": ("second", ":"),
 }
 
 

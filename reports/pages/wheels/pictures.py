@@ -42,7 +42,7 @@ def _tow(title: str, radius: float, distance: float) -> Panel:
                 "--",
                 1.2,
             ),
-            Path(tow.wheel(way), "towed wheel", "mujoco", "-", 1.8, dot=True),
+            Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
         ],
         [Blades(drawbars, LENGTH, "grid", 1.6)],
     )
@@ -59,7 +59,7 @@ def casters() -> Figure:
     ):
         angles, _ = own.swing(start, speed, 0.0, t)
         lines, curves = [], []
-        for index, (colour, dashes) in enumerate((("mujoco", "-"), ("pymunk", "--"))):
+        for index, (colour, dashes) in enumerate((("second", "-"), ("first", "--"))):
             x, y = own.places[index]
             place = np.column_stack([x + speed * t, np.full_like(t, y)])
             wheel = place - own.trail * np.column_stack([np.cos(angles[:, index]), np.sin(angles[:, index])])
@@ -94,9 +94,9 @@ def reversing() -> Figure:
                 title + folded,
                 [
                     Path(convoy.pose[:, 0, :2], "car's rear axle", "quiet", "--", 1.2),
-                    Path(convoy.pose[:, 1, :2], "trailer's axle", "mujoco", "-", 1.8, dot=True),
+                    Path(convoy.pose[:, 1, :2], "trailer's axle", "second", "-", 1.8, dot=True),
                 ],
-                [Blades(bodies, 1.0, "grid", 4.0), Blades(trailer + half, 0.8, "pymunk", 1.6)],
+                [Blades(bodies, 1.0, "grid", 4.0), Blades(trailer + half, 0.8, "first", 1.6)],
             )
         )
     return paths(panels, columns=2)
