@@ -20,7 +20,7 @@ from reports.pages.rolling import experiments as rolling
 from reports.pages.skate import experiments as skate
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
-from reports.text.rendering import _remark
+from reports.text.experiments import told_remark
 from reports.text.unmeasured import MARK
 
 
@@ -30,7 +30,7 @@ def experiment(failures: tuple[Failure, ...], title: str) -> Failure:
 
 
 def remark(failure: Failure, material: Material) -> str:
-    return _remark(failure, material.of(failure.cells), material)
+    return told_remark(failure, material.of(failure.cells), material)
 
 
 def invented(failure: Failure, chosen: Callable[[Cell], bool], name: str, value: float) -> Material:

@@ -149,3 +149,9 @@ def test_the_step_at_which_two_errors_cancel_has_a_smaller_error_than_the_next()
     rows = methods(four_bar_failures.FAILURES, "Worse as the step shrinks")["mujoco default"]
     lucky, finer = (next(row for row in rows if 0.5 < row.step / step < 2) for step in (1e-3, 1e-4))
     assert lucky.angle < finer.angle / 5
+
+
+def test_two_sweeps_are_enough_at_a_millisecond_and_tear_the_loop_at_a_tenth_of_it() -> None:
+    two = methods(four_bar_failures.FAILURES, "Too few iterations")["pymunk tuned, 2 sweeps"]
+    assert comparable(two)[1:] == [True, False]
+    assert outcomes(two)[-1] == Outcome.TORN

@@ -48,12 +48,12 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
         else "",
         grid if rows else "",
         tables.outcome_table(rows, held) if any(row.sentence for row in rows) else "",
-        _remark(failure, rows, material),
+        told_remark(failure, rows, material),
         unrun=not run and bool(failure.cells or failure.tasks),
     )
 
 
-def _remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
+def told_remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
     """What the outcomes teach, with its numbers from the rows of the experiment."""
 
     def at(method: str, step: float) -> Any:
