@@ -239,7 +239,7 @@ def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():
     disc, other = parts["All errors"].split("other_disc")
     for piece, factor in ((disc, 1.0), (other, 0.1)):
         lines = [line.split(" | ") for line in piece.splitlines() if line.startswith("| mujoco")]
-        assert [(line[0], line[4]) for line in lines] == [
+        assert [(line[0], line[5]) for line in lines] == [
             (f"| mujoco {variant}", number(angle * factor / every**2))
             for variant, angle in (("default", 1.1e-2), ("tuned", 1.3e-3))
             for every in (1, 10, 100)
@@ -247,7 +247,7 @@ def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():
     # The cost is the error's number here: 11 ms and 1.3 ms in the first scene, a tenth in the second.
     work = parts["Work and precision"]
     found = [line.strip("| ").split(" | ") for line in work.splitlines() if line.startswith("| mujoco")]
-    assert [line[2] for line in found] == ["11", "1.3", "1.1", "0.13"]
+    assert [line[3] for line in found] == ["11", "1.3", "1.1", "0.13"]
     assert "**other_disc**, invented too. Another scene." in text
 
 
@@ -288,7 +288,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
         page = replace(PAGE, scenes=(DISC,), quantity=quantity)
         text = render_page(page, Material(rows), "the command")["base_data.md"]
         errors_told = text.split("## All errors")[1]
-        assert f"| mujoco default | {outcome} | 1.0e-4" in errors_told
+        assert f"| mujoco default | - | {outcome} | 1.0e-4" in errors_told
 
 
 def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
@@ -307,11 +307,11 @@ def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
     one, two, three = (
         text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second", "Third")
     )
-    assert "| mujoco torn | **torn** 1.7 m |" in one
+    assert "| mujoco torn | - | **torn** 1.7 m |" in one
     assert "**torn**: it tore" in one
     assert "| by hand | a setting | 0.02 rad |" in one
     assert "sound" not in one
-    assert "| mujoco sound | 0.1 | **finished** | 5.3e-3 |" in two
+    assert "| mujoco sound | - | 0.1 | **finished** | 5.3e-3 |" in two
     assert "|" not in three
     lines = files["base.md"].split("## Where methods fail")[1].split("\n- ")
     assert [line.split("**")[1] for line in lines[1:]] == [

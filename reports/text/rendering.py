@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -24,7 +23,7 @@ from reports.pages.symptoms import SYMPTOMS
 from reports.text import tables, unmeasured
 from reports.text.experiments import told_experiment
 from reports.text.holders import holders
-from reports.text.links import link
+from reports.text.links import anchor, link
 from reports.text.overview import overviews
 from reports.text.parts import with_part
 from reports.text.provenance import machine, today, versions
@@ -57,11 +56,6 @@ def template_of(page: Page, file: str, generic: str) -> Template:
         own = page.template if file == "page.md" else page.template.with_name(file)
         return environment(own.parent).select_template([f"own/{own.name}", generic])
     return environment().select_template([f"{page.name}/{file}", generic])
-
-
-def anchor(heading: str) -> str:
-    """What a link to a heading of Markdown ends with, as GitHub makes it: lower case, no punctuation, hyphens."""
-    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:

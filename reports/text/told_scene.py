@@ -9,6 +9,7 @@ from reference.scene import Scene
 from reports.gate.declared import declared_error, soft_tasks
 from reports.grid.cells import Cell
 from reports.grid.convergence import sweeps
+from reports.grid.errors import NAN
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Material, Page
@@ -39,6 +40,8 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
     engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
+        if method not in engines:  # a row of a method that the page had once
+            return NAN
         return declared_error(material.answers, scene, engines[method], page.quantity, step)
 
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
