@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -106,3 +107,26 @@ def test_what_the_readme_says_runs_in_a_fresh_clone_and_changes_nothing_publishe
 def test_it_has_the_exit_statuses_of_the_help():
     told = STATUSES.partition(": ")[2]
     assert told in " ".join(README.split())
+
+
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+def test_contributing_is_one_page_and_names_files_groups_and_targets_that_are_there():
+    assert len(CONTRIBUTING.splitlines()) < 80
+    paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING))
+    assert paths
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert set(re.findall(r"`(crosscheck\.\w+)`", CONTRIBUTING)) <= set(project["entry-points"])
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert all(f"\n{target}:" in makefile for target in re.findall(r"\bmake (\w+)", CONTRIBUTING))
+
+
+def test_their_commands_are_the_programs():
+    told = set(re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README + CONTRIBUTING, re.MULTILINE))
+    words = {word for pair in told for word in pair if word}
+    assert {"run", "report", "conform", "list", "show"} <= words
+    helping = [sys.executable, "-m", "reports", "--help"]
+    said = subprocess.run(helping, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert words <= set(re.findall(r"^  ([a-z]+)  ", said, re.MULTILINE))
