@@ -10,6 +10,7 @@ from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, measure
 from reports.grid.outcomes import Outcome
 from reports.pages.four_bar import experiments as failures
+from reports.pages.page import Material
 
 BROKEN = {Outcome.TORN, Outcome.RESET, Outcome.DIVERGED, Outcome.BRANCH_FLIP, Outcome.SATURATED}
 
@@ -43,7 +44,7 @@ def test_no_engine_can_drive_a_crank_beyond_its_limit(engine):
 
 
 def test_the_reference_refuses_what_the_engines_try():
-    (refusal,) = failures._refusal()
+    (refusal,) = failures._refusal(Material({}))
     assert "can't close" in refusal.outcome
 
 

@@ -13,7 +13,7 @@ import pytest
 from reports.pages.page import Page
 from reports.text.links import anchor, headings
 from reports.text.programs import PAGES as FOLDER
-from reports.text.programs import program
+from reports.text.programs import program, programs_of
 from tests import test_any_rows as rendering
 from tests.test_any_rows import FROM_ROWS, cheap, whole, written
 
@@ -114,10 +114,10 @@ def test_every_program_is_of_a_method_of_its_page():
     for path in FOLDER.glob("*/programs/*.py"):
         page = pages[path.parents[1].name]
         methods = [f"{engine.name} {engine.variant}" for engine in page.engines]
-        assert path.read_text(encoding="utf-8") in [program(page.name, method) for method in methods], path
+        assert path.read_text(encoding="utf-8") in [program(programs_of(page), method) for method in methods], path
 
 
 def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
-    source = program("four_bar", "mujoco tuned")
+    source = program(FOLDER / "four_bar" / "programs", "mujoco tuned")
     right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
     assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6

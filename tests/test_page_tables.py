@@ -189,9 +189,9 @@ def test_settings_are_told_without_those_that_are_the_engines_own():
 
     assert compact(Outer("a")) == "Outer()"
     assert compact(Outer("a", Inner(count=5), (2,))) == "Outer(inner=Inner(count=5), levels=(2,))"
-    (found,) = advised_settings("", Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {"a x": Outer("x")})
+    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {"a x": Outer("x")})
     assert (found.method, found.settings, found.program) == ("a x", "Outer()", "")
-    (found,) = advised_settings("", Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {})
+    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {})
     assert found.settings == "Toy(order=2.0)"  # of an engine that is not here any more: as its row has them
 
 

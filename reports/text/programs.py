@@ -16,6 +16,7 @@ from typing import Any
 
 from reference.scene import Scene
 from reports.grid.measure import Measurement
+from reports.pages.page import Page
 from reports.text.page_tables import Advice
 from reports.text.tables import number
 
@@ -37,31 +38,31 @@ class Setting:
     exact: str = ""  # "x = ... m, y = ... m, angle = ... rad" of the body at the end
 
 
-def advised_settings(page: str, scene: Scene, found: Iterable[Advice], engines: Mapping[str, Any]) -> list[Setting]:
-    """The methods of some advice, each once, as they are to be copied; `engines` by method. `page`: whose programs are
-    for this scene; empty where there are none."""
+def advised_settings(
+    scene: Scene, found: Iterable[Advice], engines: Mapping[str, Any], folder: Path | None = None
+) -> list[Setting]:
+    """The methods of some advice, each once, as they are to be copied; `engines` by method. `folder`: where programs
+    for this scene are."""
     rows: dict[str, list[tuple[Measurement, Sequence[float]]]] = {}
     for each in found:
         if each.row is not None:
             rows.setdefault(each.row.method, []).append((each.row, each.targets))
-    return [_setting(page, scene, method, own, engines.get(method)) for method, own in rows.items()]
+    return [
+        _setting(scene, method, own, engines.get(method), program(folder, method) if folder else "")
+        for method, own in rows.items()
+    ]
 
 
 def _setting(
-    page: str,
-    scene: Scene,
-    method: str,
-    rows: Sequence[tuple[Measurement, Sequence[float]]],
-    engine: Any,
+    scene: Scene, method: str, rows: Sequence[tuple[Measurement, Sequence[float]]], engine: Any, source: str
 ) -> Setting:
     first = rows[0][0]
     settings = compact(engine) if engine is not None else first.settings
-    source = program(page, method)
     if not source:
         return Setting(method, settings, first.settings)
     body, end = PRINTS.search(source), DURATION.search(source)
     if body is None or end is None:
-        raise ValueError(f"the program of {method} on the page {page} lacks its duration or does not print a place")
+        raise ValueError(f"{scene.name}: the program of {method} lacks its duration or does not print a place")
     duration = float(end[1])
     index = scene.mechanism().body_index(body[1])
     x, y, angle = scene.motion([duration]).pose[0, index]
@@ -72,10 +73,15 @@ def _setting(
     return Setting(method, settings, first.settings, text, body[1], exact)
 
 
-def program(page: str, method: str) -> str:
-    """The program of a method on a page; empty without one."""
-    path = PAGES / page / "programs" / f"{re.sub('[^a-z0-9]+', '_', method.lower())}.py"
-    return path.read_text(encoding="utf-8") if page and path.is_file() else ""
+def programs_of(page: Page) -> Path:
+    """The folder of a page's programs: beside its template."""
+    return (PAGES / page.name if page.template is None else page.template.parent) / "programs"
+
+
+def program(folder: Path, method: str) -> str:
+    """The program of a method; empty without one."""
+    path = folder / f"{re.sub('[^a-z0-9]+', '_', method.lower())}.py"
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def compact(value: Any) -> str:

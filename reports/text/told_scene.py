@@ -15,7 +15,7 @@ from reports.grid.outcomes import Outcome
 from reports.pages.page import Material, Page
 from reports.text import page_tables, tables
 from reports.text.holders import holders
-from reports.text.programs import advised_settings
+from reports.text.programs import advised_settings, programs_of
 
 
 def parameters(scene: Scene) -> str:
@@ -60,7 +60,9 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "step": page_tables.compared_step(rows),
         "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
-        "settings": advised_settings(page.name if scene is page.advised_scene else "", scene, advice, engines),
+        "settings": advised_settings(
+            scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
+        ),
         "work": tables.work_table(rows, page.quantity, held=held) if rows else "",
         "orders": tables.order_table(sweeps(rows), held=held) if rows else "",
         "reactions": tables.reaction_table(rows, held) if rows else "",
