@@ -44,7 +44,7 @@ NOT_MADE_BY_USERS = {
     *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
     "engines.conformance.changes.Isometry",
     *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
-    *("engines.conformance.worlds.Motion", "engines.conformance.worlds.World"),
+    *("engines.conformance.worlds.world.Motion", "engines.conformance.worlds.world.World"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 

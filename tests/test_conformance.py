@@ -12,7 +12,8 @@ from engines.conformance.worlds import MOVING, SPINNING, WORLDS
 from engines.mujoco import methods as of_mujoco
 from engines.pymunk import methods as of_pymunk
 from reports.__main__ import main
-from tests.wrong_adapters import MISTAKES, TALKERS, Wrong, wrong
+from tests.wrong_adapters import MISTAKES, Wrong
+from tests.wrong_talkers import TALKERS
 
 # The check that has to find a mistake, and does so before any other.
 FOUND_BY = {
@@ -135,7 +136,7 @@ def test_another_description_is_of_the_same_motion(world, change):
 
 @pytest.mark.parametrize("mistake", FOUND_BY)
 def test_a_wrong_adapter_fails_by_the_name_of_its_mistake(mistake):
-    for case in cases(wrong(mistake)):
+    for case in cases(TALKERS[mistake] if mistake in TALKERS else Wrong(mistake)):
         result = case.result()
         if result.status == "fails":
             assert case.check.name == FOUND_BY[mistake], result.sentence
@@ -176,7 +177,8 @@ def test_what_is_not_supported_is_no_pass():
 
 THEIRS = """
 import pytest
-from tests.wrong_adapters import MISTAKES, TALKERS, Wrong, wrong
+from tests.wrong_adapters import MISTAKES, Wrong
+from tests.wrong_talkers import TALKERS
 
 @pytest.mark.conforms(Wrong("nothing"), Wrong("reactions have the other sign"))
 def test_it_conforms(conformance):
