@@ -71,9 +71,12 @@ SPECIAL = (
     *(*of_pymunk.SKATES, *of_pymunk.SLOTS, *of_pymunk.ROLLS),
     *(*of_mujoco.SKATES, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
-# Steps in Python take seconds: one order and one treatment of the joints each are enough for every day.
-DAILY = (lagrange.Lagrange("euler", "baumgarte"), lagrange.Lagrange("rk4", "projection"))
-SLOW = tuple(each for each in lagrange.METHODS if each not in DAILY)
+# Enough for every day: what differs by an integrator alone, or takes seconds of steps in Python, is left out.
+DAILY = (
+    *pymunk.METHODS,
+    *(each for each in mujoco.METHODS if not each.variant.startswith(("stiff", "RK4"))),
+    *(lagrange.Lagrange("euler", "baumgarte"), lagrange.Lagrange("rk4", "projection")),
+)
 DESCRIPTIONS = (
     Isometry(turn=0.7, shift=(3.7, -2.9)),
     Isometry(turn=-2.5, shift=(0.3, 0.4), mirrored=True),
@@ -91,13 +94,13 @@ def failures(engine) -> list[str]:
     return [f"{case}: {result.sentence}" for case, result in found if result.status == "fails"]
 
 
-@pytest.mark.parametrize("engine", [each for each in METHODS if each not in SLOW], ids=label)
+@pytest.mark.parametrize("engine", DAILY, ids=label)
 def test_our_engines_pass_every_check(engine):
     assert failures(engine) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("engine", [*SLOW, *SPECIAL], ids=label)
+@pytest.mark.parametrize("engine", [*(each for each in METHODS if each not in DAILY), *SPECIAL], ids=label)
 def test_every_construction_of_ours_passes_every_check(engine):
     assert failures(engine) == []
 
@@ -180,7 +183,7 @@ import pytest
 from tests.wrong_adapters import MISTAKES, Wrong
 from tests.wrong_talkers import TALKERS
 
-@pytest.mark.conforms(Wrong("nothing"), Wrong("reactions have the other sign"))
+@pytest.mark.conforms(Wrong("reactions have the other sign"))
 def test_it_conforms(conformance):
     conformance()
 """
@@ -192,7 +195,7 @@ def test_three_lines_of_another_package_check_its_engine(pytester):
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
     counted = result.parseoutcomes()
     assert counted["failed"] > 5
-    assert counted["passed"] > 400
+    assert counted["passed"] > 200
     result.stdout.fnmatch_lines(["*wrong reactions have the other sign: reactions_have_sign_and_size: hanging bar*"])
 
 

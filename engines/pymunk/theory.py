@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from engines import EXACT, Holder, Promise, Unpromised
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from engines.pymunk.joints.skate import along_blade
 from engines.pymunk.joints.slot import groove_is_exact
 from reference.joints import Joint, Roll, Skate, Slot
 from reference.mechanism import Mechanism
@@ -40,6 +42,10 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
     if engine.slot == "groove" and any(_is_rewritten(joint, mechanism) for joint in mechanism.joints):
         return Unpromised(
             "a groove off the centre of mass of a body that turns settles at a wrong impulse, at any step"
+        )
+    if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
+        return Unpromised(
+            "a velocity that is zeroed without the turning of a force at the blade is another body's, at any step"
         )
     closing = isinstance(engine.error_bias, str) or engine.error_bias == 0
     if rolling and engine.roll == "contact":
@@ -76,6 +82,11 @@ def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
         case Roll() if engine.roll != "contact":
             return "engine, our rows"
     return "engine"
+
+
+def _is_off_centre(joint: Joint) -> bool:
+    """Whether a force at a skate's blade turns its body, by more than rounding."""
+    return isinstance(joint, Skate) and abs(along_blade(joint)) > 1e-12 * math.hypot(*joint.second_point)
 
 
 def _is_rewritten(joint: Joint, mechanism: Mechanism) -> bool:
