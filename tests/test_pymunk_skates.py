@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import Unsupported
+from engines import Promise, Unpromised, Unsupported
 from engines.lagrange import Lagrange
 from engines.pymunk import EXTENDED, TUNED, Pymunk, methods
 from engines.pymunk.reflection import Reflected
@@ -69,6 +69,15 @@ def test_zeroing_the_centres_velocity_is_another_motion_unless_the_skate_is_ther
     assert position_error(methods.SKATE_CENTRE, SLEIGH, 40) > 1
     there = ChaplyginSleigh(offset=0.0)
     assert position_error(methods.SKATE_CENTRE, there, 40) < 5e-3  # a circle, first order
+
+
+@pytest.mark.parametrize("engine", [methods.SKATE_CENTRE, methods.SKATE_POINT], ids=lambda engine: engine.variant)
+def test_a_naive_skate_promises_an_order_only_where_a_force_at_the_blade_turns_nothing(engine):
+    assert isinstance(engine.order(SLED), Unpromised)
+    for point in ((0.0, 0.0), (-0.1, 0.3)):  # the centre of mass, and a point across a blade along (0.3, 0.1)
+        blade = Skate("blade", None, "sled", point, float(np.arctan2(0.1, 0.3)))
+        mechanism = Mechanism((Body("sled", 1.0, 0.1, (0.0, 0.0, 0.0)),), (blade,))
+        assert engine.order(mechanism) == Promise(1, differences=1)
 
 
 def test_the_predicted_groove_slips_by_rounding_only_and_the_stale_one_by_a_step():

@@ -45,7 +45,7 @@ def named_engines(word: str, variant: str | None) -> tuple[Engine, ...]:
     from engines.registry import ENGINES, load
     from reports.cli.selection import choose_engines
 
-    if ":" not in word:
+    if ":" not in word and not word.endswith(".py"):
         return choose_engines(word, variant, ENGINES)
     try:
         return choose_engines(None, variant, load(word))
