@@ -54,7 +54,7 @@ def is_a_frozen_dataclass(subject: Subject) -> None:
         )
 
 
-def can_be_a_key(subject: Subject) -> None:
+def can_be_hashed(subject: Subject) -> None:
     """An engine can be hashed, and equals itself."""
     try:
         hash(subject.engine)
@@ -64,7 +64,7 @@ def can_be_a_key(subject: Subject) -> None:
         raise Fails("an engine that differs from itself", "equality", "a setting is NaN")
 
 
-def travels_to_a_worker(subject: Subject) -> None:
+def can_be_pickled(subject: Subject) -> None:
     """An engine can be pickled, and is then the same: equal, with the same repr and the same motion."""
     try:
         copy = pickle.loads(pickle.dumps(subject.engine))
@@ -155,8 +155,8 @@ def tells_how_joints_give_way(subject: Subject, world: World) -> None:
 CHECKS = (
     Check(has_a_name),
     Check(is_a_frozen_dataclass),
-    Check(can_be_a_key),
-    Check(travels_to_a_worker),
+    Check(can_be_hashed),
+    Check(can_be_pickled),
     Check(names_its_packages),
     Check(promises_an_order, WORLDS),
     Check(tells_what_a_step_costs, WORLDS),

@@ -76,6 +76,7 @@ def twists_have_their_order(subject: Subject, world: World) -> None:
 
 def _promise(subject: Subject, world: World) -> Promise:
     """What the engine promises here; raises NotAsked where it says why it can't."""
+    subject.run(world.mechanism)  # where it builds nothing it need not promise anything
     promise = subject.engine.order(world.mechanism)
     if isinstance(promise, Unpromised):
         raise NotAsked(f"no order is promised: {promise.reason}")
@@ -126,7 +127,6 @@ def _give(subject: Subject, world: World, dt: float) -> float:
 
 def reactions_have_sign_and_size(subject: Subject, world: World) -> None:
     """Reactions are forces on the second body: up where it hangs, and of the size of its weight and m a."""
-    subject.build(world.mechanism)
     _promise(subject, world)  # a method without one holds another motion, with other forces
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t).reaction

@@ -112,7 +112,7 @@ def any_built(subject: Subject) -> Mechanism:
     return found
 
 
-def stands_alone(subject: Subject) -> None:
+def refuses_a_second_call(subject: Subject) -> None:
     """A run is one shot: a second call is refused, not continued from where the first one ended."""
     run = subject.build(any_built(subject))
     first = stepped(run, 2, 1)
@@ -196,5 +196,5 @@ CHECKS = (
     Check(refuses_odd_mechanisms),
     Check(refuses_bad_steps),
     Check(refuses_bad_counts),
-    Check(stands_alone),
+    Check(refuses_a_second_call),
 )
