@@ -18,7 +18,7 @@ WIDTH = 150  # into a file or a pipe
 
 
 def conform(
-    engine: Annotated[str, typer.Argument(help="An engine's name, or package.module:NAME of anybody's.")],
+    engine: Annotated[str, typer.Argument(help="An engine's name, package.module:NAME, or path/to/file.py.")],
     variant: Annotated[str | None, typer.Option("--variant", help="Only this variant.")] = None,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
@@ -41,11 +41,12 @@ def conform(
 
 
 def named_engines(word: str, variant: str | None) -> tuple[Engine, ...]:
-    """The engines of a name or of package.module:NAME, of this variant if one is given. Raises BadInput."""
+    """The engines of a name or of a reference, of this variant if one is given. Raises BadInput."""
+    from engines.loading import is_reference
     from engines.registry import ENGINES, load
     from reports.cli.selection import choose_engines
 
-    if ":" not in word and not word.endswith(".py"):
+    if not is_reference(word):
         return choose_engines(word, variant, ENGINES)
     try:
         return choose_engines(None, variant, load(word))
