@@ -204,15 +204,12 @@ def _fill_angles(out: list[Array], c: Constants, triangles: Triangles, theta: Ar
     wide_x, wide_y = vx * area, vy * area
     beta = np.arctan2(wide_y - vx * r, vy * r + wide_x, out=out[0])
     phi = np.arctan2(vx * p + wide_y, wide_x - vy * p, out=out[1])
-    beta += branch * (math.pi / 2)
-    phi -= branch * (math.pi / 2)
+    quarter = branch * (math.pi / 2)
+    beta += quarter - math.pi if winding else quarter + c.heading
+    phi += -quarter if winding else math.pi - quarter + c.heading
     if winding:
         beta += theta
-        beta -= math.pi
         phi += theta
-    else:
-        beta += c.heading
-        phi += c.heading + math.pi
 
 
 def _all_one(branch: Array) -> bool:
