@@ -47,7 +47,7 @@ class Outcome(StrEnum):
 
 
 MEANINGS = {
-    Outcome.FINISHED: "ran to its end on the right branch with closed joints; too few steps to say more",
+    Outcome.FINISHED: "ran to its end on the right branch with closed joints; the error may still be large",
     Outcome.CONVERGED: "the error falls with the step, to rounding or as far as it was followed",
     Outcome.PLATEAU: "the error stops falling while the step still does: the constraint is not the ideal one",
     Outcome.SATURATED: "an angle is wrong by more than half a radian: nothing is left to compare",
@@ -55,7 +55,7 @@ MEANINGS = {
     Outcome.TORN: "a joint opened by more than a twentieth of the mechanism's length",
     Outcome.DIVERGED: "a number stopped being finite, or a joint opened by a thousand lengths",
     Outcome.RESET: "the engine started anew by itself",
-    Outcome.REFUSED: "a sentence said why the numbers can't be",
+    Outcome.REFUSED: "these numbers can't be, and a sentence says why",
     Outcome.UNSUPPORTED: "the engine has no such constraint",
     Outcome.ABORTED: "native code ended the process",
     Outcome.TIMED_OUT: "did not end within its time limit",
