@@ -23,7 +23,7 @@ from reports.grid.cells import Cell
 from reports.grid.ending import FileTrouble
 from reports.grid.measure import blank
 from reports.grid.outcomes import Outcome
-from reports.grid.store import COLUMNS, Store
+from reports.grid.store import Store
 from tests.toys import Disc, Toy
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -299,14 +299,29 @@ def test_what_is_no_store_of_ours_is_left_alone_with_a_sentence(tmp_path, make, 
     assert path.is_dir() or path.read_bytes() == old
 
 
-def test_a_store_of_the_first_versions_is_taken_over(tmp_path):
+@pytest.mark.parametrize("version", [0, 1])
+def test_a_store_of_the_first_versions_is_taken_over(tmp_path, version):
     path = filled(tmp_path / "cells.sqlite", CELLS[:2])
     with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("pragma user_version=0")
-    assert set(stored(path)) == set(CELLS[:2])
+        connection.execute("drop table given")
+        connection.execute(f"pragma user_version={version}")
+    with Store.read(path) as store:
+        assert (set(store.get(CELLS)), store.remembered()) == (set(CELLS[:2]), ())
     with Store(path) as store:
         assert set(store.get(CELLS)) == set(CELLS[:2])
-    assert COLUMNS == ("key", "row")
+        store.remember(["words"])
+        assert store.remembered() == ("words",)
+    with closing(sqlite3.connect(path)) as connection:
+        assert connection.execute("pragma user_version").fetchone() == (2,)
+
+
+def test_words_are_remembered_once_and_in_their_order(tmp_path):
+    path = filled(tmp_path / "cells.sqlite", CELLS[:1])
+    with Store(path) as store:
+        store.remember(["second", "first"])
+        store.remember(["third", "second"])
+    with Store.read(path) as store:
+        assert store.remembered() == ("second", "first", "third")
 
 
 def test_a_store_that_another_process_locks_is_a_sentence_and_keeps_its_rows(tmp_path, monkeypatch):
