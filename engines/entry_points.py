@@ -67,11 +67,13 @@ def _checkout() -> dict[str, Any] | None:
 
 
 def _ours(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of what we register, in the order of the file."""
+    """(distribution, key, reference) of what we register, by key: the order of a file is lost in an installation."""
     project = _checkout()
     if project is not None:
-        return [(OURS, key, value) for key, value in project.get("entry-points", {}).get(group, {}).items()]
-    return [(OURS, point.name, point.value) for point in metadata.entry_points(group=group) if _owner(point) == OURS]
+        points = project.get("entry-points", {}).get(group, {}).items()
+    else:
+        points = ((point.name, point.value) for point in metadata.entry_points(group=group) if _owner(point) == OURS)
+    return sorted((OURS, key, value) for key, value in points)
 
 
 def _theirs(group: str) -> list[tuple[str, str, str]]:

@@ -36,9 +36,13 @@ def _ended(arguments: list[str]) -> int:
     """Run a command; its exit status. What is wrong is told on stderr."""
     from contextlib import suppress
 
-    from reports.grid.ending import REFUSED, UNREAD, Ending
+    from reports.grid.ending import REFUSED, UNREAD, BadInput, Ending
 
     try:
+        from planar_crosscheck import clash
+
+        if told := clash():
+            raise BadInput(told)
         from reports.cli.commands import invoke
 
         return invoke(arguments)

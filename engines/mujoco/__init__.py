@@ -1,7 +1,7 @@
 """MuJoCo as an engine under test: planar joints as a tree, loops as soft equality constraints."""
 
 from engines.mujoco.engine import MuJoCo, bare_loop
-from engines.mujoco.methods import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED
+from engines.mujoco.methods import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, VARIANTS
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "EXTENDED",
     "METHODS",
     "TUNED",
+    "VARIANTS",
     "Hardened",
     "MuJoCo",
     "Shipped",

@@ -36,6 +36,7 @@ EXTENDED = MuJoCo(
     skates="rows",
     rolls=RollRows(),
 )
+VARIANTS = (DEFAULT, TUNED, EXTENDED)
 METHODS = (
     DEFAULT,
     TUNED,

@@ -33,7 +33,7 @@ from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
 from engines.pymunk.extended import Extended
 from engines.pymunk.joints.roll import Contact
-from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
+from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, VARIANTS
 from reference.mechanism import Mechanism
 from reference.validation import Count, Positive, validated
 
@@ -71,6 +71,7 @@ __all__ = [
     "SHIPPED_ERROR_BIAS",
     "SHIPPED_ITERATIONS",
     "TUNED",
+    "VARIANTS",
     "Contact",
     "Extended",
     "Pymunk",

@@ -29,6 +29,7 @@ EXTENDED = Extended(
     skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4)),
     pins=Extrapolated(LEAPFROG, "extended", levels=FIVE, powers=(2, 3, 4, 5)),
 )
+VARIANTS: tuple[Engine, ...] = (DEFAULT, TUNED, EXTENDED)
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
 # A skate by every construction that we found in use.
