@@ -49,7 +49,7 @@ def registered(
         for value in found:
             word = name(value)
             if word in owners and value != {**known, **values}[word]:
-                troubles.append(f"{about}: {word!r} is left out, since {owners[word]} has a {kind.word} of this name")
+                troubles.append(f"{about}: {word!r} is left out, since {owners[word]} has one of this name")
             elif word not in values:
                 values[word], owners[word] = value, owner
     return Registered(tuple(values.values()), tuple(troubles))

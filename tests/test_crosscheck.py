@@ -1,8 +1,4 @@
-"""Every scene of every page in every method: below what theory promises, and equal to the baseline's numbers.
-
-The cells are of the report's grid. No number of a scene and no bound stands here: `reports.gate.theory` says where a
-bound comes from, `reports.gate.change` what a baseline's number is worth.
-"""
+"""The grid as tests, which stand in the package, and what has to hold of the grid itself."""
 
 from __future__ import annotations
 
@@ -11,43 +7,21 @@ import pytest
 from engines import Promise
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.gate.baseline import Baseline
 from reports.gate.checks import CHECKS
-from reports.gate.pytest_plugin import KNOWN
-from reports.gate.verdicts import Case, cases
-from reports.gate.walk import Verdict
-from reports.grid.outcomes import Outcome
+from reports.gate.grid_tests import (
+    GRID,
+    test_a_method_gives_the_numbers_of_the_baseline,
+    test_a_method_is_as_exact_as_theory_promises,
+    test_the_baseline_knows_some_of_the_grid,
+)
 from reports.pages.catalogue import PAGES, page_of, untaught
 from tests.toys import Disc
 
-GRID = cases(PAGES)
-each_case = pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in GRID])
-
-
-@pytest.mark.crosscheck
-@each_case
-def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, Verdict], case: Case) -> None:
-    verdict = verdicts[case]
-    if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
-        # What can't be built can't be at any step, and says why.
-        assert all(row.outcome == Outcome.UNSUPPORTED and row.sentence for row in verdict.rows)
-        assert not case.known
-        return
-    assert not verdict.theory_complaints, "\n".join(verdict.theory_complaints)
-
-
-@pytest.mark.crosscheck
-@each_case
-def test_a_method_gives_the_numbers_of_the_baseline(verdicts: dict[Case, Verdict], case: Case) -> None:
-    verdict = verdicts[case]
-    assert not verdict.change_complaints, "\n".join(verdict.change_complaints)
-
-
-@pytest.mark.crosscheck
-def test_the_baseline_knows_some_of_the_grid(request: pytest.FixtureRequest) -> None:
-    baseline: Baseline = request.config.stash[KNOWN]
-    known = {(scene, method) for scene, method, _, _ in baseline.cells}
-    assert known & {(case.scene.name, case.method) for case in GRID}
+__all__ = [
+    "test_a_method_gives_the_numbers_of_the_baseline",
+    "test_a_method_is_as_exact_as_theory_promises",
+    "test_the_baseline_knows_some_of_the_grid",
+]
 
 
 def test_every_method_promises_an_order_or_says_why_it_can_not():

@@ -1,6 +1,7 @@
 """The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --crosscheck-report`, and the table at its end.
 
-A conftest takes it with `pytest_plugins = ["reports.gate.pytest_plugin"]`. Only the cells of selected tests are run.
+The tests are in `reports.gate.grid_tests`. A conftest takes this with `pytest_plugins = ["reports.gate.pytest_plugin"]`
+and a command line with `-p reports.gate.pytest_plugin`. Only the cells of selected tests are run.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Bad files are one line, before anything is run."""
+    config.addinivalue_line("markers", "crosscheck: every scene in every engine variant, against the truth (minutes)")
     try:
         config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:
@@ -42,6 +44,13 @@ def pytest_configure(config: pytest.Config) -> None:
 def _option(config: pytest.Config, name: str) -> Any:
     """The value of an option of this file."""
     return config.getoption(name)
+
+
+def pytest_report_header() -> list[str]:
+    """What distributions register and can't be used."""
+    from reports.pages.catalogue import TROUBLES
+
+    return [f"crosscheck: {line}" for line in TROUBLES]
 
 
 def case_of(item: pytest.Item) -> Case | None:
