@@ -1,0 +1,152 @@
+"""Somebody else's distribution, an engine in two variants and a scene with its page, has its place everywhere.
+
+Not a line is changed here for it: both are installed from wheels, in an environment of their own.
+"""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+
+import pytest
+
+from tests.installations import ROOT, checkout_copy, environment_with, require_a_builder, run, wheel_of
+from tests.third_party import distribution
+
+STEPS = ("--every", "1", "--every", "3", "--every", "10")
+METHODS = ("impulses default", "impulses closed")
+
+
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory):
+    require_a_builder()
+    folder = tmp_path_factory.mktemp("wheels")
+    ours = wheel_of(checkout_copy(folder / "checkout"), folder / "ours")
+    theirs = wheel_of(distribution(folder / "their source"), folder / "theirs")
+    return environment_with(tmp_path_factory.mktemp("environment"), ours, theirs)
+
+
+@pytest.fixture(scope="module")
+def folder(programs, tmp_path_factory):
+    """Where their engine was run in their scene and in ours, and one of ours in theirs."""
+    folder = tmp_path_factory.mktemp("results")
+    for words in (
+        ("flywheel", "spare_wheel", "free_four_bar", "--engine", "impulses", *STEPS),
+        ("flywheel", "--engine", "lagrange", "--every", "1"),
+    ):
+        ended = run(programs / "crosscheck", "run", *words, folder=folder)
+        assert (ended.returncode, ended.stderr) == (0, "")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pages(programs, folder):
+    """The files of the report by name."""
+    ended = run(programs / "crosscheck", "report", folder=folder)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    return {path.name: path for path in (folder / "crosscheck-results").iterdir()}
+
+
+def text_of(path):
+    return path.read_text(encoding="utf-8")
+
+
+def test_engine_and_scenes_are_listed(programs, tmp_path):
+    ended = run(programs / "crosscheck", "list", "flywheel", "spare_wheel", folder=tmp_path)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    lines = [" ".join(line.replace("│", " ").split()) for line in ended.stdout.splitlines()]
+    assert "flywheel flywheel their own invention 0.2" in lines
+    assert "spare_wheel spare_wheel their own invention 0.2" in lines
+    assert "impulses default Impulses(variant='default', share=0.2)" in lines
+    assert "impulses closed Impulses(variant='closed', share=1.0)" in lines
+
+
+def test_both_are_run_and_shown(programs, folder):
+    for scene in ("flywheel", "free_four_bar"):
+        ended = run(programs / "crosscheck", "show", scene, "--engine", "impulses", folder=folder)
+        assert (ended.returncode, ended.stderr) == (0, "")
+        assert ended.stdout.count("impulses") >= 2 * 3
+    rows = list(csv.DictReader(text_of(folder / "crosscheck-results" / "errors.csv").splitlines()))
+    found = {(row["scene"], row["variant"], int(row["every"])) for row in rows if row["engine"] == "impulses"}
+    scenes = ("flywheel", "spare_wheel", "free_four_bar")
+    assert found == {(s, v, e) for s in scenes for v in ("default", "closed") for e in (1, 3, 10)}
+    assert {row["outcome"] for row in rows if row["engine"] == "impulses"} <= {"finished", "converged"}
+
+
+@pytest.fixture(autouse=True)
+def _reported(request):
+    """Every test that looks at the stored rows as CSV needs the report first."""
+    if "folder" in request.fixturenames:
+        request.getfixturevalue("pages")
+
+
+def test_their_page_is_written_from_their_template(pages):
+    text = text_of(pages["flywheel.md"])
+    assert text.startswith("# Their flywheel\n")
+    assert "Closed impulses reach " in text
+    assert "not measured" not in text
+    for method in (*METHODS, "lagrange rk4 projection"):
+        assert f"| {method} |" in text
+    assert {"flywheel_steps.svg", "flywheel_work.svg"} & set(pages)
+
+
+def test_a_scene_without_a_page_has_a_generic_one(pages):
+    text = text_of(pages["spare_wheel.md"])
+    assert text.startswith("# spare_wheel\n")
+    for heading in ("## Work and precision", "## Order and plateau", "## Reactions", "## What was modelled"):
+        assert heading in text
+    assert "| mass | 3 |" in text
+    for method in METHODS:
+        assert f"| {method} |" in text
+
+
+def test_our_page_compares_their_engine(pages):
+    text = text_of(pages["four_bar.md"])
+    for method in METHODS:
+        assert f"| {method} |" in text
+
+
+def test_the_index_leads_to_their_pages(pages):
+    text = text_of(pages["index.md"])
+    assert "- [Their flywheel](flywheel.md). A disc on an axle, which every engine should hold." in text
+    assert "[flywheel](flywheel.md)" in text
+    assert "[spare wheel](spare_wheel.md)" in text
+
+
+def test_their_engine_is_held_to_its_own_promise(programs, tmp_path):
+    options = ("-p", "reports.gate.pytest_plugin", "-p", "no:cacheprovider", "-W", "error", "-m", "crosscheck")
+    chosen = ("--engine", "impulses", "--scene", "flywheel", "--scene", "spare_wheel", "--scene", "free_four_bar")
+    words = ("-m", "pytest", "-q", *options, "--pyargs", "reports.gate.grid_tests", *chosen)
+    ended = run(programs / "python", *words, folder=tmp_path)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert f"{3 * 2 * 2} passed" in ended.stdout  # scenes, variants, tests
+
+
+# Hides what we register of one engine, then writes every page from no rows at all.
+WITHOUT = """
+import sys
+from engines import entry_points
+
+ours = entry_points._ours
+entry_points._ours = lambda group: [point for point in ours(group) if sys.argv[1] not in point[1]]
+from engines.registry import ENGINES
+from reports.pages.catalogue import PAGES, TROUBLES
+from reports.pages.page import Material
+from reports.text.rendering import render_index, render_page
+
+assert ENGINES and all(engine.name != sys.argv[1] for engine in ENGINES)
+assert TROUBLES == ()
+materials = [(page, Material({})) for page in PAGES]
+for page, material in materials:
+    render_page(page, material, "a test")
+render_index(materials, "a test")
+print(*[page.name for page in PAGES])
+"""
+
+
+@pytest.mark.parametrize("engine", ["pymunk", "mujoco", "lagrange"])
+def test_our_pages_are_written_where_an_engine_is_not_registered(engine):
+    ended = subprocess.run([sys.executable, "-c", WITHOUT, engine], cwd=ROOT, capture_output=True, text=True)
+    assert ended.stderr == ""
+    assert {"four_bar", "skate", "rolling", "errata"} <= set(ended.stdout.split())
