@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from reports.cli.options import REFERENCES
 from reports.grid.ending import BadInput, Broken
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ WIDTH = 150  # into a file or a pipe
 
 
 def conform(
-    engine: Annotated[str, typer.Argument(help="An engine's name, or package.module:NAME of anybody's.")],
+    engine: Annotated[str, typer.Argument(help=f"An engine's name, or {REFERENCES}.")],
     variant: Annotated[str | None, typer.Option("--variant", help="Only this variant.")] = None,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
@@ -41,11 +42,12 @@ def conform(
 
 
 def named_engines(word: str, variant: str | None) -> tuple[Engine, ...]:
-    """The engines of a name or of package.module:NAME, of this variant if one is given. Raises BadInput."""
+    """The engines of a name or of a reference, of this variant if one is given. Raises BadInput."""
+    from engines.loading import is_reference
     from engines.registry import ENGINES, load
     from reports.cli.selection import choose_engines
 
-    if ":" not in word:
+    if not is_reference(word):
         return choose_engines(word, variant, ENGINES)
     try:
         return choose_engines(None, variant, load(word))
