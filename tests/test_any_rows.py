@@ -19,6 +19,7 @@ from reports.cli.selection import page_cells
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
+from reports.grid.quantities import QUANTITIES
 from reports.grid.tasks import Answer, Motion, Task, answered
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
@@ -250,6 +251,7 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"growth": np.ones(len(task.times))}
         case _:
             values = {"error": np.asarray(0.5), "evaluations": np.asarray(7.0), "stopped": "", "when": np.asarray(2.0)}
+            values |= {quantity.name: np.asarray(0.5) for quantity in QUANTITIES}
     if lost and isinstance(task, (Motion, referees.Refereed)):
         for name in ("pose", "twist"):
             values[name][len(values[name]) // 2 :] = np.nan
