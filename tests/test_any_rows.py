@@ -16,6 +16,7 @@ import pytest
 
 from reports.charts import theme
 from reports.cli.selection import page_cells
+from reports.gate.declared import Softened
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
@@ -249,6 +250,8 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
         case Neighbours():
             values = {"growth": np.ones(len(task.times))}
+        case Softened():
+            values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:
             values = {"error": np.asarray(0.5), "evaluations": np.asarray(7.0), "stopped": "", "when": np.asarray(2.0)}
             values |= {quantity.name: np.asarray(0.5) for quantity in QUANTITIES}
