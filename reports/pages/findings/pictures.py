@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from reports.charts.families import colour
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
-from reports.charts.work_precision import colour
 from reports.grid.measure import Measurement
 from reports.grid.quantities import quantity
 from reports.pages.findings.lookup import points
