@@ -39,6 +39,11 @@ def mark(family: str, engines: Iterable[str] = ()) -> str:
     return MARKS[places([family, *engines])[family] % len(MARKS)]
 
 
+def colour(engine: str, theme: Theme, engines: Iterable[str] = ()) -> str:
+    """The colour of an engine's family."""
+    return getattr(theme, role(family_of(engine), engines))
+
+
 def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: Theme) -> dict[str, Any]:
     """Line and mark of one method among all that are shown, variants by engine: its family is colour and shape of the
     mark, its variant line and filling, so that a chart survives without colours.
@@ -50,7 +55,7 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
     first = 0 if len(named) == len(methods) else len(VARIANTS)
     own = (engine, variant)
     index = usual.index(own) if own in usual else first + named.index(own)
-    paint, fill = getattr(theme, role(family, shown)), FILLS[index % len(FILLS)]
+    paint, fill = colour(engine, theme, shown), FILLS[index % len(FILLS)]
     return {
         "color": paint,
         "linestyle": LINES[index % len(LINES)],

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.families import family_of, role
+from reports.charts.families import colour
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 from reports.grid.measure import Measurement
 from reports.grid.quantities import quantity
@@ -53,8 +53,7 @@ def draw(lines: Sequence[Line], name: str, theme: Theme = LIGHT) -> Figure:
         for line, look in zip(lines, LOOKS, strict=False):
             if not line.rows:
                 continue
-            paint = getattr(theme, role(family_of(line.rows[0].engine)))
-            shown = points(line.rows, name)
+            paint, shown = colour(line.rows[0].engine, theme), points(line.rows, name)
             axes.plot(
                 [1e3 * step for step, _ in shown],
                 [error for _, error in shown],
