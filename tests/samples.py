@@ -11,9 +11,11 @@ from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
 from engines.mujoco.joints.roll.rows import RollEquality, RollRows
+from engines.mujoco.limited import limited_tendon
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 from engines.pymunk.engine import Pymunk
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
+from engines.pymunk.limited import limited_groove
 from engines.pymunk.reflection import Reflected
 from reference import centrodes, shapes
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
@@ -76,6 +78,7 @@ INSTANCES: tuple[Any, ...] = (
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
+    *(limited_groove(5.0), limited_tendon(5.0)),
     *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
     Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),
 )

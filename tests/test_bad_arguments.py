@@ -37,6 +37,7 @@ NOT_MADE_BY_USERS = {
     *("reference.kinds.Kind", "reference.numerics.integration.Integrated"),
     *("reference.pendulum.double_pendulum.TwoPoints", "engines.altered.Altered", "engines.contract.Size"),
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
+    *("engines.loading.Kind", "engines.entry_points.Registered"),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),

@@ -15,7 +15,8 @@ from reports.text.links import anchor, headings
 from reports.text.programs import PAGES as FOLDER
 from reports.text.programs import program, programs_of
 from tests import test_any_rows as rendering
-from tests.test_any_rows import FROM_ROWS, cheap, whole, written
+from tests.committed_rows import page_rows as whole
+from tests.test_any_rows import FROM_ROWS, cheap, written
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 

@@ -8,6 +8,7 @@ from typing import Any
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import SKATES
 from reference.mechanism import Mechanism
+from reference.validation import Positive, validated
 
 _FRICTION = next(engine for engine in SKATES if engine.variant == "tendon friction")
 
@@ -16,7 +17,7 @@ _FRICTION = next(engine for engine in SKATES if engine.variant == "tendon fricti
 class LimitedTendon(MuJoCo):
     """A tendon whose friction gives way beyond `limit` [N]."""
 
-    limit: float = float("inf")
+    limit: Positive = 1.0
 
     def model(self, mechanism: Mechanism, dt: float) -> Any:
         model = super().model(mechanism, dt)
@@ -24,7 +25,8 @@ class LimitedTendon(MuJoCo):
         return model
 
 
-def limited_tendon(limit: float) -> LimitedTendon:
+@validated
+def limited_tendon(limit: Positive) -> LimitedTendon:
     """The tendon with a limit [N] on its friction."""
     settings = {name: value for name, value in vars(_FRICTION).items() if name != "variant"}
     return LimitedTendon("tendon with friction loss", **settings, limit=limit)

@@ -7,13 +7,14 @@ from typing import Any
 
 from engines.pymunk.engine import Pymunk
 from reference.mechanism import Mechanism
+from reference.validation import Positive, validated
 
 
 @dataclass(frozen=True)
 class LimitedGroove(Pymunk):
     """A groove that gives way when it would need more than `limit` [N], like dry friction."""
 
-    limit: float = float("inf")
+    limit: Positive = 1.0
 
     def model(self, mechanism: Mechanism, dt: float, iterations: int | None = None) -> Any:
         model = super().model(mechanism, dt, iterations)
@@ -22,6 +23,7 @@ class LimitedGroove(Pymunk):
         return model
 
 
-def limited_groove(limit: float) -> LimitedGroove:
+@validated
+def limited_groove(limit: Positive) -> LimitedGroove:
     """The groove with a limit [N] on its force."""
     return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)

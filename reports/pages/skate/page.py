@@ -26,7 +26,7 @@ from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Motion
 from reports.pages.page import FEATURED, Material, Page
 from reports.pages.skate import pictures as skate_pictures
-from reports.pages.skate.expectations import KNOWN
+from reports.pages.skate.expectations import KNOWN, ORDERS
 from reports.pages.skate.experiments import FAILURES, MAPS
 from reports.pages.skate.methods import CONSTRUCTIONS, known
 from reports.text import tables
@@ -218,6 +218,7 @@ PAGE = Page(
     featured=featured,
     figures=figures,
     words=words,
+    orders=ORDERS,
     known=KNOWN,
     tasks=tuple(Motion(cell) for _, _, cells in PATHS for cell in cells.values()),
 )
