@@ -332,9 +332,7 @@ FAILURES: tuple[Failure, ...] = (
 OFFSETS = (-10.0, -0.5, -1e-3, 1e-3, 0.5, 10.0, 1e3)
 # (samples, steps a sample): steps of 0.3, 0.1, 0.03, 0.01 and 0.001 s over 3 s.
 MAP_STEPS = ((10, 1), (30, 1), (100, 1), (300, 1), (300, 10))
-MAPPED = tuple(
-    method(f"{name} {variant}") for name in ("pymunk", "mujoco") for variant in ("default", "tuned", "extended")
-)
+MAPPED = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned", "extended"))
 
 MAPS: tuple[StabilityMap, ...] = (
     StabilityMap(

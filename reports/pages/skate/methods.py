@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from engines import Engine
 from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.limited import limited_tendon
@@ -16,6 +18,11 @@ _KNOWN = {f"{engine.name} {engine.variant}": engine for engine in (*VARIANTS, *C
 def method(name: str) -> Engine:
     """The engine called "pymunk groove"; raises KeyError for an unknown name."""
     return _KNOWN[name]
+
+
+def known(names: Iterable[str]) -> dict[str, Engine]:
+    """The engines of these names; a name that is not registered here is left out."""
+    return {name: _KNOWN[name] for name in names if name in _KNOWN}
 
 
 def limited(limit: float) -> tuple[Engine, ...]:

@@ -28,7 +28,7 @@ from reports.pages.page import FEATURED, Material, Page
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN
 from reports.pages.skate.experiments import FAILURES, MAPS
-from reports.pages.skate.methods import CONSTRUCTIONS, method
+from reports.pages.skate.methods import CONSTRUCTIONS, known
 from reports.text import tables
 from reports.text.holders import holders
 from reports.text.lookups import nearest_step
@@ -83,7 +83,7 @@ def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
 
 
 PATHS = tuple(
-    (title, scene, {name: Cell(scene, method(name), 1) for name in OVERLAID})
+    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
     for title, scene in (
         ("ahead for 3 s, steps of 1e-2 s", SLEIGH),
         ("backwards for 10 s: it turns round", SleighBackwards()),

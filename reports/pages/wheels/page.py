@@ -14,7 +14,7 @@ from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
 from reports.pages.page import Material, Page
-from reports.pages.skate.methods import method
+from reports.pages.skate.methods import known
 from reports.pages.skate.page import counted
 from reports.pages.wheels import pictures as wheels_pictures
 from reports.pages.wheels.expectations import KNOWN
@@ -32,7 +32,7 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 
 
 COASTING = tuple(
-    (title, scene, {name: Cell(scene, method(name), 1) for name in OVERLAID})
+    (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
     for title, scene in (
         ("car and trailer, 5 s, steps of 1e-2 s", CarAndTrailer()),
         ("cart with two casters, 3 s", Cart()),
