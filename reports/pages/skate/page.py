@@ -98,9 +98,10 @@ def path_picture(material: Material) -> Figure:
         found = material.motions(cells.values())
         truth = scene.skate_pose(np.linspace(0, scene.duration, scene.samples + 1))
         lines = [Path(truth[:, :2], "truth", "ink", "-", 3.0)]
-        for name, (colour, dashes) in OVERLAID.items():
-            if cells[name] in found:
-                points = skate_path(scene, found[cells[name]])[:, :2]
+        for name, cell in cells.items():
+            if cell in found:
+                colour, dashes = OVERLAID[name]
+                points = skate_path(scene, found[cell])[:, :2]
                 lines.append(Path(points, name, colour, dashes, 1.6, framed=False, dot=True))
         some = truth[:: max(1, scene.samples // (BLADES - 1))]
         panels.append(Panel(title, lines, [Blades(some, 0.12 * float(np.ptp(truth[:, :2])), "ink", 3.0)]))
