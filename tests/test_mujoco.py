@@ -456,3 +456,17 @@ def test_the_shipped_stiffness_is_mujocos_own() -> None:
     equality = mujoco.MjSpec().add_equality()
     assert tuple(equality.solref) == Shipped().reference(FREE.mechanism(), 1e-3)
     assert tuple(equality.solimp) == Shipped().impedance
+
+
+@pytest.mark.parametrize("steps", [2.0, 3.0, 5.0, 10.0, 20.0])
+@pytest.mark.parametrize("dt", [1e-2, 1e-4])
+def test_the_first_acceleration_of_a_loop_under_discrete_is_divided_by_what_its_spring_is_in_a_step(steps, dt):
+    # From a closed start the exact loop has J a = -bias. Backward Euler's spring (stiffness k, damping b per inertia)
+    # gives that over 1 + h b + h^2 k = (1 + 1 / steps)^2: a share that no step changes.
+    def first(integrator):
+        engine = MuJoCo("loop", integrator=integrator, stiffness=TiedToStep(steps))
+        run = engine.build(DrivenFourBar().mechanism(), dt)
+        mujoco.mj_forward(run.model.compiled, run.data)
+        return run.data.efc_J.reshape(run.data.nefc, -1)[:2] @ run.data.qacc
+
+    np.testing.assert_allclose(first("discrete") / first("implicitfast"), (1 + 1 / steps) ** -2, rtol=1e-4)
