@@ -13,8 +13,8 @@ ORDERS = {
 SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"
 EULER = "by design: with steps of 1e-3 s a first-order method loses a motion of this speed within the horizon"
 FIRST = (
-    "by design: this integrator takes a loop's spring implicitly, so that from a closed start its first acceleration is "
-    "the exact one divided by 1 + h b + h^2 k: by 1.44 for a spring of five steps, at any step h"
+    "by design: this integrator takes a loop's spring implicitly, so that from a closed start its first acceleration "
+    "is the exact one divided by 1 + h b + h^2 k: by 1.44 for a spring of five steps, at any step h"
 )
 DRIFT = "by design: nothing closes the gap that a first-order method opens"
 FIVE = "by design: a spring of five steps gives way as the square of five"
