@@ -22,7 +22,7 @@ SCENES: tuple[Scene, ...] = (FOUR_BAR, SLEIGH)
 # Both scenes' samples are 1e-2 s apart, so that this many steps a sample make steps of a millisecond.
 EVERY = 10
 
-VARIANTS: tuple[Engine, ...] = (*pymunk.VARIANTS, *mujoco.VARIANTS, *lagrange.VARIANTS)
+VARIANTS: tuple[Engine, ...] = (*pymunk.VARIANTS, pymunk.LEAPFROG, *mujoco.VARIANTS, *lagrange.VARIANTS)
 INTEGRATORS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk.METHODS]))
 
 
