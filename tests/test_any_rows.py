@@ -46,7 +46,7 @@ from tests.committed_rows import RESULTS, page_rows
 SUBSETS = 16  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
-FROM_ROWS = tuple(page for page in PAGES if page_cells(page))  # the two others are computed when they are written
+FROM_ROWS = tuple(page for page in PAGES if page_cells(page))  # the others have none, or compute when written
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
 DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
 

@@ -155,4 +155,4 @@ def page_cells(page: Page) -> tuple[Cell, ...]:
     for scene in page.scenes:
         compared = page.engines_of(scene)
         cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
-    return tuple(dict.fromkeys([*cells, *page.extra_cells()]))
+    return tuple(dict.fromkeys([*cells, *page.extra_cells(), *page.borrowed]))

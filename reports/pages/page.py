@@ -120,7 +120,8 @@ class Page:
     template: its file, which may extend "base.md"; without one, page.md in the folder of the page's name beside this
     file, and where there is none the generic "base.md" itself.
     scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
-    own cells are run too; for a page without scenes.
+    own cells are run too; for a page without scenes. borrowed: cells of other pages whose rows the words tell; this
+    page never has them run.
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
     template's own variables, numbers taken from the rows.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
@@ -136,6 +137,7 @@ class Page:
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     companions: tuple[Scene, ...] = ()
+    borrowed: tuple[Cell, ...] = ()
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
     maps: tuple[StabilityMap, ...] = ()
