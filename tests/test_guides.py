@@ -55,7 +55,9 @@ def test_every_number_of_a_guide_is_that_of_a_row(page):
 @pytest.mark.parametrize("page", [REACTIONS, INTEGRATORS], ids=lambda page: page.name)
 def test_every_clause_of_a_guide_has_its_committed_rows(page):
     text = text_of(page, page_rows(page))
-    said = ["pymunk as shipped has"] if page is REACTIONS else ["measured order is", "half a step of velocity", "here 0"]
+    said = (
+        ["pymunk as shipped has"] if page is REACTIONS else ["measured order is", "half a step of velocity", "here 0"]
+    )
     assert [words for words in said if words not in text] == []
 
 
