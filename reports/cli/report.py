@@ -39,7 +39,11 @@ def report(
     with Store.read(results / STORE) as store:
         # What is published is of what is registered; a report of one's own shows what else was run.
         known = own if publish else with_remembered(own, store.remembered())
-        whole = tuple({item: None for page in own.pages for item in (*page_cells(page), *page.all_tasks())})
+        # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
+        shown = [item for page in own.pages for item in (*page_cells(page), *page.all_tasks())]
+        borrowed = {cell for page in own.pages for cell in page.borrowed}
+        run = {cell for page in own.pages if not page.borrowed for cell in page_cells(page)}
+        whole = tuple(dict.fromkeys(item for item in shown if item not in borrowed or item in run))
         material = {
             page: Material(store.get(page_cells(page)), store.answers(page.all_tasks())) for page in known.pages
         }
