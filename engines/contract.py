@@ -11,7 +11,8 @@
 4. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
    again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
-6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`); both go on.
+6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`), one that estimates an error
+   above what it claims says from when on (`unresolved_at`); all go on.
 7. `order(mechanism)` is what theory promises of its errors, from its settings and the mechanism alone: a Promise, which
    the gate holds it to, or Unpromised with the reason why nothing can be promised.
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
@@ -19,6 +20,10 @@
 9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
    engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
 10. `softness(mechanism, dt)` says how its joints give way by its own settings: a Softness, or None where they don't.
+
+More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
+is given (engine, mechanism, dt, steps) and tells the CPU seconds of that many steps of its model with nothing read:
+`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too.
 """
 
 from __future__ import annotations

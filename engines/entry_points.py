@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
@@ -53,6 +54,15 @@ def registered(
             elif word not in values:
                 values[word], owners[word] = value, owner
     return Registered(tuple(values.values()), tuple(troubles))
+
+
+def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
+    """The first value of each key of a group; what can't be used, or is of a key that ours has, is left out."""
+    found: dict[str, Any] = {}
+    for _, key, reference in (*_ours(group), *_theirs(group)):
+        with suppress(ValueError):
+            found.setdefault(key, load(reference, kind)[0])
+    return found
 
 
 @cache

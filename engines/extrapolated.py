@@ -16,6 +16,10 @@ from reference.validation import Count, InvalidMechanism, Name, Numbers, Positiv
 
 Array = NDArray[np.float64]
 
+# Estimates below this part of the mechanism's length, or of a radian, are of no concern.
+UNNOTICED = 1e-8
+TOLD = 1e-4  # of the largest reaction: what may be a thousandth of it is told
+
 
 @validated
 def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
@@ -37,7 +41,13 @@ class Extrapolated(Valid):
     of the step (L. F. Richardson, 1911): they must be the powers that the inner engine's error really has, one fewer
     than `levels`. A sample is NaN wherever one of the runs is not finite. The cost is the sum of all. The `estimate` is
     the distance to the extrapolation without the coarsest run and without the highest power: the error of that simpler
-    one, so cautious while the powers describe the error, and large when they don't.
+    one, so cautious while the powers describe the error, and large when they don't; and the rounding of all steps.
+
+    What it claims is to be nearer than its finest run. Where it moves by more than what that run seems to miss (the
+    distance to the extrapolation of the two finest) if the coarsest run or the finest is left out, the runs are no
+    series in the step: one has gone another way at a singular position, say. From there on the samples are those of the
+    finest run, the estimate is the largest distance of another run from it, `unresolved_at` is the time, and a warning
+    tells it. Two runs can't show it.
 
     Raises ValueError for levels that are not rising whole numbers or powers that do not fit them.
     """
@@ -115,14 +125,16 @@ class Extrapolated(Valid):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Build the engine once a level; raises whatever it raises."""
-        return ExtrapolatedRun(self, tuple(self.engine.build(mechanism, dt / level) for level in self.levels))
+        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        return ExtrapolatedRun(self, tuple(self.engine.build(mechanism, dt / level) for level in self.levels), size)
 
 
 class ExtrapolatedRun:
     """The built models of all levels, ready to be stepped once; see `engines.Run`."""
 
-    def __init__(self, method: Extrapolated, runs: tuple[Run, ...]) -> None:
-        self._method, self._runs = method, runs
+    def __init__(self, method: Extrapolated, runs: tuple[Run, ...], scale: Array) -> None:
+        """`scale` (3,) [m, m, rad]: what differences of poses are measured by."""
+        self._method, self._runs, self._scale = method, runs, scale
         self.size: Size = runs[0].size
 
     @validated
@@ -130,22 +142,68 @@ class ExtrapolatedRun:
         levels, powers = self._method.levels, self._method.powers
         parts = [run(samples, every * level) for run, level in zip(self._runs, levels, strict=True)]
         weights = extrapolation_weights(levels, powers)
-        poses = np.stack([part.pose for part in parts])
-        pose = combine(poses, weights)
-        simpler = combine(poses[1:], extrapolation_weights(levels[1:], powers[:-1]))
-        with np.errstate(all="ignore"):
-            estimate = np.abs(pose - simpler)
+        poses, twists, reactions = (
+            np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")
+        )
+        pose, twist = combine(poses, weights), combine(twists, weights)
+        reaction, estimate = combine(reactions, weights), self._estimate(poses, pose, samples * every)
+        t, warnings = parts[-1].t, [warning for part in parts for warning in part.warnings]
+        lost = self._lost(poses, pose, estimate)
+        if lost < len(t):
+            pose[lost:], twist[lost:], reaction[lost:] = poses[-1, lost:], twists[-1, lost:], reactions[-1, lost:]
+            with np.errstate(all="ignore"):
+                estimate[lost:] = np.abs(poses[:-1, lost:] - poses[-1, lost:]).max(axis=0)
+            warnings.append(f"ours: unresolved from {t[lost]:.4g} s on, the runs are no series in the step")
+        elif len(levels) > 2:
+            warnings += _told(
+                reactions, reaction, combine(reactions[1:], extrapolation_weights(levels[1:], powers[:-1]))
+            )
         resets = [part.reset_at for part in parts if part.reset_at is not None]
         return Trajectory(
-            t=parts[-1].t,
+            t=t,
             pose=pose,
-            twist=combine(np.stack([part.twist for part in parts]), weights),
-            reaction=combine(np.stack([part.reaction for part in parts]), weights),
+            twist=twist,
+            reaction=reaction,
             stepping=sum(part.stepping for part in parts),
-            warnings=tuple(dict.fromkeys(warning for part in parts for warning in part.warnings)),
+            warnings=tuple(dict.fromkeys(warnings)),
             reset_at=min(resets, default=None),
             estimate=estimate,
+            unresolved_at=float(t[lost]) if lost < len(t) else None,
         )
+
+    def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
+        """(times, bodies, 3) [m, m, rad] for poses (levels, times, bodies, 3) and what they are extrapolated to."""
+        levels, powers = self._method.levels, self._method.powers
+        simpler = combine(poses[1:], extrapolation_weights(levels[1:], powers[:-1]))
+        # Each step rounds a pose anew, and the combination carries that as many times as its weights are large.
+        carried = np.abs(extrapolation_weights(levels, powers)).sum() * np.finfo(float).eps * steps * levels[-1]
+        elapsed = np.linspace(0.0, 1.0, poses.shape[1])[:, None, None]
+        with np.errstate(all="ignore"):
+            return np.abs(pose - simpler) + carried * elapsed * np.maximum(np.abs(pose), self._scale)
+
+    def _lost(self, poses: Array, pose: Array, estimate: Array) -> int:
+        """The first sample at which the runs are no series in the step; the number of samples if there is none.
+
+        Errors add up along a motion, so that what the finest run has missed before counts too: it may pass zero.
+        """
+        levels, powers = self._method.levels, self._method.powers
+        if len(levels) < 3:
+            return poses.shape[1]
+        finer = combine(poses[-2:], extrapolation_weights(levels[-2:], powers[:1]))
+        coarser = combine(poses[:-1], extrapolation_weights(levels[:-1], powers[:-1]))
+        with np.errstate(all="ignore"):
+            missed = (np.abs(finer - poses[-1]) / self._scale).max(axis=(1, 2))
+            moved = (np.maximum(estimate, np.abs(pose - coarser)) / self._scale).max(axis=(1, 2))
+        lost = (moved > np.maximum.accumulate(np.nan_to_num(missed, nan=0.0))) & (moved > UNNOTICED)
+        return int(np.argmax(lost)) if lost.any() else len(lost)
+
+
+def _told(runs: Array, reaction: Array, simpler: Array) -> list[str]:
+    """What is to be said of reactions (times, rows): how far a simpler extrapolation is from them, if far."""
+    with np.errstate(all="ignore"):
+        largest = np.nanmax(np.abs(runs), initial=0.0)
+        share = np.nanmax(np.abs(reaction - simpler), initial=0.0) / largest if largest > 0 else 0.0
+    return [f"ours: reactions are resolved to {share:.0e} of the largest"] if share > TOLD else []
 
 
 @validated

@@ -123,6 +123,11 @@ class RoundOnLine:
         self._radius = -1j * self._along  # from the contact to the middle
         self._point = complex(*start.point)
 
+    @property
+    def constants(self) -> tuple[complex, ...]:
+        """a, b, m, s of P = a + b (theta - s) - e^(i theta) m; b is along the tangent."""
+        return self._point + self._radius, self._along, self._middle, self._start
+
     def place(self, theta: float) -> Place:
         if not -FARTHEST <= theta <= FARTHEST:
             return LOST
@@ -149,6 +154,14 @@ class RoundOnRound:
         # Along the normal -i e^(i angle): from the ground's middle to the contact, from there to the body's, and both.
         self._ground, self._radius, self._between = -1j * around, -1j * radius, -1j * (around + radius)
         self._angle = float(rolling.contact(rolling.theta).tangent_angle)
+
+    @property
+    def constants(self) -> tuple[complex, ...]:
+        """a, b, c, m, s, t, k of P = a + b e_t - e^(i theta) m and P' = i (c e_t - e^(i theta) m).
+
+        e_t is the tangent, at the angle t + k (theta - s).
+        """
+        return self._centre, self._between, self._radius, self._middle, self._start, self._angle, self._turning
 
     def place(self, theta: float) -> Place:
         if not -FARTHEST <= theta <= FARTHEST:
@@ -183,8 +196,8 @@ class Table:
             if error < ROUNDING or width <= FINEST or (error < POOR and error > before / 4):
                 break
             width, before = width / 2, error
-        self._exact_only = not error < POOR
-        if not self._exact_only:
+        self.exact_only = not error < POOR
+        if not self.exact_only:
             for turn in (-1, 1):  # a turn to both sides; what is met beyond is laid when it is met
                 for block in range(min(16, math.ceil(2 * math.pi / (BLOCK * width)))):
                     self.place(rolling.theta + turn * block * BLOCK * width)
@@ -218,10 +231,23 @@ class Table:
         out = 1j * once  # from the origin to the contact
         return place + out, out * rect(1.0, -theta)
 
+    @property
+    def width(self) -> float:
+        """Of a cell [rad]; the cell at zero begins at zero."""
+        return self._width
+
+    def cells(self, first: int, count: int) -> NDArray[np.complex128]:
+        """(count, 20) the cells from `first` on, as `_fitted` gives them; NaN where there is none."""
+        none = (NOWHERE,) * (3 + NODES + 2 * NODES - 1)
+        for index in range(first, first + count):
+            if index not in self._cells:
+                self._lay(index // BLOCK * BLOCK)
+        return np.array([self._cells[index] or none for index in range(first, first + count)])
+
     def _laid(self, theta: float) -> tuple[complex, ...] | None:
         """The cell of a rotation, laid if it is not there yet; None where only exact contacts will do."""
         index = math.floor(theta * self._per_radian)
-        if index not in self._cells and not self._exact_only:
+        if index not in self._cells and not self.exact_only:
             self._lay(index // BLOCK * BLOCK)
         return self._cells.get(index)
 

@@ -39,6 +39,7 @@ class Trajectory(Valid):
     estimate: Annotated[Numbers, of_shape("times", "bodies", 3)] | None = (
         None  # (times, bodies, 3) the method's own estimate of its error in the poses
     )
+    unresolved_at: float | None = None  # s, from when on that estimate is above what the method claims
 
 
 @validated

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 import engines
 import reference
 from engines import registry
+from engines.pymunk.contraction import Sweeping
 from engines.pymunk.reflection import Reflected
 from reference.kinds import NOT_FINITE as MAY_BE_INFINITE
 from reference.kinds import Floats
@@ -90,7 +91,8 @@ def bad(annotation: Any) -> list[Any]:
     if origin is Annotated and MAY_BE_INFINITE in arguments:
         return [value for value in bad(arguments[0]) if not any(value is each for each in NOT_FINITE)]
     if origin is Annotated:
-        return bad(Annotated[arguments[0], arguments[1]] if len(arguments) > 2 else arguments[0])
+        kind, *notes = arguments
+        return bad(Annotated[kind, notes[0]] if len(notes) > 1 else kind)
     if origin is Literal:
         return [*KNOWN[str], "", "nonsense", arguments[0] + " ", [arguments[0]], (arguments[0],)]
     if origin is tuple:
@@ -165,13 +167,16 @@ def good(annotation: Any) -> Any:
         return good(arguments[0])
     if origin is Callable or annotation is Callable:
         return lambda value: value
+    if annotation is Sweeping:  # no user makes one
+        return Sweeping(8)
     return next(each for each in INSTANCES if isinstance(each, annotation))
 
 
 def modules() -> Iterator[Any]:
     for package in (reference, engines):
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            yield importlib.import_module(found.name)
+            if not found.name.startswith("engines.lagrange.compiled."):  # numba's, and nobody calls it
+                yield importlib.import_module(found.name)
 
 
 def public(kind: Callable[[Any], bool]) -> dict[str, Any]:

@@ -10,12 +10,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from reports.cli.selection import page_cells
+from reports.cli.selection import shown_cells
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Page
-from reports.text.tables import digest
+from reports.text.csv_files import digest
 
 RESULTS = Path(__file__).parents[1] / "reports" / "results"
 KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module
@@ -62,7 +62,7 @@ def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
 @cache
 def page_rows(page: Page) -> Mapping[Cell, Measurement]:
     """The committed rows of a page's cells: read once for all tests, because a cell's key takes its time."""
-    return committed_rows(page_cells(page))
+    return committed_rows(shown_cells(page))
 
 
 def _row(cell: Cell) -> Measurement | None:

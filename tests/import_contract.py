@@ -6,7 +6,9 @@ an adapter reaches it through another module. pyproject.toml names this class an
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fnmatch import fnmatchcase
+from typing import cast
 
 from grimp import ImportGraph
 from importlinter import Contract, ContractCheck, fields, output
@@ -33,11 +35,15 @@ class AllowListContract(Contract):
             for name in sorted(reached)
             if not self._is_allowed(name)
         }
-        unused = [entry for entry in self.allowed if not any(self._matches(name, str(entry)) for name in reached)]
+        unused = [entry for entry in self._entries() if not any(self._matches(name, entry) for name in reached)]
         return ContractCheck(kept=not chains and not unused, metadata={"chains": chains, "unused": unused})
 
     def _is_allowed(self, name: str) -> bool:
-        return any(self._matches(name, str(entry)) for entry in self.allowed)
+        return any(self._matches(name, entry) for entry in self._entries())
+
+    def _entries(self) -> list[str]:
+        # An instance holds the list itself in the field's place, which the field's type doesn't tell.
+        return [str(entry) for entry in cast(Iterable[object], self.allowed)]
 
     @staticmethod
     def _matches(name: str, entry: str) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from engines import Engine
 from engines.altered import Altered
@@ -43,7 +43,7 @@ class Misbuilt(Mechanism):
         pass
 
     def reaction(
-        self, pose: Array, acceleration: Array, inertias: Array | None = None, gravity: ArrayLike | None = None
+        self, pose: Array, acceleration: Array, inertias: Array | None = None, gravity: Array | None = None
     ) -> Array:
         """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
         return self.right.reaction(pose, acceleration, inertias, gravity)
@@ -90,7 +90,7 @@ class Mistake:
                 index = [joint.name for joint in joints].index(self.owner)
                 joints[index] = _wrong_joint(joints[index], self.kind, self.detail, relative, length, time)
         wrong = Misbuilt(tuple(bodies), tuple(joints), gravity, right=right)
-        pose = right.pose
+        pose, closed = right.pose, twist
         for _ in range(CLOSING_STEPS):
             pose, closed = projected(wrong, pose, twist, 0.0)
         return replace(wrong, bodies=tuple(_moved(b, p, v) for b, p, v in zip(bodies, pose, closed, strict=True)))

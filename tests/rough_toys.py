@@ -11,7 +11,9 @@ import sys
 import threading
 import time
 from dataclasses import dataclass
+from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
+from typing import Any
 
 from reference.trajectory import Trajectory
 from reports.grid.worker import LARGEST
@@ -221,3 +223,10 @@ def probe() -> list[str]:
 def dies(*_: object) -> None:
     """Instead of a worker's work: killed before it says that it is ready."""
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def helpers() -> tuple[int | None, int | None]:
+    """The process ids of multiprocessing's fork server and resource tracker, which it has no public name for."""
+    server: Any = forkserver._forkserver
+    tracker: Any = resource_tracker._resource_tracker
+    return server._forkserver_pid, tracker._pid

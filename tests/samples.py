@@ -8,7 +8,7 @@ import numpy as np
 
 from engines import registry
 from engines.extrapolated import Extrapolated
-from engines.lagrange import Lagrange
+from engines.lagrange import Lagrange, stacked
 from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
 from engines.mujoco.joints.roll.rows import RollEquality, RollRows
 from engines.mujoco.limited import limited_tendon
@@ -39,13 +39,14 @@ from reference.skate.path import SkatePath
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.slider_crank.slotted_lever import SlottedLever
 from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
 from reports.grid.cells import Cell
 from tests.mechanisms import four_bar
 
 SCENES_OF_LIMITS = (
     *(Parallelogram(), OverdrivenFourBar(), SkateOnSlope(), HeldBySkates(), DiscInHole(), SquareOnCatenaries()),
-    *(SpinningRing(links=5), RodEndInSlot(), SliderAtDeadCentre(), LongPendulum()),
+    *(SpinningRing(links=5), RodEndInSlot(), SliderAtDeadCentre(), LongPendulum(), SlottedLever()),
 )
 _times = np.linspace(0.0, 1.0, 33)
 _table = np.stack([np.cos(_times), np.sin(2 * _times), 0.1 + 2 * _times], axis=-1)
@@ -80,5 +81,6 @@ INSTANCES: tuple[Any, ...] = (
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
     *(limited_groove(5.0), limited_tendon(5.0)),
     *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
+    stacked((four_bar(),)),
     Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),
 )

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from reports.charts import theme
-from reports.cli.selection import page_cells
+from reports.cli.selection import shown_cells
 from reports.gate.declared import Softened
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
@@ -33,8 +33,9 @@ from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
 from reports.pages.scaling import page as scaling
-from reports.pages.skate import experiments as skate_failures
 from reports.pages.skate import page as skate
+from reports.pages.skate import turning_round
+from reports.pages.skate.slipping import slipping
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels.folding import Folding
@@ -46,7 +47,7 @@ from tests.committed_rows import RESULTS, page_rows
 SUBSETS = 16  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
-FROM_ROWS = tuple(page for page in PAGES if page_cells(page))  # the others have none, or compute when written
+FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
 DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
 
@@ -164,10 +165,11 @@ def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones
     constants = [(value, rows[cell]) for value, cell in softness_cells()]
     chains = page_rows(scaling.PAGE)
     for count in (1, 4):
-        few = [chance.sample(own, count) for own in (corners, constants)]
-        failed = [[(value, replace(row, angle=math.nan)) for value, row in own] for own in few]
-        assert theme.svg(rolling_charts.draw_plateaus(*few), "few")
-        assert theme.svg(rolling_charts.draw_plateaus(*failed), "failed")
+        few, soft = chance.sample(corners, count), chance.sample(constants, count)
+        failed = [(value, replace(row, angle=math.nan)) for value, row in few]
+        failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
+        assert theme.svg(rolling_charts.draw_plateaus(few, soft), "few")
+        assert theme.svg(rolling_charts.draw_plateaus(failed, failed_soft), "failed")
         some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
         for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
             assert scaling.figures(Material(own))
@@ -295,8 +297,8 @@ def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
 @pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.UNSUPPORTED])
 def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
     for page, observations in (
-        (skate.PAGE, skate_failures.backwards),
-        (skate.PAGE, skate_failures.slipping),
+        (skate.PAGE, turning_round.backwards),
+        (skate.PAGE, slipping),
         (wheels.PAGE, wheels_failures.folding),
     ):
         told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in page.all_tasks()}))
@@ -307,7 +309,7 @@ def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
 
 
 def test_a_motion_that_can_not_be_read_says_so_in_its_line():
-    cell = Motion(skate_failures.TURNING_ROUND[0]).cell
+    cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
     [line] = observe(material, cell, "a step", lambda run: f"{1 / 0}")
     assert line.outcome == "can't be read: ZeroDivisionError: division by zero"

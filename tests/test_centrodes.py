@@ -19,6 +19,7 @@ from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
 from reference.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism
+from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
 # The coupler's rate vanishes at theta = 2.8006 and 5.9406 rad; these arcs of the crank stay away from there.
@@ -200,7 +201,7 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     np.testing.assert_array_equal([[float(r["body_x"]), float(r["body_y"])] for r in rows], shapes.body)
     np.testing.assert_array_equal([[float(r["x"]), float(r["y"]), float(r["angle"])] for r in rows], shapes.pose)
     root = ElementTree.fromstring(as_svg(shapes, width=150.0))
-    paths = {path.get("id"): path.get("d") for path in root.iter("{http://www.w3.org/2000/svg}path")}
+    paths = {path.get("id"): present(path.get("d")) for path in root.iter("{http://www.w3.org/2000/svg}path")}
     drawn = {
         name: np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
         for name, text in paths.items()
@@ -220,7 +221,7 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
 def test_what_is_higher_in_the_world_is_higher_in_the_drawing():
     shapes = shapes_of_motion(*cardan(), points=60)
     root = ElementTree.fromstring(as_svg(shapes, width=150.0))
-    text = next(path.get("d") for path in root.iter() if path.get("id") == "space")
+    text = next(present(path.get("d")) for path in root.iter() if path.get("id") == "space")
     drawn = np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
     # SVG counts y downwards. One scale for both directions, to the four decimals written.
     scale = np.ptp(drawn[:, 0]) / np.ptp(shapes.space[:, 0])

@@ -20,6 +20,7 @@ from reports.grid.quantities import quantity
 from reports.grid.scaling_fit import Point, Series, cost_exponent
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.scaling.chart import _spread, scaling_chart
+from tests.drawn import annotation
 from tests.rows import falling, row_of
 from tests.toys import Toy
 
@@ -97,9 +98,9 @@ def test_each_method_is_drawn_with_its_numbers_in_its_scenes_panel(draw, across,
     found = panels(figure)
     assert [panel.get_title(loc="left") for panel in found] == ["other", "one scene"]
     entries = legend(figure)
+    methods = ("pymunk default", "mujoco tuned", "mujoco extended")
     for panel, scene in zip(found, ("other", "one_scene"), strict=True):
         drawn = series(panel)
-        methods = ("pymunk default", "mujoco tuned", "mujoco extended")
         assert drawn == {
             entries[method]: [pytest.approx(point) for point in expected(scene, method, across)] for method in methods
         }
@@ -181,7 +182,7 @@ def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slope
     assert len(guides) == 3
     for text, ((left, bottom), (right, top)) in zip(panel.texts, guides, strict=True):
         assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
-        assert text.xy == (pytest.approx(right), pytest.approx(top))
+        assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
     assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
 
@@ -189,7 +190,7 @@ def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slope
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 def test_an_engine_is_a_colour_and_a_mark_and_a_variant_a_line_and_a_filling(theme):
     variants = ["default", "tuned", "extended", "fourth", "fifth"]
-    shown = dict.fromkeys(ENGINES, variants)
+    shown: dict[str, list[str]] = dict.fromkeys(map(str, ENGINES), variants)
     looks = {(engine, v): families.look(engine, v, shown, theme) for engine in ENGINES for v in variants}
     for engine in ENGINES:
         own = [looks[engine, variant] for variant in variants]
@@ -233,7 +234,9 @@ def test_engines_of_one_family_share_a_colour_and_differ_in_their_lines(monkeypa
 class Relative(Toy):
     """Of the family of another engine."""
 
-    family = "wide"
+    @property
+    def family(self) -> str:
+        return "wide"
 
 
 def test_a_chart_without_a_row_that_can_be_compared_is_empty_and_no_error():
@@ -266,7 +269,7 @@ def test_a_scaling_chart_has_costs_in_microseconds_and_errors_over_the_number_of
         pytest.approx(p) for p in ((1, 2e-6), (10, 6e-6), (100, 1.4e-4))
     ]
     assert series(error)[entries["mujoco tuned"]] == [pytest.approx((1, 1e-3))]
-    for panel, up in ((cost, "CPU time of a step [us]"), (error, "largest angle error [rad]")):
+    for panel, up in ((cost, "CPU time of a step [µs]"), (error, "largest angle error [rad]")):
         assert (panel.get_xlabel(), panel.get_ylabel()) == ("links", up)
         assert (panel.get_xscale(), panel.get_yscale()) == ("log", "log")
 
@@ -275,7 +278,7 @@ def test_each_slope_stands_beside_its_own_last_point():
     found = (growth("pymunk default", 1e-6, 1e-5, 1e-4), growth("mujoco tuned", 1e-6, 1e-4, 1e-2))
     cost, error = scaling_chart(found).axes
     assert not error.texts
-    told = {text.get_text(): (text.xy, text.get_color()) for text in cost.texts}
+    told = {text.get_text(): (annotation(text).xy, text.get_color()) for text in cost.texts}
     assert told == {
         f"{cost_exponent(one)[0]:.1f}": (
             (100, pytest.approx(1e6 * one.points[-1].step)),

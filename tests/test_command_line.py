@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import os
-import random
-import signal
 import subprocess
 import sys
-import time
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from reports import __main__ as program
-from reports.cli import commands, interruption, selection
+from reports.cli import commands, selection
 from reports.cli import report as report_command
 from reports.grid import files
 from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
@@ -109,7 +106,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
     monkeypatch.setattr(selection, "page_cells", lambda page: (cell,))
-    monkeypatch.setattr(rendering, "render_all", lambda material, command: {"index.md": f"made by {command}"})
+    monkeypatch.setattr(rendering, "render_all", lambda material, command, further: {"index.md": f"made by {command}"})
     monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
         from reports.grid.measure import measure
@@ -237,13 +234,6 @@ def test_a_command_s_own_status_is_the_program_s(monkeypatch):
     assert call("other") == FINE
 
 
-def test_ctrl_c_has_again_the_meaning_that_it_had(capfd):
-    before = signal.getsignal(signal.SIGINT)
-    assert call("--help") == FINE
-    assert call("nonsense") == REFUSED
-    assert signal.getsignal(signal.SIGINT) is before
-
-
 def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
     assert call() == FINE
     out, err = capfd.readouterr()
@@ -292,88 +282,3 @@ def test_closed_streams_are_no_reason_to_fail(tmp_path):
     assert process.returncode == FINE
     with closing(Store(tmp_path / "cells.sqlite")._connection) as connection:
         assert connection.execute("select count(*) from results").fetchone() == (1,)
-
-
-# Sends Ctrl-C to itself when the given number of modules has been asked for after the program's first line.
-INTERRUPTS_ITSELF = """
-import runpy, signal, sys
-
-asked, count = 0, int(sys.argv[1])
-signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever the tests' own parent did with it
-
-def hook(event, arguments):
-    global asked
-    if event == "import" and not arguments[0].startswith("encodings") and "reports.cli.interruption" in sys.modules:
-        asked += 1
-        if asked == count:
-            signal.raise_signal(signal.SIGINT)
-
-sys.addaudithook(hook)
-sys.argv = ["crosscheck", *sys.argv[2:]]
-runpy.run_module("reports", run_name="__main__", alter_sys=True)
-"""
-# Seeded. This command asks for more than 1400 modules: numpy, scipy, matplotlib and both engines are among them.
-MOMENTS = [1, 2, 5, *random.Random(16).sample(range(6, 1300), 5)]
-
-
-@pytest.mark.parametrize("moment", MOMENTS)
-def test_ctrl_c_at_any_import_is_status_130_without_a_word(moment):
-    process = subprocess.run(
-        [sys.executable, "-c", INTERRUPTS_ITSELF, str(moment), "run", "no_scene"],
-        env=environment(),
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
-    assert (process.returncode, process.stdout, process.stderr) == (INTERRUPTED, "", "")
-
-
-def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
-    """To the whole group of processes, as a terminal does: workers must not complain either."""
-    words = ["run", "pendulum_100", "--engine", "lagrange", "--variant", "rk4 projection", "--results", str(tmp_path)]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "1000"],
-        env=environment(),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
-    store = tmp_path / "cells.sqlite"
-    while process.poll() is None and count_of_rows(store) == 0:
-        time.sleep(0.1)
-    os.killpg(process.pid, signal.SIGINT)
-    out, err = process.communicate()
-    assert process.returncode == INTERRUPTED
-    assert err == ""
-    stored = count_of_rows(store)
-    assert 1 <= stored <= 2
-    assert f"Stopped: {stored} of 3 cells are stored; the next run goes on from there." in out
-
-
-def count_of_rows(path):
-    if not path.exists():
-        return 0
-    with Store.read(path) as store:
-        return store._connection.execute("select count(*) from results").fetchone()[0]
-
-
-def test_a_ctrl_c_that_is_kept_raises_when_asked_and_the_second_at_once():
-    before = signal.getsignal(signal.SIGINT)
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        with interruption.kept() as check:
-            check()
-            signal.raise_signal(signal.SIGINT)
-            with pytest.raises(KeyboardInterrupt):
-                check()
-            with pytest.raises(KeyboardInterrupt):
-                signal.raise_signal(signal.SIGINT)
-        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        with interruption.kept() as check, interruption.ending_at_once():
-            signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
-            check()
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
-from engines import lagrange, mujoco, pymunk
+from engines import Engine, lagrange, mujoco, pymunk
 from engines.conformance import CHECKS, Case, Subject, cases
 from engines.conformance.changes import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS
@@ -139,7 +141,8 @@ def test_another_description_is_of_the_same_motion(world, change):
 
 @pytest.mark.parametrize("mistake", FOUND_BY)
 def test_a_wrong_adapter_fails_by_the_name_of_its_mistake(mistake):
-    for case in cases(TALKERS[mistake] if mistake in TALKERS else Wrong(mistake)):
+    wrong: Any = TALKERS[mistake] if mistake in TALKERS else Wrong(mistake)
+    for case in cases(wrong):
         result = case.result()
         if result.status == "fails":
             assert case.check.name == FOUND_BY[mistake], result.sentence
@@ -161,7 +164,7 @@ def test_the_right_engine_inside_the_wrong_ones_passes():
 
 def test_an_engine_that_spoils_its_mechanism_spoils_no_other_check():
     kept = [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
-    for case in cases(Wrong("the mechanism is written into")):
+    for case in cases(cast(Engine, Wrong("the mechanism is written into"))):
         result = case.result()
         assert result.status != "fails" or case.check.name == "leaves_the_mechanism_alone", result.sentence
     assert kept == [repr(world.mechanism) + repr(world.mechanism.twist) for world in WORLDS]
@@ -211,7 +214,7 @@ def told(capsys, *words: str) -> tuple[int, list[str], str]:
     with pytest.raises(SystemExit) as ended:
         main(["conform", *words])
     captured = capsys.readouterr()
-    return ended.value.code, captured.out.splitlines(), captured.err
+    return int(ended.value.code or 0), captured.out.splitlines(), captured.err
 
 
 def test_the_command_tells_a_line_a_check(capsys):

@@ -10,14 +10,17 @@ from reference.scenes import SCENES
 from reports.gate.checks import CHECKS
 from reports.gate.grid_tests import (
     GRID,
+    pytest_generate_tests,
     test_a_method_gives_the_numbers_of_the_baseline,
     test_a_method_is_as_exact_as_theory_promises,
     test_the_baseline_knows_some_of_the_grid,
 )
 from reports.pages.catalogue import PAGES, page_of, untaught
+from tests.present import present
 from tests.toys import Disc
 
 __all__ = [
+    "pytest_generate_tests",
     "test_a_method_gives_the_numbers_of_the_baseline",
     "test_a_method_is_as_exact_as_theory_promises",
     "test_the_baseline_knows_some_of_the_grid",
@@ -55,7 +58,7 @@ def test_the_grid_has_every_scene_of_every_page():
 @pytest.mark.parametrize("scene", [pytest.param(scene, id=scene.name) for scene in SCENES])
 def test_every_scene_of_the_list_is_taught_by_one_page_with_its_own_numbers(scene: Scene):
     assert not untaught([scene])
-    assert [page.name for page in PAGES if scene in page.scenes] == [page_of(scene).name]
+    assert [page.name for page in PAGES if scene in page.scenes] == [present(page_of(scene)).name]
 
 
 def test_a_page_teaches_only_scenes_of_the_list():

@@ -13,6 +13,7 @@ import pytest
 from reference.errata.catalogue import ERRATA, WORD_SLIPS
 from reference.errata.erratum import Values
 from reference.errata.rolling import rolling_acceleration
+from reference.joints import Pin
 from reports import __main__ as command_line
 from reports.grid.tasks import answered
 from reports.pages.errata import errata_engines as referees
@@ -77,11 +78,12 @@ def test_a_motion_of_a_wrong_mechanism_is_told_apart(said):
     """A referee that could not fail would be none: with a centre of mass elsewhere, no formula fits the bars' ends."""
     engine = REFEREES[-1]
     mechanism = referees.double_pendulum()
-    moved = [replace(joint, second_point=(joint.second_point[0] * 1.01, 0.0)) for joint in mechanism.joints]
+    pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
+    moved = [replace(pin, second_point=(pin.second_point[0] * 1.01, 0.0)) for pin in pins]
     # The pins are moved by a hundredth of the bar, the bodies with them, so that the start still fits.
     first, second = mechanism.bodies
     along = [np.array([np.cos(body.pose[2]), np.sin(body.pose[2])]) for body in (first, second)]
-    shift = 0.01 * abs(mechanism.joints[0].second_point[0])
+    shift = 0.01 * abs(pins[0].second_point[0])
 
     def shifted(body, direction, rate):
         pose = (body.pose[0] + shift * direction[0], body.pose[1] + shift * direction[1], body.pose[2])

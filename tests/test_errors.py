@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
@@ -44,9 +44,9 @@ class Pair(Scene):
         joints = (Pin("axle", None, "first", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "first", 5.0, 0.0))
         return Mechanism((first, second), joints, (0.0, -10.0))
 
-    def _motion(self, t: ArrayLike) -> Trajectory:
+    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
         """The second disc moves along x at 6 t: not a motion of this mechanism, and no error knows that."""
-        t = np.asarray(t, dtype=float)
+        t = times
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
         pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0
         pose[:, 1], twist[:, 1, 0] = np.stack([3 * t**2, 0 * t + 1, 0 * t], axis=-1), 6 * t

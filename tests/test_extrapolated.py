@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +13,7 @@ from engines.extrapolated import Extrapolated, combine, extrapolation_weights
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from tests.mechanisms import pendulum
+from tests.present import present
 from tests.toys import Plain
 
 
@@ -22,6 +24,7 @@ class Toy(Plain):
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
     broken_below: float = 0.0  # s, smaller steps give NaN from the second sample on
     resets_below: float = 0.0  # s, smaller steps reset themselves
+    turned_above: float = math.inf  # s, larger steps are 1 rad off from t = 2 s on
     name: str = "toy"
     variant: str = "plain"
 
@@ -37,10 +40,12 @@ class ToyRun:
         self.size = Size(1, 3, 2, 2)
 
     def __call__(self, samples: int, every: int) -> Trajectory:
-        t = np.arange(samples + 1) * every * self.dt
+        t = np.arange(samples + 1, dtype=float) * every * self.dt
         error = t * sum(c * self.dt**power for power, c in self.toy.terms.items())
         if self.dt < self.toy.broken_below:
             error[1:] = np.nan
+        if self.dt > self.toy.turned_above:
+            error[t > 2] += 1
         shape = np.ones((1, 1, 3))
         reset = self.dt < self.toy.resets_below
         return Trajectory(
@@ -106,7 +111,7 @@ def test_the_estimate_is_above_the_error_and_falls_with_the_step():
         assert trajectory.estimate is not None
         assert trajectory.estimate.shape == trajectory.pose.shape
         assert errors(trajectory)[0] < trajectory.estimate.max()
-    assert fine.estimate.max() < 1e-2 * coarse.estimate.max()  # ten times finer, order three
+    assert present(fine.estimate).max() < 1e-2 * present(coarse.estimate).max()  # ten times finer, order three
 
 
 def test_the_estimate_shows_that_the_powers_are_wrong():
@@ -114,8 +119,31 @@ def test_the_estimate_shows_that_the_powers_are_wrong():
     wrong = run(Extrapolated(Toy({1: 1.0}), "extended", (1, 2, 3, 4), (2, 3, 4)))
     assert right.estimate is not None
     assert wrong.estimate is not None
-    assert right.estimate.max() < 1e-13
+    assert right.estimate.max() < 1e-12  # what all steps together may round
     assert wrong.estimate.max() > 1e-3
+
+
+def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_on():
+    # As if all but the finest had passed a singular position the other way at t = 2 s.
+    turned = Extrapolated(Toy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(pendulum(), 0.1)(10, 3)
+    finest = Toy(turned_above=0.03).build(pendulum(), 0.025)(10, 12)
+    assert turned.unresolved_at == pytest.approx(2.1)
+    assert turned.warnings == ("ours: unresolved from 2.1 s on, the runs are no series in the step",)
+    late = turned.t > 2
+    for name in ("pose", "twist", "reaction"):
+        assert np.array_equal(getattr(turned, name)[late], getattr(finest, name)[late])
+        assert not np.array_equal(getattr(turned, name)[~late], getattr(finest, name)[~late])
+    assert turned.estimate is not None
+    # The other runs are 1 rad away, which is what the finest may be wrong by.
+    assert np.all(np.abs(turned.estimate[late] - 1) < 0.1)
+    assert turned.estimate[~late].max() < 1e-3
+
+
+@pytest.mark.parametrize(("levels", "powers"), [((1, 2), (2,)), ((2, 3), (2,)), ((1, 2, 3, 4), (2, 3, 4))])
+def test_a_series_in_the_step_is_resolved_whatever_its_size(levels, powers):
+    for size in (1e-6, 1.0, 30.0):
+        toy = Toy({2: size, 3: -2 * size, 4: size})
+        assert run(Extrapolated(toy, "extended", levels, powers)).unresolved_at is None
 
 
 def test_the_start_on_which_all_levels_agree_comes_out_exact():
@@ -142,7 +170,9 @@ def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
     trajectory = run(Extrapolated(Toy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
     assert trajectory.stepping == pytest.approx(1e-3 * 30 * (1 + 2 + 3))
     assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
-    assert trajectory.warnings == ("reset", "at step 0.05", "at step 0.0333")
+    # The last is the method's own: powers of 2 and 3 alike at such steps.
+    assert trajectory.warnings[:3] == ("reset", "at step 0.05", "at step 0.0333")
+    assert trajectory.warnings[3:] == ("ours: reactions are resolved to 6e-04 of the largest",)
     assert run(Extrapolated(Toy(), "extended", (1, 2), (2,))).reset_at is None
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reference.four_bar import DrivenFourBar, FourBar, FreeFourBar, MovingFourBar, Unreachable
+from tests.present import present
 
 CHAPTER = DrivenFourBar().four_bar
 OTHERS = (
@@ -92,7 +93,7 @@ def test_the_rocker_reaches_its_limits_and_nothing_beyond(linkage):
 
 def test_at_the_rockers_limits_crank_and_coupler_are_in_line():
     linkage = FourBar(0.4, 1.0, 0.9, (1.1, 0.3))
-    for low, high in linkage.rocker_limits():
+    for low, high in present(linkage.rocker_limits()):
         for phi in (low, high):
             joint = np.array(linkage.ground) + linkage.rocker * np.array([np.cos(phi), np.sin(phi)])
             distance = np.hypot(*joint)

@@ -5,28 +5,25 @@ from __future__ import annotations
 import csv
 import math
 from dataclasses import fields, replace
-from pathlib import Path
+from typing import Any
 
 import pytest
 
 from engines import EXACT, Promise, Softness, Unpromised
-from engines.altered import Altered
-from reports.gate.baseline import BadBaseline, Baseline, Old, identity, read_baseline
-from reports.gate.change import change, drift
+from reports.gate.baseline import Baseline
 from reports.gate.checks import Check, Deviation, complaints, nearest
-from reports.gate.nudged import Nudge, nudged_cells
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction
 from reports.gate.table import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, theory
 from reports.gate.verdicts import Case, cases, checks
-from reports.gate.walk import Verdict, walk
+from reports.gate.walk import Verdict
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank, measure
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES
 from reports.pages.page import Page
-from reports.text.tables import as_csv
+from reports.text.csv_files import as_csv
 from tests.toys import Disc, Toy
 
 SCENE = Disc()
@@ -53,9 +50,14 @@ JUDGE = Prediction(
 FINE = 1e-3
 
 
-def row(every: int = 10, outcome: Outcome = Outcome.FINISHED, **errors: float) -> Measurement:
+def row(every: int = 10, outcome: Outcome = Outcome.FINISHED, **errors: Any) -> Measurement:
     """A row of the toy at 1e-2 / every [s], every error 1e-9 unless it is given."""
     return replace(blank(Cell(SCENE, Toy(), every), outcome), **{**dict.fromkeys(NAMES, 1e-9), **errors})
+
+
+def alone(quantity: str, error: float) -> dict[str, Any]:
+    """One error by its name."""
+    return {quantity: error}
 
 
 def of(found: tuple[Check, ...], quantity: str) -> Check:
@@ -74,9 +76,9 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
     promise = Promise(2)
     assert all(check.passed for check in theory(JUDGE, promise, None, row()))
     # Second order at a tenth of the judge's step: a hundredth of 1e-4, and the room above it.
-    found = theory(JUDGE, promise, None, row(**{quantity: 1.1 * (ROOM * 1e-6 + 2e-9)}))
+    found = theory(JUDGE, promise, None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in found if not check.passed] == [quantity]
-    assert all(check.passed for check in theory(JUDGE, promise, None, row(**{quantity: 0.9 * ROOM * 1e-6})))
+    assert all(check.passed for check in theory(JUDGE, promise, None, row(**alone(quantity, 0.9 * ROOM * 1e-6))))
 
 
 def test_a_bound_is_the_sum_of_the_terms_that_it_tells():
@@ -193,59 +195,6 @@ def test_a_toy_whose_model_is_wrong_by_a_constant_fails_though_every_step_is_bel
     assert failed == {"error", "order"}
 
 
-def old(outcome: Outcome = Outcome.FINISHED, **errors: float) -> Old:
-    return Old(outcome, {**dict.fromkeys(NAMES, 1e-9), **errors})
-
-
-@pytest.mark.parametrize("quantity", NAMES)
-def test_a_number_that_changed_by_a_hundredth_is_noticed(quantity):
-    found = change(row(**{quantity: 1.01e-9}), old())
-    assert [check.quantity for check in found if not check.passed] == [quantity]
-
-
-def test_numbers_that_differ_beyond_the_printed_digits_are_the_same():
-    assert all(check.passed for check in change(row(angle=1.23449e-5), old(angle=1.234e-5)))
-
-
-def test_what_rounding_does_to_a_start_is_what_it_may_do_to_a_number():
-    now, before = row(angle=3e-13), old(angle=2e-13)
-    assert not of(change(now, before), "angle").passed
-    near = [row(angle=2.8e-13), row(angle=3.1e-13)]
-    assert of(change(now, before, near), "angle").passed
-    nearer = [row(angle=3.001e-13)]
-    assert not of(change(now, before, nearer), "angle").passed
-
-
-def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
-    torn = row(outcome=Outcome.TORN)
-    assert not change(torn, old())[0].passed
-    assert change(torn, old(Outcome.TORN))[0].passed
-    assert change(torn, old(Outcome.SATURATED), [row(outcome=Outcome.SATURATED)])[0].passed
-
-
-def test_with_other_versions_three_times_as_large_fails_and_twice_does_not():
-    assert all(check.passed for check in drift(row(angle=2e-5), old(angle=1e-5)))
-    assert not of(drift(row(angle=4e-5), old(angle=1e-5)), "angle").passed
-    assert of(drift(row(angle=5e-12), old(angle=1e-13)), "angle").passed, "rounding"
-
-
-def test_a_walk_holds_each_row_against_the_baselines_row_of_the_same_cell():
-    case = Case(SCENE, Toy("one", factor=1e-4), Promise(2))
-    measured = [measure(cell, repeat=False) for cell in case.cells()]
-    same = {identity(each): Old(each.outcome, {name: getattr(each, name) for name in NAMES}) for each in measured}
-    coarsest = identity(measured[0])
-    changed = {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": 1e-12})}
-    lacking = {key: value for key, value in same.items() if key != coarsest}
-    found = [walk([case], Baseline(cells), workers=1)[case] for cells in (same, changed, lacking)]
-    assert [len(verdict.change_complaints) for verdict in found] == [0, 1, 0]
-    assert "it was 1e-12" in found[1].change_complaints[0]
-    assert [verdict.new for verdict in found] == [0, 0, 1]
-    # Of other versions a number may differ, and not be more than three times as large.
-    for versions, complaints_told in (("", 1), ("Python 2.7", 0)):
-        near = {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": 0.9e-8})}
-        assert len(walk([case], Baseline(near, versions), workers=1)[case].change_complaints) == complaints_told
-
-
 def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
     def found(measured: float) -> tuple[Check, ...]:
         return (Check("error", "angle", measured, 1.0),)
@@ -272,46 +221,6 @@ def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
     assert Check("error", "angle", 0.0, 0.0).passed
 
 
-def written(path: Path, *measured: Measurement) -> Path:
-    path.write_text(as_csv(measured, timings=False), encoding="utf-8")
-    return path
-
-
-def test_a_baseline_is_read_as_it_was_written_with_the_versions_beside_it(tmp_path):
-    path = written(tmp_path / "errors.csv", row(angle=1.5e-5), row(every=3, outcome=Outcome.TORN))
-    found = read_baseline(path)
-    assert found.cells[identity(row())].errors["angle"] == 1.5e-5
-    assert found.cells[identity(row(every=3))].outcome == Outcome.TORN
-    assert found.same_versions
-    (tmp_path / "timings.csv").write_text("# 2026-01-01\n# Python 2.7, numpy 0.1\n")
-    assert read_baseline(path).versions == "Python 2.7, numpy 0.1"
-    assert not read_baseline(path).same_versions
-
-
-@pytest.mark.parametrize("text", [None, "", "a,b\n1,2\n", "\0\0", "damaged"])
-def test_a_file_that_is_no_baseline_is_one_line(tmp_path, text):
-    path = tmp_path / "errors.csv"
-    if text == "damaged":
-        written(path, row())
-        path.write_text(path.read_text().replace("finished", "dissolved"))
-    elif text is not None:
-        path.write_text(text)
-    with pytest.raises(BadBaseline, match=r"baseline .*errors\.csv") as told:
-        read_baseline(path)
-    assert "\n" not in str(told.value)
-
-
-def test_a_nudged_start_is_another_rounding_of_the_same_and_the_same_for_a_seed():
-    mechanism = SCENE.mechanism()
-    spins = {Nudge(seed)(mechanism).twist[0, 2] for seed in range(20)}
-    assert len(spins) == 3
-    assert max(abs(spin / mechanism.twist[0, 2] - 1) for spin in spins) <= 2.3e-16
-    assert Nudge(1)(mechanism) == Nudge(1)(mechanism)
-    cells = nudged_cells(Cell(SCENE, Toy(), 1))
-    assert len({cell.key for cell in cells}) == len(cells)
-    assert all(isinstance(cell.engine, Altered) and cell.label == Cell(SCENE, Toy(), 1).label for cell in cells)
-
-
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> Verdict:
     return Verdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, new=1)
 
@@ -329,59 +238,6 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
     assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text
     assert "| disc | toy default | error | 3 | by design: soft |" in text
     assert "cells are not in the baseline" in text
-
-
-SUITE = """
-import pytest
-from reports.gate.verdicts import Case
-from engines import Promise
-from tests.toys import Disc, Toy
-
-CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
-
-@pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in CASES])
-def test_case(verdicts, case):
-    assert case in verdicts
-    print("ran", sorted(each.method for each in verdicts))
-"""
-
-
-@pytest.fixture
-def suite(pytester):
-    """A grid of three toys in a folder of its own."""
-    root = Path(__file__).parents[1]
-    pytester.makeini(f"[pytest]\npythonpath = {root}\n")
-    pytester.makeconftest('pytest_plugins = ["reports.gate.pytest_plugin"]')
-    pytester.makepyfile(SUITE)
-    written(pytester.path / "errors.csv", row())
-    return pytester
-
-
-def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
-    found = suite.runpytest_subprocess(
-        "-s", "--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md"
-    )
-    found.assert_outcomes(passed=1, deselected=2)
-    found.stdout.fnmatch_lines(
-        ["*ran [[]'toy two'[]]*", "*crosscheck*", "scene *bound*", "disc *toy two*", "written to *"]
-    )
-    assert "| disc | toy two |" in (suite.path / "out.md").read_text()
-    assert "toy one" not in (suite.path / "out.md").read_text()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
-        (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
-        (["--scene", "moon"], "no case of --scene"),
-    ],
-)
-def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):
-    found = suite.runpytest_subprocess("--baseline", "errors.csv", *arguments)
-    assert found.ret == pytest.ExitCode.USAGE_ERROR
-    assert told in found.stderr.str()
-    assert "Traceback" not in found.stderr.str()
 
 
 def test_every_field_that_a_baseline_needs_is_a_field_of_a_measurement():

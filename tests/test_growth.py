@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -123,7 +124,7 @@ class Slow(Plain):
     variant: str = "slow"
     name: str = "toy"
 
-    def build(self, mechanism, dt):
+    def build(self, mechanism, dt) -> Any:
         self.clock.now += self.builds.pop(0)
         return lambda samples, every: SimpleNamespace(stepping=self.steps.pop(0))
 

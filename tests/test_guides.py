@@ -1,5 +1,6 @@
 """The guides: glossary, reactions, integrators. Their numbers are stored rows, and their programs run."""
 
+# pyright: reportAttributeAccessIssue=false
 from __future__ import annotations
 
 import contextlib
@@ -8,16 +9,19 @@ import math
 import re
 from dataclasses import replace
 
+import mujoco
 import pytest
 
-from reports.cli.selection import choose_cells, page_cells
-from reports.pages.guides.page import EVERY, PAGES, SCENES, VARIANTS
+from reports.cli.selection import choose_cells, page_cells, shown_cells
+from reports.pages.guides.page import EVERY, FOUR_BAR, PAGES, SCENES, VARIANTS
 from reports.pages.page import Material
+from reports.text.lookups import told
 from reports.text.rendering import render_page
 from tests.committed_rows import page_rows
 
 GLOSSARY, REACTIONS, INTEGRATORS = PAGES
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
 FOOT = re.compile(r"^---\n.*", re.DOTALL | re.MULTILINE)
 MEASURED = re.compile(r"\d\.\d|\de-\d")
 
@@ -30,8 +34,8 @@ def text_of(page, rows) -> str:
 
 
 def prose(text: str) -> str:
-    """A page without its programs and its last line, which names versions."""
-    return FOOT.sub("", BLOCK.sub("", text))
+    """A page without its programs, the addresses of its links, and its last line, which names versions."""
+    return FOOT.sub("", ADDRESS.sub("", BLOCK.sub("", text)))
 
 
 @named
@@ -56,7 +60,9 @@ def test_every_number_of_a_guide_is_that_of_a_row(page):
 def test_every_clause_of_a_guide_has_its_committed_rows(page):
     text = text_of(page, page_rows(page))
     said = (
-        ["pymunk as shipped has"] if page is REACTIONS else ["measured order is", "half a step of velocity", "here 0"]
+        ["pymunk as shipped has", "in its reactions", "reactions have a plateau of"]
+        if page is REACTIONS
+        else ["measured order is", "`implicitfast` is 0", "and stiff Euler", "| as shipped: a time constant"]
     )
     assert [words for words in said if words not in text] == []
 
@@ -66,8 +72,79 @@ def test_the_rows_of_guides_are_at_a_millisecond():
         assert scene.spacing / EVERY == pytest.approx(1e-3, rel=0.05)
 
 
+def known(page) -> dict:
+    """What asks for single rows of a guide, from the committed ones."""
+    return told(Material(page_rows(page)), (FOUR_BAR,))
+
+
+def test_without_forces_that_depend_on_velocity_implicitfast_does_what_euler_does():
+    """The guide's sentence about a loop: both errors are the same to the digits that it prints, and of first order."""
+    euler, implicit = (("free_four_bar", "mujoco", f"stiff {name}") for name in ("Euler", "implicitfast"))
+    asked = known(INTEGRATORS)
+    for every in (1, EVERY):
+        assert asked["at"](*implicit, every).angle == pytest.approx(asked["at"](*euler, every).angle, rel=1e-2)
+    for method in (euler, implicit):
+        assert asked["sweep"](*method).order == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("integrator", "product", "stable"),
+    [("Euler", 1.8, True), ("Euler", 2.2, False), ("implicitfast", 2.2, True), ("implicitfast", 200.0, True)],
+)
+def test_euler_loses_a_servo_beyond_two_and_implicitfast_never(integrator, product, stable):
+    """The guide's bound on a servo of gain k on an inertia I: Euler multiplies its rate by 1 - h k / I in a step."""
+    step, inertia = 1e-3, 0.1
+    model = mujoco.MjModel.from_xml_string(f"""
+        <mujoco><option timestep="{step}" gravity="0 0 0" integrator="{integrator}"/>
+          <worldbody><body><joint name="turn" axis="0 0 1"/>
+            <inertial pos="0 0 0" mass="1" diaginertia="1 1 {inertia}"/></body></worldbody>
+          <actuator><velocity joint="turn" kv="{product * inertia / step}"/></actuator></mujoco>""")
+    data = mujoco.MjData(model)
+    data.qvel[:] = 1.0
+    mujoco.mj_step(model, data, 20)
+    # 0.8 to the twentieth is 0.01, 1.2 to the twentieth 38.
+    assert (abs(data.qvel[0]) < 0.1) == stable
+    assert (abs(data.qvel[0]) > 10.0) != stable
+
+
+def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits_are_lost():
+    asked = known(REACTIONS)
+    tuned = ("free_four_bar", "mujoco", "tuned")
+    assert asked["sweep"](*tuned).order == pytest.approx(2.0, abs=0.1)
+    assert not asked["sweep"](*tuned).plateau > 0
+    assert asked["sweep"](*tuned, "reaction").plateau > 10 * asked["at"](*tuned, EVERY).angle
+    extended = asked["at"]("free_four_bar", "pymunk", "extended", EVERY)
+    assert extended.reaction > 100 * extended.angle
+
+
+def test_one_change_alone_wins_little_and_both_win_much():
+    """The spring as shipped with RK4, and the stiff spring with Euler, against both changed."""
+    at = known(INTEGRATORS)["at"]
+    shipped, fourth, stiff, both = (
+        at("free_four_bar", "mujoco", variant, EVERY).angle
+        for variant in ("default", "RK4 alone", "stiff Euler", "tuned")
+    )
+    assert min(fourth, stiff) > 0.5 * shipped
+    assert both < 1e-3 * shipped
+
+
+def test_the_questions_of_users_are_answered_with_their_threads():
+    text = text_of(INTEGRATORS, {}) + text_of(REACTIONS, {})
+    for thread in (
+        "issues/1085",
+        "issues/548",
+        "issues/1124",
+        "issues/732",
+        "issues/278",
+        "issues/1217",
+        "issues/2150",
+    ):
+        assert thread in text
+
+
 def test_guides_read_the_rows_of_other_pages_and_have_nothing_run():
-    assert page_cells(REACTIONS) == REACTIONS.borrowed
+    assert page_cells(REACTIONS) == ()
+    assert shown_cells(REACTIONS) == REACTIONS.borrowed
     assert REACTIONS.borrowed
     chosen = choose_cells(SCENES, VARIANTS, PAGES, full=False)
     assert chosen == choose_cells(SCENES, VARIANTS, (), full=False)

@@ -8,10 +8,19 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines.lagrange import _RK4, METHODS, TRUTH, Lagrange, _Dynamics, _runge_kutta
+from engines.lagrange import METHODS, TRUTH, Lagrange
+from engines.lagrange.dynamics import Dynamics, runge_kutta
+from engines.lagrange.tableaus import RK4
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy, joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
+
+
+@pytest.fixture(autouse=True, params=["compiled", "numpy"])
+def code(request, monkeypatch):
+    """Every test is run with both; where numba is missing, both are numpy."""
+    if request.param == "numpy":
+        monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
 
 
 def swinging_angle(t, amplitude):
@@ -56,7 +65,7 @@ def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_wo
     mechanism, random = four_bar(), np.random.default_rng(3)
     apart = mechanism.pose + 0.05 * random.normal(size=mechanism.pose.shape)
     wild = random.normal(size=mechanism.twist.shape)
-    pose, twist = _Dynamics(mechanism, 0.0).project(apart, wild, 0.0)
+    pose, twist = Dynamics(mechanism, 0.0).project(apart, wild, 0.0)
     assert np.max(np.abs(mechanism.gap(pose, 0.0))) < 1e-14
     assert np.max(np.abs(mechanism.slip(pose, twist))) < 1e-13
     # The nearest in the metric of the masses: what is taken away carries no momentum along what is left.
@@ -66,7 +75,7 @@ def test_projection_closes_wide_gaps_and_takes_from_a_velocity_only_what_does_wo
 def test_baumgarte_closes_an_open_joint_critically_damped():
     # A bar pulled off its pin along its own axis, nothing turning it: one coordinate, gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    step = _runge_kutta(_Dynamics(mechanism, 1 / constant), _RK4)
+    step = runge_kutta(Dynamics(mechanism, 1 / constant), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)
@@ -87,7 +96,7 @@ def test_baumgartes_time_constant_is_five_steps():
     run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)
     moved = mechanism.pose + np.array([1e-3, 0.0, 0.0])
     # At rest and open by a millimetre the joint accelerates back by gap / T^2.
-    back = mechanism.rows(moved) @ run._dynamics.acceleration(moved, mechanism.twist, 0.0).reshape(-1)
+    back = mechanism.rows(moved) @ run.dynamics.acceleration(moved, mechanism.twist, 0.0).reshape(-1)
     np.testing.assert_allclose(back, [-1e-3 / 5e-3**2, 0.0], atol=1e-9)
 
 
@@ -136,15 +145,15 @@ def test_a_wrong_length_is_caught():
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: Lagrange("leapfrog"),
-        lambda: Lagrange("rk4", "glue"),
+        lambda: Lagrange("leapfrog"),  # pyright: ignore[reportArgumentType]
+        lambda: Lagrange("rk4", "glue"),  # pyright: ignore[reportArgumentType]
         lambda: Lagrange("rk4", "none", tolerance=1e-6),
         lambda: Lagrange("dop853", "baumgarte", 1e-9),
         lambda: Lagrange(tolerance=0.0),
         lambda: Lagrange().build(pendulum(), -1e-3),
         lambda: Lagrange().build(pendulum(), float("nan")),
         lambda: Lagrange().build(pendulum(), 1e-3)(0, 1),
-        lambda: Lagrange().build(pendulum(), 1e-3)(1, 0.5),
+        lambda: Lagrange().build(pendulum(), 1e-3)(1, 0.5),  # pyright: ignore[reportArgumentType]
     ],
 )
 def test_settings_that_do_not_exist_are_refused(make):

@@ -12,6 +12,7 @@ from matplotlib.patches import Rectangle
 from reports.charts.stability import HATCHES, outcome_colour, stability_map
 from reports.charts.theme import LIGHT
 from reports.grid.outcomes import Outcome
+from tests.drawn import handles
 from tests.rows import row_of
 
 ROWS = [
@@ -83,7 +84,7 @@ def test_the_legend_names_each_outcome_that_was_met_with_its_letter_and_its_look
     words = [text.get_text() for text in legend.get_texts()]
     assert words == ["finished: its angle error's power of ten", "S  saturated", "T  torn", "R  reset"]
     met = (Outcome.FINISHED, Outcome.SATURATED, Outcome.TORN, Outcome.RESET)
-    for handle, outcome in zip(legend.legend_handles, met, strict=True):
+    for handle, outcome in zip(handles(legend), met, strict=True):
         assert to_hex(handle.get_facecolor()) == outcome_colour(outcome, LIGHT)
         assert handle.get_hatch() == HATCHES.get(outcome)
     failed = stability_map([(1.0, row_of("a x", outcome=Outcome.TORN))], "v")
@@ -103,7 +104,7 @@ def test_no_two_failures_look_and_read_alike():
     assert len(set(HATCHES.values())) == len(HATCHES)
     assert {o: outcome_colour(o, LIGHT) for o in Outcome} == {
         **dict.fromkeys((Outcome.FINISHED, Outcome.CONVERGED), LIGHT.good),
-        **dict.fromkeys((Outcome.PLATEAU, Outcome.SATURATED, Outcome.BRANCH_FLIP), LIGHT.middling),
+        **dict.fromkeys((Outcome.PLATEAU, Outcome.UNRESOLVED, Outcome.SATURATED, Outcome.BRANCH_FLIP), LIGHT.middling),
         **dict.fromkeys((Outcome.TORN, Outcome.DIVERGED, Outcome.RESET), LIGHT.bad),
         **dict.fromkeys((Outcome.UNSUPPORTED, Outcome.REFUSED), LIGHT.grid),
         **dict.fromkeys((Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED, Outcome.LOST), LIGHT.worse),

@@ -82,7 +82,7 @@ def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
     mechanism = pendulum()
     resting = np.zeros((1, 3))
     held = np.array([[3.0, 3.0, np.nan]])  # it has no number for the inertia: the mechanism's counts
-    found = mechanism.reaction(mechanism.pose, resting, held, (0.0, -2.0))
+    found = mechanism.reaction(mechanism.pose, resting, held, np.array([0.0, -2.0]))
     own = mechanism.reaction(mechanism.pose, resting)
     heavy = replace(mechanism, bodies=(replace(mechanism.bodies[0], mass=3.0),), gravity=(0.0, -2.0))
     np.testing.assert_allclose(found, heavy.reaction(mechanism.pose, resting), atol=1e-14)
@@ -142,7 +142,7 @@ def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
         (lambda: Body("b", 1, -1.0, (0, 0, 0)), "inertia is -1.0"),
         (lambda: Body("b", 1, 1, (0, float("nan"), 0)), "pose"),
         (lambda: Body("b", 1, 1, (0, 0, 0), (0, 0, float("inf"))), "twist"),
-        (lambda: Body("b", 1, 1, (0, 0)), "it must be a tuple of 3 values"),
+        (lambda: Body("b", 1, 1, (0, 0)), "it must be a tuple of 3 values"),  # pyright: ignore[reportArgumentType]
         (lambda: Mechanism((), ()), "no bodies"),
         (lambda: Mechanism((bar("b", (0, 0), (1, 0)),) * 2, ()), "two bodies are called 'b'"),
         (

@@ -1,5 +1,7 @@
 """MuJoCo's sparse factorisation against its dense one: the same accelerations, and release 4.0.0 found out."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 import os

@@ -1,5 +1,7 @@
 """Rolling in MuJoCo: by contact as it comes and as it can be, by constraints, and where each of them ends."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 import math
@@ -230,7 +232,7 @@ def test_reactions_by_newtons_law_are_the_contacts_forces(engine: MuJoCo) -> Non
     built = engine.build(RollingDownhill().mechanism(), 1e-3)
     motion = built(3, 10)
     force = np.zeros(6)  # in the contact's frame: normal first, from the ground to the body
-    mujoco.mj_contactForce(built.model.compiled, built.data, 0, force)  # pyright: ignore[reportAttributeAccessIssue]
+    mujoco.mj_contactForce(built.model.compiled, built.data, 0, force)
     tangent, normal = motion.reaction[-1]
     # The reading leaves the last sample behind. Directions agree to the slip of 1e-3 m, that is 1e-3 rad.
     assert normal == pytest.approx(force[0], rel=5e-3)

@@ -1,5 +1,7 @@
 """Skates in MuJoCo: written rows are the mechanism's own; every construction has its order, its floor, its price."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 from dataclasses import replace
@@ -75,7 +77,7 @@ def jumble() -> Mechanism:
 
 def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None:
     mechanism, random = jumble(), np.random.default_rng(0)
-    tree = spanning_tree(mechanism, [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)])
+    tree = spanning_tree(mechanism)
     assert [link.kind for link in tree.links] == ["hinge", "slot", "hinge", "free"]
     assert tree.loops == ()
     index = {None: None, **{body.name: i for i, body in enumerate(mechanism.bodies)}}
@@ -84,7 +86,7 @@ def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None
     damping = 3.0
     written = [WrittenJoint(index[s.first], index[s.second], 1, skate_rows(s, damping)) for s in skates]
     written.append(WrittenJoint(index["tail"], index["flyer"], 1, slot_rows(cross, 5.0, damping)))
-    rows = row_writer(tree, range(tree.coordinates), written)
+    rows = row_writer(tree, range(tree.coordinates), written, tree.coordinates)
     for _ in range(5):
         q, v, a = random.normal(size=(3, 1, tree.coordinates))
         pose, twist, change = tree.motion(q, v, a)
@@ -102,7 +104,8 @@ def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None
             slip = own @ velocity
             wanted = -turned @ velocity - damping * slip
             if isinstance(joint, Slot):
-                wanted -= 5.0 * joint.gap(*poses, 0.0)[0]
+                first, second = poses
+                wanted -= 5.0 * joint.gap(first, second, 0.0)[0]
             assert jacobian[row] @ v[0] == pytest.approx(slip, rel=1e-12, abs=1e-12)
             # J a - right is the same number in both: tree coordinates accelerate, bodies do so besides by turning.
             assert jacobian[row] @ a[0] - right[row] == pytest.approx(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Unsupported, lagrange
+from engines import lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
@@ -108,14 +108,71 @@ def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
     assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
 
-def test_a_slot_that_no_slide_stands_for_is_a_written_row_and_is_refused_without() -> None:
+def test_a_slot_that_no_slide_stands_for_is_a_written_row() -> None:
     mechanism = slotted_arm(False)
     truth = lagrange.TRUTH.build(mechanism, 1e-2)(20, 1)
     motion = FREE_COORDINATES.build(mechanism, 1e-3)(20, 10)
     assert np.abs(motion.pose - truth.pose).max() < 1e-9
     assert np.abs(mechanism.gap(motion.pose, motion.t)).max() < 1e-10
-    with pytest.raises(Unsupported, match="slot 'slot' is neither a slide"):
-        replace(TUNED, coordinates="free").build(mechanism, 1e-3)
+
+
+@pytest.mark.parametrize("keeps_angle", [False, True])
+def test_by_public_settings_half_of_the_body_slides_and_is_welded_to_the_other(keeps_angle: bool) -> None:
+    mechanism = slotted_arm(keeps_angle)
+    truth = lagrange.TRUTH.build(mechanism, 1e-2)(20, 1)
+    hard = replace(FREE_COORDINATES, slots="halves").build(mechanism, 1e-3)(20, 10)
+    assert np.abs(hard.pose - truth.pose).max() < 1e-9
+    assert np.abs(hard.reaction - truth.reaction).max() < 1e-7 * np.abs(truth.reaction).max()
+    tuned = replace(TUNED, coordinates="free")
+    errors = [np.abs(tuned.build(mechanism, dt)(20, every).pose - truth.pose).max() for dt, every in HALVED]
+    # A weld's gap falls as the square of the step.
+    assert 3.5 < errors[0] / errors[1] < 4.5
+    assert errors[1] < 1e-6
+    model = tuned.model(mechanism, 1e-3)
+    assert np.allclose(model.loads()[0], mechanism.inertias, rtol=1e-14, atol=0)
+
+
+HALVED = ((1e-3, 10), (5e-4, 20))
+
+
+def test_two_slots_of_one_body_are_two_of_its_quarters_and_a_slot_may_carry_a_point_of_the_ground() -> None:
+    # The trammel of Archimedes: two points of a bar in two slots of the ground, that cross at an angle of 1 rad.
+    first, second, rate = np.array([0.6, 0.0]), 0.8 * np.array([math.cos(1.0), math.sin(1.0)]), 1.5
+    along = second - first
+    length, angle = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
+    across = np.array([-along[1], along[0]])
+    # v_first = s (1, 0) and v_first + rate across = u (cos 1, sin 1)
+    s = -(rate * (across[0] * math.sin(1.0) - across[1] * math.cos(1.0))) / math.sin(1.0)
+    centre = (first + second) / 2
+    velocity = np.array([s, 0.0]) + rate * across / 2
+    bar = Body("bar", 1.3, 0.07, (*centre.tolist(), angle), (*velocity.tolist(), rate))
+    points = ((-length / 2, 0.0), (length / 2, 0.0))
+    slots = (Slot("a", None, "bar", (0.0, 0.0), 0.0, points[0]), Slot("b", None, "bar", (0.0, 0.0), 1.0, points[1]))
+    mechanism = Mechanism((bar,), slots, (0.0, -9.81))
+    truth = lagrange.TRUTH.build(mechanism, 1e-2)(20, 1)
+    for engine, allowed in ((TUNED, 1e-6), (replace(EXTENDED, slots="halves"), 1e-9), (EXTENDED, 1e-9)):
+        motion = engine.build(mechanism, 1e-3)(20, 10)
+        assert np.abs(motion.pose - truth.pose).max() < allowed
+
+
+def test_a_point_of_the_ground_slides_in_a_body() -> None:
+    # A plate that turns about the ground's point (0.3, 0.1) and slides past it, pulled by gravity.
+    angle, rate, speed, line = 0.5, 2.0, 0.4, 0.7
+    point, own = np.array([0.3, 0.1]), np.array([0.25, -0.1])
+    way = np.array([math.cos(angle + line), math.sin(angle + line)])
+    offset = np.array(
+        [math.cos(angle) * own[0] - math.sin(angle) * own[1], math.sin(angle) * own[0] + math.cos(angle) * own[1]]
+    )
+    centre = point - offset
+    velocity = speed * way + rate * np.array([offset[1], -offset[0]])
+    plate = Body("plate", 0.8, 0.03, (*centre.tolist(), angle), (*velocity.tolist(), rate))
+    slot = Slot("slot", "plate", None, (float(own[0]), float(own[1])), line, (0.3, 0.1))
+    mechanism = Mechanism((plate,), (slot,), (0.0, -9.81))
+    truth = lagrange.TRUTH.build(mechanism, 1e-2)(20, 1)
+    for engine, allowed in ((TUNED, 1e-5), (replace(EXTENDED, slots="halves"), 1e-8), (EXTENDED, 1e-8)):
+        motion = engine.build(mechanism, 1e-3)(20, 10)
+        assert np.abs(motion.pose - truth.pose).max() < allowed
+        assert np.abs(motion.reaction - truth.reaction).max() < 1e-2 * np.abs(truth.reaction).max()
 
 
 @pytest.mark.parametrize(
@@ -166,3 +223,14 @@ def test_every_chain_runs_in_every_variant(engine: MuJoCo, scene: Any) -> None:
 def test_many_loops_pass_their_singular_positions_in_the_extended_variant(scene: Any) -> None:
     # Flat at about 1.2 s: the rows lose rank there, and what stands for the missing ones is rounding.
     assert error(EXTENDED, scene, 1e-3) < 1e-6
+
+
+def test_the_tree_of_a_mechanism_is_built_once_however_often_a_joint_is_asked_for() -> None:
+    mechanism = NFourBar(300).mechanism()
+    engine = TUNED
+    tree = engine._tree(mechanism)
+    assert all(engine.holder(joint, mechanism) == "engine" for joint in mechanism.joints)
+    assert engine._tree(mechanism) is tree
+    # Another mechanism of the same numbers, and the other coordinates, have trees of their own.
+    assert engine._tree(NFourBar(300).mechanism()) is not tree
+    assert FREE_COORDINATES._tree(mechanism).coordinates == 3 * len(mechanism.bodies)

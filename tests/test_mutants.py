@@ -127,7 +127,7 @@ def test_a_list_that_lacks_something_is_refused_with_the_name_of_the_mistake(tmp
 
 
 def test_mistakes_are_chosen_by_name_or_by_the_beginning_of_their_file():
-    other = replace(SOUND, name="other", file="engines/lagrange.py")
+    other = replace(SOUND, name="other", file="engines/lagrange/engine.py")
     assert chosen((SOUND, other), []) == (SOUND, other)
     assert chosen((SOUND, other), ["engines/"]) == (other,)
     assert chosen((SOUND, other), ["sign"]) == (SOUND,)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -129,6 +130,7 @@ def test_the_benchmark_starts_upright_with_one_metre_a_second() -> None:
 
 
 def test_bad_chains_are_refused() -> None:
+    wrong: dict[str, Any]
     for wrong in ({"loops": 0}, {"loops": 1.5}, {"length": 0.0}, {"mass": math.nan}, {"speed": math.inf}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             NFourBar(**wrong)

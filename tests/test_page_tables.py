@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from engines import Softness
+from engines import Holder, Softness
 from reference.four_bar import FreeFourBar
 from reports.gate.declared import MOST_BODIES, Softened, declared_error, soft_tasks
 from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS
 from reports.grid.cells import Cell
 from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, answered
+from reports.grid.tasks import Answer, Task, answered
 from reports.pages.page import Failure, Material, Observation
 from reports.text.experiments import compared_only, happened, told_experiment
 from reports.text.holders import holders
@@ -161,7 +161,7 @@ def test_who_holds_the_joints_stands_beside_each_method_and_changes_with_the_sce
         def build(self, mechanism, dt):
             raise NotImplementedError
 
-        def holder(self, joint, mechanism):
+        def holder(self, joint, mechanism) -> Holder:
             return "ours"
 
     class Half(Ours):
@@ -210,12 +210,15 @@ def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
         variant: str = "soft"
         share: float = COMPLIANCE
 
+        def build(self, mechanism, dt):
+            raise NotImplementedError
+
         def softness(self, mechanism, dt):
             return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
 
     scene, engine = FreeFourBar(duration=0.1), Soft()
     (task,) = soft_tasks(scene, (engine,))
-    answers = {task: answered(task)}
+    answers: dict[Task, Answer] = {task: answered(task)}
     own = answers[task].number("angle")
     assert own > 0
     assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(own)
@@ -236,6 +239,9 @@ def test_the_judge_is_not_asked_where_it_would_take_minutes():
     class Soft(Plain):
         name: str = "toy"
         variant: str = "soft"
+
+        def build(self, mechanism, dt):
+            raise NotImplementedError
 
         def softness(self, mechanism, dt):
             return Softness(STIFFNESS, DAMPING, COMPLIANCE, (True,) * mechanism.row_count)

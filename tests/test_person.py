@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -113,6 +114,7 @@ def test_feet_too_far_apart_and_other_bad_numbers_are_refused() -> None:
         TwoFeet(stance=1.2, hip_x=0.3)
     with pytest.raises(InvalidMechanism, match="from the left ankle"):
         TwoFeet(hip_y=1.0)
+    wrong: dict[str, Any]
     for wrong in ({"mass": 0.0}, {"height": -1.0}, {"trunk": math.nan}, {"stance": math.inf}, {"knees": 0}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             TwoFeet(**wrong)

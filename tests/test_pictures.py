@@ -22,6 +22,7 @@ from reports.charts.theme import LIGHT
 from reports.pages.centrodes.drawings import draw_centrodes, draw_rate
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
+from tests.drawn import annotation, handles
 from tests.mechanisms import four_bar, pendulum
 from tests.toys import Disc
 
@@ -154,14 +155,14 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     assert has(left, [[0.0, 0.0], [9.0, 8.0]])
     assert has(left, [[9.0, 8.0]])  # the dot at its end
     assert has(left, [[0.5, 0.4], [0.5, 0.6]])  # a blade of 0.2 m upright about its middle
-    assert [(text.get_text(), text.xy) for text in left.texts] == [("here", (0.25, 1.5))]
+    assert [(text.get_text(), annotation(text).xy) for text in left.texts] == [("here", (0.25, 1.5))]
     assert (left.get_xlabel(), left.get_ylabel()) == ("x [m]", "y [m]")
     assert (right.get_xlabel(), right.get_ylabel()) == ("time [s]", "m")
     assert (left.get_yscale(), right.get_yscale(), right.get_xscale()) == ("linear", "log", "linear")
     assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
     legend = left.figure.legends[0]
     assert [text.get_text() for text in legend.get_texts()] == ["truth", "wrong"]
-    assert [to_hex(handle.get_color()) for handle in legend.legend_handles] == [to_hex(LIGHT.ink), to_hex(LIGHT.first)]
+    assert [to_hex(handle.get_color()) for handle in handles(legend)] == [to_hex(LIGHT.ink), to_hex(LIGHT.first)]
     # What is not framed does not stretch the picture.
     assert left.get_xlim()[1] < 2
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))

@@ -82,8 +82,8 @@ def unnamed_encodings(source: str) -> list[int]:
         if isinstance(node, ast.Call):
             name = getattr(node.func, "attr", getattr(node.func, "id", ""))
             words = {word.arg for word in node.keywords}
-            modes = [arg.value for arg in (*node.args, *(word.value for word in node.keywords)) if is_mode(arg)]
-            binary = any("b" in mode for mode in modes)
+            given = (*node.args, *(word.value for word in node.keywords))
+            binary = any("b" in ast.literal_eval(argument) for argument in given if is_mode(argument))
             of_system = isinstance(node.func, ast.Attribute) and getattr(node.func.value, "id", "") == "os"
             if name in ("open", "fdopen", "read_text", "write_text") and not (
                 binary or of_system or "encoding" in words

@@ -41,10 +41,21 @@ def test_what_another_engine_depends_on_is_printed_too_and_leaves_a_baseline_val
     assert still_installed(before)
 
 
+def test_the_packages_of_an_engine_that_is_not_registered_are_printed_where_it_is_compared():
+    assert foot("a command", [Toy(), Elsewhere()]).startswith(
+        f"Made by `a command` with {versions()}, another-engine not installed; timings on "
+    )
+    assert "another-engine" not in foot("a command", [Toy()])
+    assert still_installed(f"{versions()}, another-engine not installed, rich {metadata.version('rich')}")
+    assert not still_installed(f"{versions()}, rich 0.1")
+
+
 class Elsewhere(Toy):
     """Depends on a package that is not here."""
 
-    packages = ("another-engine", "numpy")
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("another-engine", "numpy")
 
 
 def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):

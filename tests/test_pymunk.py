@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pymunk
 import pytest
 from numpy.typing import NDArray
+from pymunk import constraints
 from pymunk._chipmunk_cffi import lib
 from scipy.special import ellipj, ellipk
 
-from engines import Size, Unsupported
+from engines import Size
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
-from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, bare_loop
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
 from engines.pymunk.running import Recorder
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
@@ -78,7 +75,7 @@ def test_the_first_sample_is_the_mechanisms_start(method, mechanism):
 
 def test_the_default_is_the_engine_as_shipped():
     space, body = pymunk.Space(), pymunk.Body(1, 1)
-    pivot = pymunk.PivotJoint(space.static_body, body, (0, 0), (0, 0))
+    pivot = constraints.PivotJoint(space.static_body, body, (0, 0), (0, 0))
     assert space.iterations == DEFAULT.iterations == 10
     assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # it rounds 0.1 to single
 
@@ -97,7 +94,8 @@ def test_a_crank_turns_about_its_pin_whatever_the_order_of_its_joints(grounded_f
     angle = 0.7
     arm = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ own
     position, velocity = centre - arm, -rate * np.array([-arm[1], arm[0]])
-    body = Body("crank", 2.0, 0.5, (*map(float, position), angle), (*map(float, velocity), rate))
+    (x, y), (along, up) = map(float, position), map(float, velocity)
+    body = Body("crank", 2.0, 0.5, (x, y, angle), (along, up, rate))
     joints = (
         (Pin("A", None, "crank", (2.0, -1.0), own), Drive("drive", None, "crank", rate, angle))
         if grounded_first
@@ -132,34 +130,6 @@ def test_bodies_are_recorded_in_the_order_asked_for_whatever_the_order_in_which_
         told.append(recorder.read(1, with_velocities=False)[0])
     np.testing.assert_array_equal(told[0], told[1][:, ::-1])
     np.testing.assert_array_equal(told[0][0, :, :3], four_bar().pose)
-
-
-def test_two_bodies_of_prescribed_motion_cannot_be_joined():
-    one = Body("one", 1.0, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-    joints = (
-        Pin("A", None, "one", (0.0, 0.0), (0.0, 0.0)),
-        Drive("first", None, "one", 1.0, 0.0),
-        Drive("second", None, "one", 1.0, 0.0),
-    )
-    with pytest.raises(Unsupported, match="'second' joins two bodies whose motion is already prescribed"):
-        TUNED.build(Mechanism((one,), joints), 1e-3)
-
-
-def test_a_joint_that_has_no_construction_is_refused_in_a_sentence():
-    class Weld:
-        """Looks like a joint to the mechanism, is none that the engine knows."""
-
-        def __init__(self, pin: Pin) -> None:
-            self.pin = pin
-
-        def __getattr__(self, name: str):
-            return getattr(self.pin, name)
-
-    mechanism = pendulum()
-    odd = replace(mechanism)
-    object.__setattr__(odd, "joints", (Weld(mechanism.joints[0]),))
-    with pytest.raises(Unsupported, match="no construction for a Weld"):
-        TUNED.build(odd, 1e-3)
 
 
 # When it reads
@@ -284,9 +254,11 @@ def test_extrapolating_in_even_powers_only_would_be_seen():
 def test_a_motor_between_two_moving_bodies_keeps_rate_and_angle(method):
     truth, trajectory = exact("elbow"), method.build(elbow(), 1e-3)(50, 10)
     # Second order with rates of 4/s at 1e-3 s. Five sweeps over this chain shrink what is open by a few only, so that
-    # the cold start is still felt for some samples, in the reactions most; extrapolation can't remove that.
-    assert largest(trajectory.pose - truth.pose) < (2e-5 if method is LEAPFROG else 1e-9)
-    assert largest((trajectory.reaction - truth.reaction)[25:]) < (1e-2 if method is LEAPFROG else 1e-7)
+    # the cold start of the leapfrog is still felt for some samples, in the reactions most. Extrapolated runs begin with
+    # sweeps that leave nothing; a difference of velocities over 1e-4 s is then all that rounds.
+    assert largest(trajectory.pose - truth.pose) < (2e-5 if method is LEAPFROG else 1e-12)
+    late = 25 if method is LEAPFROG else 0
+    assert largest((trajectory.reaction - truth.reaction)[late:]) < (1e-2 if method is LEAPFROG else 1e-6)
     assert largest(elbow().gap(trajectory.pose, trajectory.t)[:, -1]) < 1e-12
 
 
@@ -326,69 +298,3 @@ def test_two_free_bodies_keep_their_momentum(method):
     momentum = np.sum(mass[:, None] * trajectory.twist[..., :2], axis=1)
     assert largest(momentum - momentum[0]) < 1e-11  # impulses are equal and opposite: rounding only
     assert largest(trajectory.reaction) > 0.1  # and there are some
-
-
-# What it refuses
-
-
-@pytest.mark.parametrize("iterations", [0, -1, 2.5, float("nan"), 2**31, "10", None])
-def test_iterations_that_would_abort_the_process_are_refused(iterations):
-    with pytest.raises(ValueError, match="iterations is"):
-        Pymunk("mine", iterations=iterations)
-
-
-@pytest.mark.parametrize("error_bias", [-0.1, 1.5, float("nan"), float("inf"), "0", None])
-def test_an_error_bias_that_would_abort_the_process_is_refused(error_bias):
-    with pytest.raises(ValueError, match="error_bias is"):
-        Pymunk("mine", error_bias=error_bias)
-
-
-@pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf"), "1"])
-@every_method
-def test_a_step_that_is_no_time_is_refused(method, dt):
-    with pytest.raises(ValueError, match=r"build: dt is"):
-        method.build(FREE, dt)
-
-
-@pytest.mark.parametrize("counts", [(0, 1), (1, 0), (-1, 1), (1.5, 1)])
-def test_counts_that_are_no_counts_are_refused(counts):
-    with pytest.raises(ValueError, match="whole number"):
-        TUNED.build(FREE, 1e-3)(*counts)
-
-
-def test_a_run_is_one_shot():
-    run = TUNED.build(FREE, 1e-3)
-    run(2, 2)
-    with pytest.raises(RuntimeError, match="one shot"):
-        run(2, 2)
-
-
-@every_method
-def test_a_motion_that_blows_up_is_a_result_and_not_an_exception(method):
-    heavy = replace(MOVING, bodies=(*MOVING.bodies[:2], replace(MOVING.bodies[2], mass=1e-6, inertia=1e-9)))
-    trajectory = method.build(heavy, 1e200)(20, 2)
-    assert trajectory.pose.shape == (21, 3, 3)
-    assert not np.all(np.isfinite(trajectory.pose))
-    assert np.all(np.isnan(trajectory.reaction[~np.all(np.isfinite(trajectory.pose), axis=(1, 2))]))
-
-
-@every_method
-def test_the_bare_loop_takes_time_and_belongs_to_pymunk(method):
-    assert bare_loop(method, FREE, 1e-4, 2000) > 0
-
-
-def test_the_bare_loop_of_another_engine_is_refused():
-    other = Extrapolated(Lagrange("rk4", "none"), "extended", (1, 2), (4,))
-    with pytest.raises(ValueError, match="it must be pymunk"):
-        bare_loop(other, FREE, 1e-3, 10)
-
-
-def test_no_space_is_left_for_the_end_of_the_interpreter():
-    """Freeing one there may crash the process after it has said all, and its exit status is another."""
-    code = """
-import gc, pymunk, engines.registry
-gc.collect()
-print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymunk.Body))])
-"""
-    told = subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[1], capture_output=True, text=True)
-    assert (told.returncode, told.stdout, told.stderr) == (0, "[]\n", "")

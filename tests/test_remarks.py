@@ -11,13 +11,15 @@ import pytest
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Motion, answered
+from reports.grid.tasks import Answer, Motion, Task, answered
 from reports.pages.catalogue import PAGES
 from reports.pages.four_bar import experiments as four_bar
 from reports.pages.page import Failure, Material
 from reports.pages.pendulum import experiments as pendulum
 from reports.pages.rolling import experiments as rolling
-from reports.pages.skate import experiments as skate
+from reports.pages.rolling import parting
+from reports.pages.rolling.methods import CONTACTS
+from reports.pages.skate import slipping
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
 from reports.text.experiments import told_remark
@@ -111,7 +113,7 @@ def test_remarks_have_no_mark_left_when_nothing_was_run():
 
 def test_a_slider_that_starts_nearer_leaves_later_by_what_the_answers_say():
     failure = experiment(slider_crank.FAILURES, "A slider that has to start the crank, next to its dead centre")
-    answers = {
+    answers: dict[Task, Answer] = {
         task: Answer(Outcome.FINISHED, values={"when": np.asarray(when)})
         for task, when in zip(slider_crank.LEAVING, (1.0, 2.0, 2.5), strict=True)
     }
@@ -121,8 +123,8 @@ def test_a_slider_that_starts_nearer_leaves_later_by_what_the_answers_say():
 
 
 def test_friction_slips_a_tenth_or_two_after_its_limit_is_passed():
-    tasks = [Motion(cell) for cells in skate.LIMITED.values() for cell in cells]
-    found = skate.delays(Material({}, {task: answered(task) for task in tasks}))
+    tasks = [Motion(cell) for cells in slipping.LIMITED.values() for cell in cells]
+    found = slipping.delays(Material({}, {task: answered(task) for task in tasks}))
     assert 0 < found["least"] <= found["most"] < 0.3
 
 
@@ -139,6 +141,6 @@ def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
 
 
 def test_contacts_part_from_the_ideal_motion_by_hundreds_of_times_their_error():
-    contacts = [Motion(cell) for cell in rolling.PARTINGS if cell.engine in rolling.CONTACTS]
+    contacts = [Motion(cell) for cell in parting.PARTINGS if cell.engine in CONTACTS]
     assert len(contacts) == 4
-    assert rolling.after_parting(Material({}, {task: answered(task) for task in contacts}))["least"] > 100
+    assert parting.after_parting(Material({}, {task: answered(task) for task in contacts}))["least"] > 100

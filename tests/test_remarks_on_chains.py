@@ -8,7 +8,7 @@ from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.pages.four_bar import experiments as four_bar_failures
 from reports.pages.n_four_bar import experiments as n_four_bar_failures
-from reports.pages.page import Failure
+from reports.pages.page import Failure, StabilityMap
 from reports.pages.pendulum import experiments as pendulum_failures
 from reports.pages.slider_crank import experiments as slider_crank_failures
 from tests.committed_rows import committed_rows
@@ -41,20 +41,15 @@ def comparable(rows: list[Measurement]) -> list[bool]:
     return [outcome.comparable for outcome in outcomes(rows)]
 
 
-def test_only_pymunk_tuned_gets_worse_with_every_step_at_a_change_point() -> None:
+def test_every_method_gets_through_a_change_point_at_most_steps() -> None:
     found = methods(four_bar_failures.FAILURES, "A parallelogram through its change points")
     assert falls(found["pymunk default"])
+    assert falls(found["pymunk tuned"])
     assert stays(found["mujoco default"])
     assert all(comparable(found["lagrange rk4 projection"]))
-    assert not any(comparable(found["pymunk extended"]))
+    assert outcomes(found["pymunk extended"])[0] == Outcome.UNRESOLVED
     for name in ("mujoco tuned", "mujoco extended"):
         assert outcomes(found[name]).count(Outcome.RESET) == 1
-    worse = [
-        name
-        for name, rows in found.items()
-        if all(fine.angle > 2 * coarse.angle for coarse, fine in pairwise(rows)) and name != "lagrange rk4 projection"
-    ]
-    assert worse == ["pymunk tuned"]
 
 
 def test_an_overwritten_crank_stays_wrong_on_the_loop_as_shipped_and_a_servo_lags() -> None:
@@ -68,20 +63,21 @@ def test_an_overwritten_crank_stays_wrong_on_the_loop_as_shipped_and_a_servo_lag
         assert all(row.angle > 100 * other.angle for row, other in zip(rows, found["mujoco tuned"], strict=True))
 
 
-def test_about_half_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop() -> None:
+def test_more_than_a_third_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop() -> None:
     rows = [row for own in methods(four_bar_failures.FAILURES, "Steps far too large").values() for row in own]
-    assert 0.4 < outcomes(rows).count(Outcome.TORN) / len(rows) < 0.6
+    assert outcomes(rows).count(Outcome.TORN) > len(rows) / 3
 
 
-def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_small_steps_alone() -> None:
+def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_the_smallest_step() -> None:
     found = methods(n_four_bar_failures.FAILURES, "Forces that have no limit")
-    assert comparable(found["pymunk tuned"]) == [True, False, False]
+    assert comparable(found["pymunk tuned"]) == [True, True, False]
     assert falls(found["pymunk default"])
     assert falls(found["mujoco tuned"])
     assert stays(found["mujoco default"])
     assert max(row.angle for row in found["mujoco extended"]) < 1e-6
     assert not falls(found["mujoco extended"], 1.0)
-    assert outcomes(found["pymunk extended"]) == [Outcome.TORN] * 3
+    assert outcomes(found["pymunk extended"]) == [Outcome.UNRESOLVED, Outcome.SATURATED, Outcome.SATURATED]
+    assert all(row.estimate > row.angle for row in found["pymunk extended"])
 
 
 def test_pymunks_point_pendulum_keeps_its_energy_with_the_gap_closed_but_never_its_phase() -> None:
@@ -98,7 +94,8 @@ def test_sweeps_on_a_heavy_tip() -> None:
     found = methods(pendulum_failures.FAILURES, "A light chain with a heavy tip")
     closing = found["pymunk 10 sweeps, all of the gap"]
     assert all(row.angle > shipped.angle for row, shipped in zip(closing, found["pymunk default"], strict=True))
-    for name in ("pymunk default", "pymunk tuned", "pymunk extended", "pymunk 10 sweeps, all of the gap"):
+    assert outcomes(found["pymunk extended"])[:2] == [Outcome.UNRESOLVED] * 2
+    for name in ("pymunk default", "pymunk tuned", "pymunk 10 sweeps, all of the gap"):
         assert comparable(found[name]) == [False, True, True]
     assert comparable(found["pymunk 1000 sweeps, all of the gap"]) == [False, True, False]
     assert all(outcome in BROKEN for outcome in outcomes(found["mujoco extended, free, PGS"]))
@@ -138,7 +135,7 @@ def test_a_groove_at_a_rods_end_is_wrong_at_every_step_and_of_first_order_with_t
 def test_a_ring_hardened_too_far_has_its_joint_shut_and_more_energy_than_there_was() -> None:
     found = methods(pendulum_failures.FAILURES, "A ring of a hundred links, closed by one joint")
     assert stays(found["mujoco default"])
-    assert found["mujoco Newton, softening 1e-6"][0].angle < 1e-10
+    assert found["mujoco Newton, softening 1e-6"][0].angle < 1e-7  # our adapter makes it softer again, about 1e-3
     lost = found["mujoco Newton, softening 1e-8"][0]
     assert lost.energy > 1
     assert lost.gap < 1e-3
@@ -155,3 +152,36 @@ def test_two_sweeps_are_enough_at_a_millisecond_and_tear_the_loop_at_a_tenth_of_
     two = methods(four_bar_failures.FAILURES, "Too few iterations")["pymunk tuned, 2 sweeps"]
     assert comparable(two)[1:] == [True, False]
     assert outcomes(two)[-1] == Outcome.TORN
+
+
+def mapped(maps: tuple[StabilityMap, ...], name: str) -> dict[tuple[str, float], list[Outcome]]:
+    """Outcomes of a map by method and parameter, largest step first."""
+    (chosen,) = [each for each in maps if each.name == name]
+    rows = committed_rows(cell for _, cell in chosen.cells)
+    found: dict[tuple[str, float], list[Outcome]] = {}
+    for value, cell in sorted(chosen.cells, key=lambda pair: -rows[pair[1]].step):
+        found.setdefault((rows[cell].method, value), []).append(Outcome(rows[cell].outcome))
+    return found
+
+
+def test_what_the_map_of_couplers_says() -> None:
+    found = mapped(four_bar_failures.MAPS, "stability")
+    light, heavy = min(four_bar_failures.RATIOS), max(four_bar_failures.RATIOS)
+    for ratio in (light, heavy):
+        assert set(found["mujoco default", ratio]) == {Outcome.TORN}
+    assert all(found["pymunk default", ratio][-1].comparable for ratio in four_bar_failures.RATIOS)
+    failed = [o for ratio in four_bar_failures.RATIOS for o in found["mujoco tuned", ratio] if not o.comparable]
+    assert len(failed) == 1
+    assert not found["mujoco tuned", light][0].comparable
+    assert not found["pymunk tuned", light][-1].comparable  # at the smallest step too
+
+
+def test_what_the_map_of_slots_near_their_reach_says() -> None:
+    found = mapped(slider_crank_failures.MAPS, "reach")
+    nearest = max(slider_crank_failures.REACHES)
+    assert set(found["mujoco default", nearest]) == {Outcome.BRANCH_FLIP}
+    *coarse, finest = found["pymunk default", nearest]
+    assert set(coarse) == {Outcome.BRANCH_FLIP}
+    assert finest.comparable
+    for name in ("pymunk tuned", "pymunk extended", "mujoco tuned", "mujoco extended"):
+        assert all(o.comparable for reach in slider_crank_failures.REACHES for o in found[name, reach])

@@ -12,7 +12,8 @@ from reports.grid.cells import Cell
 from reports.grid.measure import measure
 from reports.grid.outcomes import Outcome
 from reports.pages.rolling import experiments as rolling_failures
-from reports.pages.rolling.experiments import CONSTRAINTS, polygon_cells, softness_cells
+from reports.pages.rolling.experiments import polygon_cells, softness_cells
+from reports.pages.rolling.methods import CONSTRAINTS
 from reports.pages.skate import experiments as skate_failures
 from tests.committed_rows import committed_rows
 

@@ -23,7 +23,8 @@ from reports.grid.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
 from reports.pages.page import Material
 from reports.pages.rolling import page as rolling_page
-from reports.pages.rolling.experiments import FAILURES, absent_contact, parting
+from reports.pages.rolling.experiments import FAILURES
+from reports.pages.rolling.parting import absent_contact, parting
 from reports.text.rendering import render_page
 
 

@@ -15,7 +15,7 @@ from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cli.selection import QUICK_CELL, choose_cells
-from reports.grid.cells import estimated_cost
+from reports.grid.cells import Cell, estimated_cost
 from reports.grid.measure import measure
 from reports.grid.scaling_fit import series_of
 from reports.pages.page import Material
@@ -26,7 +26,13 @@ from reports.pages.scaling.reference_method import BandedChain
 from reports.pages.skate import page as skate
 from reports.text.rendering import render_page
 
-TINY = tuple(cell for cell in CELLS if cell.scene.links <= 3)
+
+def links(cell: Cell) -> int:
+    assert isinstance(cell.scene, LongPendulum)
+    return cell.scene.links
+
+
+TINY = tuple(cell for cell in CELLS if links(cell) <= 3)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +80,7 @@ def test_the_reference_refuses_what_is_no_chain_of_uniform_bars():
 
 def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alone():
     assert {round(cell.step / STEP, 9) for cell in CELLS} == {1.0}
-    assert all(cell.scene.duration < 0.5 for cell in CELLS if cell.scene.links in COSTLY)
+    assert all(cell.scene.duration < 0.5 for cell in CELLS if links(cell) in COSTLY)
     assert len({cell.key for cell in CELLS}) == len(CELLS)
 
 
@@ -83,7 +89,7 @@ def test_a_quick_run_has_the_small_chains_and_a_full_one_all():
     engines = tuple(dict.fromkeys(cell.engine for cell in CELLS))
     for full in (False, True):
         chosen = [c for c in choose_cells(pendulums, engines, (PAGE,), full) if isinstance(c.scene, LongPendulum)]
-        quick = [cell for cell in CELLS if cell.scene.links in SMALL and estimated_cost(cell) <= QUICK_CELL]
+        quick = [cell for cell in CELLS if links(cell) in SMALL and estimated_cost(cell) <= QUICK_CELL]
         assert chosen == (list(CELLS) if full else quick)
     others = tuple(scene for scene in SCENES if skate.PAGE.teaches(scene))
     assert not any(isinstance(c.scene, LongPendulum) for c in choose_cells(others, engines, (PAGE,), True))

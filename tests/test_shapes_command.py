@@ -9,10 +9,12 @@ import runpy
 import shlex
 import sys
 from pathlib import Path
+from typing import cast
 
-import ezdxf
 import numpy as np
 import pytest
+from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.filemanagement import readfile
 
 from reference.centrodes import from_poses
 from reports import __main__ as command_line
@@ -53,8 +55,8 @@ def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, ca
     # after one derivative.
     np.testing.assert_allclose(np.linalg.norm(space, axis=-1), 1.0, rtol=0, atol=1e-9)
     np.testing.assert_allclose(np.linalg.norm(body, axis=-1), 0.5, rtol=0, atol=1e-9)
-    layers = {line.dxf.layer: line for line in ezdxf.readfile(folder / "ladder_shapes.dxf").modelspace()}
-    np.testing.assert_allclose(np.array(layers["SPACE"].get_points("xy")), space, atol=1e-12)
+    layers = {line.dxf.layer: line for line in readfile(folder / "ladder_shapes.dxf").modelspace()}
+    np.testing.assert_allclose(np.array(cast(LWPolyline, layers["SPACE"]).get_points("xy")), space, atol=1e-12)
     assert (folder / "ladder_shapes.svg").read_text().count("<path") == 2
     assert "gives the motion back" in capfd.readouterr().out
 

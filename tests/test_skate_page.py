@@ -24,12 +24,14 @@ from reports.grid.cells import Cell
 from reports.grid.measure import measure
 from reports.grid.tasks import Motion, answered
 from reports.pages.page import Material
-from reports.pages.skate import experiments as skate_failures
 from reports.pages.skate import page as skate
 from reports.pages.skate import pictures as skate_pictures
+from reports.pages.skate import slipping, turning_round
+from reports.pages.skate.counting import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels import pictures as wheels_pictures
+from tests.present import present
 
 TEMPLATE = Path(reports.pages.__file__).parent / "skate" / "page.md"
 BLOCKS = re.findall(r"```python\n(.*?)```", TEMPLATE.read_text(encoding="utf-8"), re.DOTALL)
@@ -109,31 +111,31 @@ def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apar
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
     # The square of 0.04 over the largest rate 1.6 is what the linear motion leaves out.
-    assert skate_failures.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
-    assert skate_failures.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
-    assert math.isnan(skate_failures.growth_of(t, np.full_like(t, 1e-3)))
+    assert turning_round.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
+    assert turning_round.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
+    assert math.isnan(turning_round.growth_of(t, np.full_like(t, 1e-3)))
 
 
 def test_the_lateral_force_passes_a_limit_when_the_reference_says():
-    scene, limit = skate_failures.BACKWARDS, list(skate_failures.LIMITED)[1]
-    when = skate_failures.first_beyond(scene, limit)
+    scene, limit = turning_round.BACKWARDS, list(slipping.LIMITED)[1]
+    when = slipping.first_beyond(scene, limit)
     assert when is not None
     before, after = np.abs(scene.lateral_force([when - 2e-3, when]))
     assert before < limit <= after
-    assert skate_failures.first_beyond(scene, 1.01 * skate_failures.PEAK) is None
+    assert slipping.first_beyond(scene, 1.01 * slipping.PEAK) is None
 
 
 def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_before():
-    cells = [cell for own in skate_failures.LIMITED.values() for cell in own]
-    told = {(o.method, o.setting): o.outcome for o in skate_failures.slipping(kept(map(Motion, cells)))}
-    for limit in skate_failures.LIMITED:
+    cells = [cell for own in slipping.LIMITED.values() for cell in own]
+    told = {(o.method, o.setting): o.outcome for o in slipping.slipping(kept(map(Motion, cells)))}
+    for limit in slipping.LIMITED:
         exact = told["exact lateral force", f"{limit:g} N"]
         for method in ("pymunk groove with max_force", "mujoco tendon with friction loss"):
             outcome = told[method, f"{limit:g} N"]
             if "never" in exact:
                 assert outcome == "holds"
                 continue
-            times = [float(re.search(r"at ([\d.]+) s", words).group(1)) for words in (exact, outcome)]
+            times = [float(present(re.search(r"at ([\d.]+) s", words)).group(1)) for words in (exact, outcome)]
             # Slip starts from zero with the force's excess: a few tenths of a second until it shows.
             assert 0 <= times[1] - times[0] < 0.3
 
@@ -148,7 +150,7 @@ def test_the_trailer_folds_in_the_kinematics_when_the_closed_form_says():
 
 
 def test_counting_tells_what_the_rows_leave():
-    told = {o.method: o.outcome for o in skate_failures.counting(Material({}))}
+    told = {o.method: o.outcome for o in counting(Material({}))}
     assert told["pinned body (18.62)"].startswith("(1, 1); integrable")
     assert told["one skate (18.64)"].startswith("(3, 2); not integrable")
     assert told["two skates on one axle"] == told["one skate (18.64)"]

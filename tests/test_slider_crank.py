@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -162,6 +163,7 @@ def test_bad_slider_cranks_are_refused() -> None:
     for offset in (0.7, 0.8, -0.75):
         with pytest.raises(InvalidMechanism, match="offset is"):
             DrivenSliderCrank(offset=offset)
+    wrong: dict[str, Any]
     for wrong in ({"crank": 0.0}, {"rod": math.nan}, {"slider_mass": 0.0}, {"branch": 0}, {"rate": math.inf}):
         with pytest.raises(InvalidMechanism, match=next(iter(wrong))):
             DrivenSliderCrank(**wrong)

@@ -13,7 +13,7 @@ from reports.grid.convergence import Sweep, Verdict, sweeps
 from reports.grid.measure import TIMINGS, Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES, quantity
-from reports.text import tables
+from reports.text import csv_files, tables
 from tests.rows import falling, row, row_of, table
 
 NAN = math.nan
@@ -243,10 +243,10 @@ def read(text: str) -> list[dict[str, str]]:
 
 
 def test_each_column_of_the_errors_is_its_field_and_none_is_missing():
-    [found] = read(tables.as_csv([row()], timings=False))
+    [found] = read(csv_files.as_csv([row()], timings=False))
     told = {f.name for f in fields(Measurement)} - {"key", "limit", *TIMINGS}
     assert set(found) == told
-    for name in told - set(tables.DESCRIPTIONS):
+    for name in told - set(csv_files.DESCRIPTIONS):
         value = getattr(row(), name)
         assert found[name] == (f"{value:.4g}" if isinstance(value, float) else str(value)), name
     assert found["parameters"] == hashlib.sha256(b"Disc(rate=2.0)").hexdigest()[:8]
@@ -254,13 +254,13 @@ def test_each_column_of_the_errors_is_its_field_and_none_is_missing():
 
 
 def test_timings_are_the_costs_alone_under_their_header():
-    text = tables.as_csv([row()], timings=True, header="one\ntwo")
+    text = csv_files.as_csv([row()], timings=True, header="one\ntwo")
     assert text.splitlines()[:2] == ["# one", "# two"]
     [found] = read(text)
     assert set(TIMINGS) == {"cpu", "runs", "build"}
     identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
     assert list(found) == [*identity, "cpu", "runs", "build"]
-    assert [found[name] for name in identity if name not in tables.DESCRIPTIONS] == [
+    assert [found[name] for name in identity if name not in csv_files.DESCRIPTIONS] == [
         "disc", "toy", "default", "sweep", "103", "101", "0.011",
     ]  # fmt: skip
     assert (found["cpu"], found["runs"], found["build"]) == ("0.067", "163", "0.071")
@@ -269,27 +269,27 @@ def test_timings_are_the_costs_alone_under_their_header():
 def test_rows_stand_in_the_same_order_in_both_files_whatever_order_they_came_in():
     rows = [row_of(f"{engine} x", scene=scene, every=every) for engine in "ba" for scene in "dc" for every in (3, 1)]
     for timings in (False, True):
-        text = tables.as_csv(rows, timings)
-        assert text == tables.as_csv(rows[::-1], timings)
+        text = csv_files.as_csv(rows, timings)
+        assert text == csv_files.as_csv(rows[::-1], timings)
         assert [(r["scene"], r["engine"], r["every"]) for r in read(text)] == sorted(
             (r.scene, r.engine, str(r.every)) for r in rows
         )
 
 
 def test_numbers_in_files_have_four_digits():
-    [found] = read(tables.as_csv([row(angle=1.23456e-7, position=NAN)], timings=False))
+    [found] = read(csv_files.as_csv([row(angle=1.23456e-7, position=NAN)], timings=False))
     assert (found["angle"], found["position"]) == ("1.235e-07", "nan")
 
 
 def test_descriptions_have_each_digest_once_with_its_text_and_what_it_is_of():
     rows = [row(), row(angle=1.0), row(settings="Toy(order=4.0)")]
-    found = read(tables.descriptions_csv(rows))
+    found = read(csv_files.descriptions_csv(rows))
     assert [(line["of"], line["description"]) for line in found] == [
         ("parameters", "Disc(rate=2.0)"),
         ("settings", "Toy(order=2.0)"),
         ("settings", "Toy(order=4.0)"),
     ]
-    assert all(line["digest"] == tables.digest(line["description"]) for line in found)
+    assert all(line["digest"] == csv_files.digest(line["description"]) for line in found)
 
 
 def test_each_quantity_has_its_unit_and_the_error_below_which_it_tells_nothing():

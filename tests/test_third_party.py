@@ -116,13 +116,56 @@ def test_the_index_leads_to_their_pages(pages):
     assert "[spare wheel](spare_wheel.md)" in text
 
 
-def test_their_engine_is_held_to_its_own_promise(programs, tmp_path):
+def test_their_engine_and_one_in_a_file_are_held_to_their_own_promises(programs, tmp_path):
+    text = "from their_suite.impulses import Impulses\n\nOWN = Impulses('half', 0.5)\n"
+    (tmp_path / "own_engine.py").write_text(text, encoding="utf-8")
     options = ("-p", "reports.gate.pytest_plugin", "-p", "no:cacheprovider", "-W", "error", "-m", "crosscheck")
-    chosen = ("--engine", "impulses", "--scene", "flywheel", "--scene", "spare_wheel", "--scene", "free_four_bar")
+    engines = ("--engine", "impulses", "--engine", "own_engine.py:OWN")
+    chosen = (*engines, "--scene", "flywheel", "--scene", "spare_wheel", "--scene", "free_four_bar")
     words = ("-m", "pytest", "-q", *options, "--pyargs", "reports.gate.grid_tests", *chosen)
     ended = run(programs / "python", *words, folder=tmp_path)
     assert ended.returncode == 0, ended.stdout + ended.stderr
-    assert f"{3 * 2 * 2} passed" in ended.stdout  # scenes, variants, tests
+    assert f"{3 * 3 * 2} passed" in ended.stdout  # scenes, methods, tests
+    assert "impulses half" in ended.stdout
+
+
+# Of every family: its colour in light pictures, and its mark.
+LOOKS = """
+from engines.registry import ENGINES
+from reports.charts.families import colour, mark
+from reports.charts.theme import LIGHT
+
+for family in dict.fromkeys(engine.family for engine in ENGINES):
+    print(family, colour(family, LIGHT), mark(family))
+"""
+
+
+def test_their_engine_has_a_colour_and_a_mark_of_its_own(programs, pages, tmp_path):
+    ended = run(programs / "python", "-c", LOOKS, folder=tmp_path)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    looks = {family: (colour, mark) for family, colour, mark in map(str.split, ended.stdout.splitlines())}
+    assert set(looks) >= {"pymunk", "mujoco", "lagrange", "impulses"}
+    for part in zip(*looks.values(), strict=True):
+        assert len(set(part)) == len(looks)
+    drawn = text_of(pages["flywheel_work.svg"]) + text_of(pages["flywheel_steps.svg"])
+    assert looks["impulses"][0].lower() in drawn.lower()
+    assert looks["pymunk"][0].lower() not in drawn.lower()  # it was not run in this scene
+
+
+def test_their_engine_has_its_table_in_the_overview(pages):
+    lines = text_of(pages["index.md"]).splitlines()
+    place = lines.index("| scene | impulses default |")  # of variants the overview has those by the usual names
+    table = [line for line in lines[place : place + 9] if line.startswith("| [")]
+    (line,) = [each for each in table if each.startswith("| [flywheel](flywheel.md), rad |")][:1]
+    assert line.endswith("; to rounding; engine |")
+    assert "e-" in line.split("|")[2]  # its error at one of the usual steps
+
+
+def test_their_engine_conforms_to_the_contract(programs, tmp_path):
+    ended = run(programs / "crosscheck", "conform", "impulses", "--variant", "closed", folder=tmp_path)
+    assert (ended.returncode, ended.stderr) == (0, ""), ended.stdout
+    assert ended.stdout.splitlines()[0] == "impulses closed"
+    assert ended.stdout.splitlines()[-1].strip() == "every check holds"
 
 
 # Hides what we register of one engine, then writes every page from no rows at all.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -17,7 +18,8 @@ from reference.wheels.cart import Cart
 from reference.wheels.casters import Casters
 from reference.wheels.tractrix import Tow
 from reference.wheels.trailers import CarWithTrailers, Tricycle
-from tests.test_skate import TIGHT, multipliers
+from tests.multipliers import TIGHT, multipliers
+from tests.present import present
 
 # ---------------------------------------------------------------------------------------------------------- tows
 
@@ -63,7 +65,7 @@ def test_the_towed_wheel_never_skids_and_its_drawbar_keeps_its_length():
         tow, way, step = Tow(1.0, 1.1, radius, (0.3, -0.2, 0.7)), np.linspace(-3, 9, 25), 1e-3
         weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
         shifts = np.array([-3, -2, -1, 1, 2, 3]) * step
-        velocity = sum(w * tow.wheel(way + s) for w, s in zip(weights, shifts, strict=True))
+        velocity = np.sum([w * tow.wheel(way + s) for w, s in zip(weights, shifts, strict=True)], axis=0)
         heading = tow.heading(way)
         assert np.abs(-np.sin(heading) * velocity[:, 0] + np.cos(heading) * velocity[:, 1]).max() < 1e-11
         assert np.abs(np.hypot(*(tow.hitch(way) - tow.wheel(way)).T) - 1).max() < 1e-14
@@ -129,7 +131,7 @@ def test_no_axle_of_a_train_skids_whatever_is_steered():
         return car.drive(speed, steering, (0.0, 0.0, 0.0), (0.3, -0.5, 0.2), t)
 
     middle = driven(t)
-    velocity = sum(w * driven(t + s).pose for w, s in zip(weights, shifts, strict=True))
+    velocity = np.sum([w * driven(t + s).pose for w, s in zip(weights, shifts, strict=True)], axis=0)
     heading = middle.pose[:, :, 2]
     across = -np.sin(heading) * velocity[..., 0] + np.cos(heading) * velocity[..., 1]
     along = np.cos(heading) * velocity[..., 0] + np.sin(heading) * velocity[..., 1]
@@ -153,7 +155,7 @@ def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
 
 def test_a_trailer_bent_beyond_full_steering_can_not_be_straightened_in_reverse():
     car, full = CarWithTrailers(2.0, (1.5,), (0.4,)), 0.6
-    limit = car.steady_bend(-full)
+    limit = present(car.steady_bend(-full))
     assert limit > 0
     # Whatever the steering, beyond the limit the bend grows in reverse; within it, some steering lessens it.
     for bend, growing in ((limit + 1e-6, True), (limit - 1e-6, False)):
@@ -273,7 +275,7 @@ def test_the_second_wheel_of_an_axle_changes_nothing_but_the_count_of_rows(scene
 
 def test_the_carts_truth_knows_its_own_error():
     cart, t = Cart(), np.linspace(0, 3, 7)
-    assert cart.motion_with_error(t).estimate.max() < 1e-11
+    assert present(cart.motion_with_error(t).estimate).max() < 1e-11
     assert cart.motion([4.0]).pose.shape == (1, 3, 3)  # beyond the duration
 
 
@@ -302,6 +304,7 @@ def test_a_cart_that_forgets_the_rates_of_its_allowed_motions_is_caught():
 
 
 def test_bad_vehicles_are_refused():
+    bad: dict[str, Any]
     for bad in (
         {"length": 0.0},
         {"steering": math.pi / 2},
@@ -311,6 +314,7 @@ def test_bad_vehicles_are_refused():
     ):
         with pytest.raises(InvalidMechanism):
             CarAndTrailer(**bad)
+    bad: dict[str, Any]
     for bad in ({"trail": 0.0}, {"mass": -1.0}, {"angles": (math.nan, 0.0)}, {"caster_inertia": 0.0}):
         with pytest.raises(InvalidMechanism):
             Cart(**bad)

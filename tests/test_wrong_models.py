@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -116,7 +117,7 @@ LARGER: dict[tuple[str, str], str] = {
 class SampledPointPendulum(PointPendulum):
     """The point pendulum at the samples of other scenes: its own are half a second apart."""
 
-    samples = BarPendulum.samples
+    samples = BarPendulum.samples  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
 
 def short(scene: Scene) -> Scene:
@@ -127,8 +128,8 @@ def short(scene: Scene) -> Scene:
     if isinstance(scene, PointPendulum):
         scene = SampledPointPendulum()
     # A rolling body's horizon is worked out, that of others is a number.
-    own = {"horizon": min(duration, scene.horizon)} if "horizon" in scene.__dataclass_fields__ else {}
-    return replace(scene, duration=duration, **own)
+    own = {"horizon": min(duration, scene.horizon)} if "horizon" in scene.__dataclass_fields__ else {}  # pyright: ignore[reportAttributeAccessIssue]
+    return replace(cast(Any, scene), duration=duration, **own)
 
 
 def excuse(scene: Scene, engine: Engine, mistake: Mistake) -> str:
@@ -186,7 +187,7 @@ def findings() -> Findings:
 
 @pytest.fixture(scope="session")
 def all_findings(request: pytest.FixtureRequest) -> Findings:
-    if "slow" not in request.config.getoption("markexpr"):
+    if "slow" not in str(request.config.getoption("markexpr")):
         pytest.skip("every mistake in every variant takes ten minutes: pytest -m slow tests/test_wrong_models.py")
     return found(EVERYTHING)
 

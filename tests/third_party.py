@@ -72,18 +72,21 @@ class Model:
     def __init__(self, engine, mechanism, dt):
         count = len(mechanism.bodies)
         self.size = Size(count, 3 * count, mechanism.row_count, mechanism.row_count)
-        self.engine, self.mechanism, self.dt = engine, mechanism, dt
+        self.engine, self.mechanism, self.dt, self.called = engine, mechanism, dt, False
 
     @validated
     def __call__(self, samples: Count, every: Count):
         import time
 
+        if self.called:
+            raise RuntimeError("a run is one shot: build it again")
+        self.called = True
         begin = time.process_time()
         pose, twist, states = self.mechanism.pose, self.mechanism.twist, []
         for index in range(samples * every + 1):
             after = self.kicked(pose, twist, index * self.dt)
             if index % every == 0:
-                states.append((pose, twist, self.mechanism.reaction(pose, twist, (after - twist) / self.dt)))
+                states.append((pose, twist, self.mechanism.reaction(pose, (after - twist) / self.dt)))
             pose, twist = pose + self.dt * after, after
         times = np.arange(samples + 1) * every * self.dt
         return Trajectory(times, *map(np.array, zip(*states)), time.process_time() - begin)

@@ -63,7 +63,7 @@ class ToyRun:
         self._mechanism, self._dt, self._spoil = mechanism, dt, spoil
 
     def __call__(self, samples: int, every: int) -> Trajectory:
-        t = np.arange(samples + 1) * every * self._dt
+        t = np.arange(samples + 1, dtype=float) * every * self._dt
         return self._spoil(turning(self._mechanism, t), self._dt)
 
 

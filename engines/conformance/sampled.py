@@ -46,6 +46,7 @@ def has_the_right_shapes(subject: Subject, world: World) -> None:
         ("warnings", run.warnings, tuple),
         ("reset_at", run.reset_at, (float, type(None))),
         ("estimate", run.estimate, (np.ndarray, type(None))),
+        ("unresolved_at", run.unresolved_at, (float, type(None))),
     ):
         if not isinstance(value, kinds):
             raise Fails(

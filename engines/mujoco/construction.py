@@ -73,7 +73,7 @@ Binder = Callable[[Any, Sequence[int]], Hooks]
 class Building:
     """A model while it is built. Constructions add to `spec`, to `written` (rows that callbacks will write, see
     `written_rows`) and to `binders` (called with the compiled model for hooks); `contact` asks for MuJoCo's contacts,
-    `start_rates` says how fast further joints turn at the start.
+    `start_rates` says how fast further joints move at the start, `halves` which further bodies are cut off whose mass.
     """
 
     spec: Any  # mujoco.MjSpec, in which body i is called "body i" and tree coordinate c is "coordinate c"
@@ -87,6 +87,7 @@ class Building:
     contact: bool = False
     rewritten: bool = False  # rows of equalities that stand here already are changed by callbacks
     start_rates: dict[str, float] = field(default_factory=dict)
+    halves: list[tuple[str, int]] = field(default_factory=list)
     size: int = 0  # rows held by forces, those written not counted
 
     @property

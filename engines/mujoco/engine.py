@@ -11,7 +11,7 @@ from typing import Literal
 
 import mujoco
 
-from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines import Holder, Promise, Size, Softness, Unpromised
 from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
@@ -23,7 +23,7 @@ from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver
 from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
 from engines.mujoco.tree import Tree, spanning_tree
-from reference.joints import Joint, Pin, Skate, Slot
+from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
@@ -31,25 +31,6 @@ from reference.validation import Count, InvalidMechanism, Name, NonNegative, Pos
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 Solver = Literal["Newton", "CG", "PGS"]
 Factorisation = Literal["auto", "dense", "sparse"]
-
-
-def refuse_wrong_version(version: str) -> None:
-    """Raise Unsupported for the releases that are known to give wrong motions without a warning.
-
-    Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
-    `engines.mujoco.factorisation` measures it.
-    """
-    numbers = tuple(int(part) for part in version.split(".")[:3] if part.isdigit())
-    if numbers < (3, 7):
-        raise Unsupported(
-            f"MuJoCo {version} leaves the velocity term out of its loop constraints; 3.7 and later have it, "
-            "and 4.0.1 is what this suite is made for"
-        )
-    if numbers == (4, 0, 0):
-        raise Unsupported(
-            "MuJoCo 4.0.0 factorises the Hessian of its Newton solver wrongly where the Jacobian of the constraints is "
-            "sparse, for some trees that branch, and says nothing; take 4.0.1 or later"
-        )
 
 
 @dataclass(frozen=True)
@@ -64,7 +45,8 @@ class MuJoCo(Valid):
     ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at
     the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
     `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
-    integrator otherwise, since four stages of the same stale row cost more and gain nothing.
+    integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a second run
+    with half as many steps tells the error of the first, if that falls with the fourth power of the step.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -80,10 +62,11 @@ class MuJoCo(Valid):
     tolerance: NonNegative = 1e-8
     jacobian: Factorisation = "auto"
     islands: bool = True
-    slots: SlotBy = "tendon"
+    slots: SlotBy = "halves"
     skates: SkateBy = "blade"
     euler_for_skates: bool = True
     rolls: RollBy = field(default_factory=RollContact)
+    estimates: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -118,13 +101,12 @@ class MuJoCo(Valid):
         return theory.holder(self, joint, self._tree(mechanism))
 
     def _tree(self, mechanism: Mechanism) -> Tree:
-        pins = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
-        return spanning_tree(mechanism, pins if self.coordinates == "tree" else ())
+        return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
         tree = self._tree(mechanism)
-        soft = [joint in tree.loops or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
+        soft = [tree.closes_by(joint) or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
         if not any(soft):
             return None
         stiffness, rolling = self.stiffness, any(isinstance(joint, Roll) for joint in mechanism.joints)
@@ -150,12 +132,13 @@ class MuJoCo(Valid):
             rows=model.rows + (len(model.driven) if self.drive != "overwrite" else 0),
             solver_rows=data.nefc,
         )
-        return MuJoCoRun(model, data, size)
+        promised = self.order(mechanism) if self.estimates else None
+        fourth = isinstance(promised, Promise) and promised.order >= 4
+        return MuJoCoRun(model, data, size, (lambda other: self.build(mechanism, other)) if fourth else None)
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive) -> Model:
         """The compiled model alone."""
-        refuse_wrong_version(mujoco.__version__)
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
         options = {
@@ -177,7 +160,7 @@ class MuJoCo(Valid):
             self.rolls,
         )
         model = build_model(mechanism, dt, settings)
-        choose_solver(model, self.solvers)
+        choose_solver(model, self.solvers, self.stiffness.softening)
         return model
 
 

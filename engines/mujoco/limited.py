@@ -21,7 +21,7 @@ class LimitedTendon(MuJoCo):
 
     def model(self, mechanism: Mechanism, dt: float) -> Any:
         model = super().model(mechanism, dt)
-        model.compiled.tendon_frictionloss[:] = self.limit
+        model.compiled.tendon_frictionloss[:] = self.limit / model.unit
         return model
 
 

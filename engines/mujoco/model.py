@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import mujoco
@@ -16,14 +17,24 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
-from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, driven_coordinates
+from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
 from engines.mujoco.joints.pin import add_pins
 from engines.mujoco.joints.roll import RollBy
 from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
+from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.tree import Tree, spanning_tree
-from engines.mujoco.written_rows import add_placeholders, installed, row_writer, writing
+from engines.mujoco.written_model import new_specification
+from engines.mujoco.written_rows import (
+    add_placeholders,
+    equality_rows,
+    installed,
+    row_writer,
+    scale_placeholders,
+    writing,
+    writing_free,
+)
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -61,6 +72,8 @@ class Model:
     rows: int = 0  # scalar constraints held by forces, drives not counted
     written: bool = False  # some of them by callback: the dual solver can't serve them
     start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
+    unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
+    halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
 
     def hooked(self) -> AbstractContextManager[None]:
         """The callbacks in place while this is entered: every step and every reading needs them."""
@@ -70,8 +83,12 @@ class Model:
         """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2], as the compiled model has them."""
         compiled = self.compiled
         places = [compiled.body(f"body {index}").id for index in range(len(self.mechanism.bodies))]
-        mass, inertia = compiled.body_mass[places], compiled.body_inertia[places, 2]
-        return np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
+        mass, inertia = compiled.body_mass[places].copy(), compiled.body_inertia[places, 2].copy()
+        for name, body in self.halves:
+            half = compiled.body(name).id
+            mass[body] += compiled.body_mass[half]
+            inertia[body] += compiled.body_inertia[half, 2]
+        return self.unit * np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
 
     def start(self) -> Any:
         """A fresh mujoco.MjData at the mechanism's start, its derived quantities computed."""
@@ -92,14 +109,15 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    hanging: list[Pin | Slot] = []
+    whole, unit = mechanism, _unit_of_mass(mechanism)
+    mechanism = _lighter(mechanism, unit)
     drives: list[Drive] = []
     skating: list[Skate] = []
     rolling: list[Roll] = []
     for joint in mechanism.joints:
         match joint:
             case Pin() | Slot():
-                hanging.append(joint)
+                pass  # in the tree, or one of its loops
             case Drive():
                 drives.append(joint)
             case Skate():
@@ -108,34 +126,38 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
                 rolling.append(joint)
             case _:
                 raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
-    tree = spanning_tree(mechanism, hanging if settings.coordinates == "tree" else ())
-    driven = driven_coordinates(tree, [joint for joint in drives if joint not in tree.kept])
+    tree = spanning_tree(mechanism, hanging=settings.coordinates == "tree")
+    single = [joint for joint in drives if joint not in (*tree.kept, *tree.geared)]
+    driven = driven_coordinates(tree, single)
 
     spec = _spec(tree, dt, settings)
-    add_drives(spec, mechanism, driven, settings.drive, settings.armature, settings.servo_gain)
+    add_drives(spec, mechanism, driven, settings.drive, settings.armature, settings.servo_gain / unit)
     building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)
+    clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
     add_skates(building, skating, settings.skates)
     if rolling:
         settings.rolls.add(building, rolling)
     # The placeholders come last: what stands before them in the solver is then known.
-    add_placeholders(spec, tree, building.written, settings.stiffness.impedance, building.driven)
+    add_placeholders(spec, tree, building.written, settings.stiffness.impedance)
     compiled = _compiled(building)
     places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
-    _scale_tolerance_by_true_inertia(compiled, [places[one.column] for one in driven])
+    steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]
+    _scale_tolerance_by_true_inertia(compiled, steady)
     for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
         scale[:] *= settings.stiffness.softening  # connects, joints, tendons
     hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
     written = sum(joint.size for joint in building.written)
     if building.written:
-        rows = row_writer(tree, places, building.written)
-        connect = int(mujoco.mjtEq.mjEQ_CONNECT)
-        before = sum(3 if kind == connect else 1 for kind in compiled.eq_type) - written
-        hooks += Hooks(control=(writing(rows, before, compiled.nv),))
+        rows = row_writer(tree, places, building.written, compiled.nv)
+        scale_placeholders(compiled, rows, settings.stiffness.softening)
+        before = equality_rows(compiled) - written
+        short = writing_free(tree, places, building.written, before, compiled.nv)
+        hooks += Hooks(control=(short or writing(rows, before, compiled.nv),))
     rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
     return Model(
-        mechanism,
+        whole,
         tree,
         compiled,
         places,
@@ -145,18 +167,34 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         building.size + written,
         building.writes,
         rates,
+        unit,
+        tuple(building.halves),
     )
+
+
+def _unit_of_mass(mechanism: Mechanism) -> float:
+    """About the mechanism's mass [kg]: a regularisation below mjMINVAL (1e-15) is not taken, and that has a unit.
+
+    A power of two, so that no number is rounded for it.
+    """
+    return 2.0 ** round(math.log2(sum(body.mass for body in mechanism.bodies)))
+
+
+def _lighter(mechanism: Mechanism, unit: float) -> Mechanism:
+    """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
+    bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
+    return replace(mechanism, bodies=tuple(bodies))
 
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:
     """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
-    spec = mujoco.MjSpec()
+    spec = new_specification()
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]
     spec.option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     if not settings.islands:
-        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+        spec.option.disableflags |= NO_ISLANDS
     for name, value in settings.options.items():
         setattr(spec.option, name, value)
     _add_bodies(spec, tree)
@@ -169,7 +207,8 @@ def _compiled(building: Building) -> Any:
     if building.contact:
         option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     dense = option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
-    if building.writes and not (dense and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ISLAND)):
+    whole = option.disableflags & NO_ISLANDS == NO_ISLANDS
+    if building.writes and not (dense and whole):
         raise Unsupported(
             "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
         )

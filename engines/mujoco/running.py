@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,6 +19,7 @@ from engines import Size
 from engines.mujoco.construction import in_turn
 from engines.mujoco.joints.roll.roll_warnings import roll_warnings
 from engines.mujoco.model import Model
+from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
@@ -29,7 +30,7 @@ Array = NDArray[np.float64]
 TORN = 1e-3
 # A solver that misses the accelerations by more than this part of them has not converged, whatever it reports.
 UNSOLVED = 1e-5
-AT_REST = 1e-9  # of the largest acceleration so far
+AT_REST = 1e-9  # of the largest acceleration so far, or of one that would be usual
 
 
 @dataclass
@@ -67,6 +68,8 @@ class MuJoCoRun:
     model: Model
     data: Any  # mujoco.MjData, which stepping changes
     size: Size
+    # Builds the same with another step [s], for an estimate of the error of RK4: None for none.
+    other: Callable[[float], MuJoCoRun] | None = None
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
@@ -92,8 +95,27 @@ class MuJoCoRun:
         reaction[read] = self.model.mechanism.reaction(pose[read], change[read], *self.model.loads())
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
+        warnings += marks()
         warnings += roll_warnings(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
-        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
+        estimate = self._estimate(samples, every, pose)
+        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at, estimate)
+
+    def _estimate(self, samples: int, every: int, pose: Array) -> Array | None:
+        """What a run of half as many steps says of the error of these poses; NaN where that run is lost.
+
+        Richardson's: RK4's error falls with the fourth power of the step. None where samples are one step apart.
+        """
+        if self.other is None or every < 2:
+            return None
+        fewer = every // 2
+        ratio = every / fewer
+        run = self.other(self.model.compiled.opt.timestep * ratio)
+        with _listening(run.data) as complaints, run.model.hooked():
+            position, velocity, _, _ = run._step(samples, fewer)
+        coarse, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
+        if complaints.reset_at is not None:
+            return np.full_like(pose, np.nan)
+        return np.abs(coarse - pose) / (ratio**4 - 1)
 
     def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:
         """(samples + 1, ...) positions, velocities and clock, as MuJoCo orders them, and the loop's CPU seconds."""
@@ -138,7 +160,8 @@ class MuJoCoRun:
         """Accelerations at the samples by the engine's own solver, and by how much it failed to solve, at worst."""
         compiled, data = self.model.compiled, self.data
         acceleration, worst = np.full_like(velocity, np.nan), 0.0
-        largest = 0.0
+        mechanism = self.model.mechanism
+        largest = min(mechanism.length_scale, 1.0) / mechanism.time_scale**2
         for sample in np.flatnonzero(sound):
             data.qpos[:], data.qvel[:], data.time = position[sample], velocity[sample], t[sample]
             for prepare in self.model.hooks.before:

@@ -11,12 +11,20 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from scipy.linalg import get_lapack_funcs
 
+from engines import Unsupported
 from engines.mujoco.model import Model
+from engines.mujoco.releases import full_inertia
 
 # At the start a solver must find the accelerations to this part of them. Measured: a solver that suits a mechanism
 # leaves 1e-7 or less, one that doesn't leaves 1e-2 or more, and nothing stands between.
 SOLVED = 1e-6
+# An iteration of Newton's must leave less than this part of an error: three of them then refine a solution to rounding.
+# Measured at the start of 29 scenes and 300 random mechanisms: 4e-2 or less, and 2 in the one that failed.
+LOST = 0.1
+
+_factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.float64)
 
 
 def unsolved(compiled: Any, data: Any) -> float:
@@ -50,8 +58,7 @@ def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
     idle = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_SATISFIED
     if not np.all(holding | idle):
         return None
-    inertia = np.zeros((compiled.nv, compiled.nv))
-    mujoco.mj_fullM(compiled, data, inertia)
+    inertia = full_inertia(compiled, data)
     rows = data.efc_J.reshape(data.nefc, compiled.nv)[holding]
     matrix = np.block([[inertia, -rows.T], [rows, np.diag(data.efc_R[holding])]])
     try:
@@ -60,12 +67,44 @@ def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
         return None
 
 
-def choose_solver(model: Model, solvers: Sequence[str]) -> None:
+def _lost(compiled: Any, data: Any) -> float:
+    """What rounding leaves of an error after one iteration of Newton's: the condition of its Hessian, times that.
+
+    M + J^T R^-1 J, scaled to a unit diagonal as its Cholesky factor is by nature.
+    """
+    if not data.nefc:
+        return 0.0
+    hessian = full_inertia(compiled, data)
+    rows = data.efc_J.reshape(data.nefc, compiled.nv)
+    hessian += (rows.T / data.efc_R) @ rows
+    scale = 1 / np.sqrt(np.diag(hessian))
+    hessian *= scale * scale[:, None]
+    size = float(np.abs(hessian).sum(axis=0).max())
+    factor, failed = _factorise(hessian)
+    inverse, _ = _inverse_condition(factor, size)
+    return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
+
+
+def _soften(model: Model, softening: float) -> None:
+    """Let every row give way tenfold, up to as shipped, until Newton's iterations lose no more than LOST in rounding.
+
+    A compliance of 1e-12 of a row's own inverse inertia is too little where a light body carries a heavy one.
+    """
+    compiled = model.compiled
+    while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, model.start()) > LOST:
+        softening *= 10
+        for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
+            scale[:] *= 10
+
+
+def choose_solver(model: Model, solvers: Sequence[str], softening: float) -> None:
     """Set the first of the solvers that solves the start; the one that comes nearest if none does.
 
     Newton is the fastest and as exact as any on a few loops and on many short ones, and loses the compliance in
     rounding on long chains; there the dual solver (PGS) is better, which fails for bodies of very different mass and
-    takes hundreds of sweeps for many loops. CG is slower than either, and stands in for both.
+    takes hundreds of sweeps for many loops. CG is slower than either, and stands in for both. Rows that are made harder
+    than as shipped, by this factor `softening`, are made softer again where Newton would lose them in rounding.
+    Raises Unsupported if none of the solvers can serve.
     """
     missed = {}
     for solver in solvers:
@@ -74,5 +113,9 @@ def choose_solver(model: Model, solvers: Sequence[str]) -> None:
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
         missed[solver] = unsolved(model.compiled, model.start())
         if missed[solver] < SOLVED:
+            if solver == "Newton":
+                _soften(model, softening)
             return
+    if not missed:
+        raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")
     model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{min(missed, key=missed.__getitem__).upper()}")

@@ -33,24 +33,25 @@ def promise(engine: MuJoCo, mechanism: Mechanism, tree: Tree) -> Promise | Unpro
             if engine.drive == "servo"
             else "a state that is overwritten between steps obeys no equation of which an order is known"
         )
+    looped = tree.loops or tree.geared
     order = 4 if engine.integrator == "RK4" else 1
     # A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it.
     if rolling and isinstance(engine.rolls, RollContact):
         return Promise(1)
     if rolling and isinstance(engine.rolls, RollEquality):
         return Promise(1, gap=2)
-    gap = None if tree.loops or rolling else EXACT
+    gap = None if looped or rolling else EXACT
     if skating and engine.skates == "leapfrog":
         # Symmetric in time, and read without the slip that its reflections leave.
         return Promise(2, gap=gap, slip=EXACT, energy=4, differences=1)
     if skating and engine.skates not in ("rows", "passive"):
         # A row that is held at the ends of steps; one at the pose that the velocity leads to has less slip.
         return Promise(1, gap=gap, slip=2 if engine.skates == "predicted tendon" else None)
-    if tree.loops and isinstance(engine.stiffness, TiedToStep):
+    if looped and isinstance(engine.stiffness, TiedToStep):
         if order > 1:
             return Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)
         return SPRUNG_PRESCRIBED if is_prescribed(mechanism) else SPRUNG
-    if tree.loops or rolling:
+    if looped or rolling:
         return Promise(order)
     if skating:
         return Promise(order, gap=gap)
@@ -66,7 +67,7 @@ def holder(engine: MuJoCo, joint: Joint, tree: Tree) -> Holder:
     match joint:
         case Drive() if joint not in tree.kept and engine.drive == "overwrite":
             return "ours"
-        case Slot() if joint in tree.loops and engine.slots == "rows" and resting_line(joint, tree) is None:
+        case Slot() if tree.closes_by(joint) and engine.slots == "rows" and resting_line(joint, tree) is None:
             return "engine, our rows"
         case Skate() if engine.skates in ("force", "passive"):
             return "ours"

@@ -7,14 +7,15 @@ coordinates are zero at the start: the mechanism begins assembled, exactly, and 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections import deque
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Drive, Pin, Slot
+from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
 
@@ -65,21 +66,39 @@ class Tree:
     loops: tuple[Pin | Slot, ...]
     kept: tuple[Drive, ...] = ()  # drives of rate zero that hold because the tree has no rotation there
 
-    @property
+    @cached_property
     def coordinates(self) -> int:
         return sum(len(link.columns) for link in self.links)
 
-    def rotation_of(self, first: str | None, second: str | None) -> tuple[int, float] | None:
-        """The tree coordinate of the second body's rotation against the first, and its sign; None if there is none."""
-        index = {None: None, **{body.name: i for i, body in enumerate(self.mechanism.bodies)}}
-        for link in self.links:
-            if link.rotation is None:
-                continue
-            if (link.parent, link.body) == (index[first], index[second]):
-                return link.rotation, 1.0
-            if (link.body, link.parent) == (index[first], index[second]):
-                return link.rotation, -1.0
-        return None
+    @cached_property
+    def _looping(self) -> frozenset[str]:
+        return frozenset(joint.name for joint in (*self.loops, *self.geared))
+
+    def closes_by(self, joint: Joint) -> bool:
+        """Whether the joint is one of the loops, or a drive that is held like one."""
+        return joint.name in self._looping
+
+    def turning(self, first: str | None, second: str | None) -> dict[int, float]:
+        """The tree coordinates whose sum, with these signs, is the rotation of the second body against the first."""
+        signs: dict[int, float] = {}
+        for name, sign in ((second, 1.0), (first, -1.0)):
+            at = None if name is None else self.mechanism.body_index(name)
+            while at is not None:
+                link = self._link_of[at]
+                if link.rotation is not None:
+                    signs[link.rotation] = signs.get(link.rotation, 0.0) + sign
+                at = link.parent
+        return {column: sign for column, sign in sorted(signs.items()) if sign}
+
+    @cached_property
+    def _link_of(self) -> dict[int, Link]:
+        return {link.body: link for link in self.links}
+
+    @cached_property
+    def geared(self) -> tuple[Drive, ...]:
+        """The drives that no single coordinate stands for."""
+        drives = [joint for joint in self.mechanism.joints if isinstance(joint, Drive) and joint not in self.kept]
+        return tuple(drive for drive in drives if len(self.turning(drive.first, drive.second)) != 1)
 
     def start_rates(self) -> Array:
         """The tree velocities (coordinates,) [m/s, rad/s] of the mechanism's start."""
@@ -137,19 +156,43 @@ class Tree:
         return pose[:, :bodies], twist[:, :bodies], change[:, :bodies]
 
 
-def spanning_tree(mechanism: Mechanism, joints: Iterable[Pin | Slot]) -> Tree:
-    """The tree that grows breadth first from the ground along the joints; a body that they don't reach moves freely.
+def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
+    """The tree that grows breadth first from the ground along pins and slots; what they don't reach moves freely.
 
-    With no `joints` every body moves freely; every pin and slot of the mechanism that holds no link is a loop. A slot
-    holds a link where its slotted body comes first; pins are preferred. A drive of rate zero across it keeps the angle.
+    Not `hanging`, every body moves freely. Every pin and slot that holds no link is a loop. A slot holds a link where
+    its slotted body comes first; pins are preferred. A drive of rate zero across it keeps the angle. The trees of the
+    last mechanisms are kept: a report asks for one once a joint.
     """
-    usable = sorted(joints, key=lambda joint: isinstance(joint, Slot))
+    return _tree_of(_Same(mechanism), hanging)
+
+
+class _Same:
+    """A mechanism that equals itself alone: comparing all of its numbers would take as long as the tree."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+
+    def __hash__(self) -> int:
+        return id(self.mechanism)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.mechanism is self.mechanism
+
+
+@lru_cache(maxsize=8)
+def _tree_of(same: _Same, hanging: bool) -> Tree:
+    mechanism = same.mechanism
     loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
+    usable: dict[str | None, list[Pin | Slot]] = {}
+    for joint in sorted(loops if hanging else (), key=lambda joint: isinstance(joint, Slot)):
+        for end in (joint.first, joint.second):
+            usable.setdefault(end, []).append(joint)
     links: list[Link] = []
     kept: list[Drive] = []
+    holding: set[str] = set()
     placed: dict[str | None, int | None] = {None: None}
-    frontier: list[str | None] = [None]
+    frontier: deque[str | None] = deque([None])
 
     def place(name: str, parent: str | None, joint: Pin | Slot | None) -> None:
         body = mechanism.body_index(name)
@@ -170,7 +213,7 @@ def spanning_tree(mechanism: Mechanism, joints: Iterable[Pin | Slot]) -> Tree:
                 links.append(Link(body, placed[parent], "slot", column, arm, anchor, direction, not holds))
             else:
                 links.append(Link(body, placed[parent], "hinge", column, arm, anchor))
-            loops.remove(joint)
+            holding.add(joint.name)
         placed[name] = body
         frontier.append(name)
 
@@ -180,18 +223,20 @@ def spanning_tree(mechanism: Mechanism, joints: Iterable[Pin | Slot]) -> Tree:
             return joint.first if joint.first not in placed else None
         return joint.second if joint.first == parent and joint.second not in placed else None
 
-    waiting = [body.name for body in mechanism.bodies]
-    while waiting:
+    def grow() -> None:
         while frontier:
-            parent = frontier.pop(0)
-            for joint in usable:
+            parent = frontier.popleft()
+            for joint in usable.get(parent, ()):
                 child = child_of(joint, parent)
                 if child is not None:
                     place(child, parent, joint)
-                    waiting.remove(child)
-        if waiting:
-            place(waiting.pop(0), None, None)
-    return Tree(mechanism, tuple(links), tuple(loops), tuple(kept))
+
+    grow()
+    for body in mechanism.bodies:
+        if body.name not in placed:
+            place(body.name, None, None)
+            grow()
+    return Tree(mechanism, tuple(links), tuple(joint for joint in loops if joint.name not in holding), tuple(kept))
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:

@@ -1,8 +1,8 @@
 """Constraint rows of one's own in MuJoCo: placeholders, rewritten before the solver in every stage of the integrator.
 
-MuJoCo has no joint for a skate or for rolling, but its solver takes any row. A placeholder (a joint equality) reserves
-the row; `mjcb_control`, which runs after the references are computed and before the solve, in all four stages of RK4
-(mj_forwardSkip in MuJoCo's engine_forward.c), overwrites its part of `efc_J` and `efc_aref`. It needs the dense
+MuJoCo has no joint for a skate or for rolling, but its solver takes any row. A placeholder (an equality of a tendon)
+reserves the row; `mjcb_control`, which runs after the references are computed and before the solve, in all four stages
+of RK4 (mj_forwardSkip in MuJoCo's engine_forward.c), overwrites its part of `efc_J` and `efc_aref`. It needs the dense
 Jacobian, no islands, and a primal solver (Newton or CG): the dual one has built its matrix from the placeholder by
 then.
 
@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from engines.mujoco.tree import Tree
 
@@ -47,23 +48,43 @@ class WrittenJoint:
     rows: Callable[[float, State, State], Sequence[Row]]
 
 
-def add_placeholders(
-    spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impedance: Sequence[float], driven: Sequence[int] = ()
-) -> None:
-    """Reserve the joints' rows; to be called after every other equality, so that theirs come last."""
-    for joint in joints:
-        # The coordinate only sets the scale of the row's compliance: it should be one that the row can move, and not a
-        # driven one, whose inertia has nothing to do with the row's.
-        bodies = [body for body in (joint.second, joint.first) if body is not None]
-        links = [tree.links[index] for body in bodies for index in reversed(_ancestry(tree, [body]))]
-        own = [column for link in links for column in link.columns if column not in driven]
-        for _ in range(joint.size):
-            spec.add_equality(
-                type=mujoco.mjtEq.mjEQ_JOINT,
-                objtype=mujoco.mjtObj.mjOBJ_JOINT,
-                name1=f"coordinate {own[0] if own else 0}",
-                solimp=list(impedance),
-            )
+def add_placeholders(spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impedance: Sequence[float]) -> None:
+    """Reserve the joints' rows; to be called after every other equality, so that theirs come last.
+
+    Tendons, because each has an inverse inertia of its own (`tendon_invweight0`) that `scale_placeholders` can write.
+    """
+    own = [chain(tree, joint)[0] for joint in joints for _ in range(joint.size)]
+    for number, column in enumerate(own):
+        name = _placeholder(number)
+        spec.add_tendon(name=name).wrap_joint(f"coordinate {column}", 1.0)
+        spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_TENDON,
+            objtype=mujoco.mjtObj.mjOBJ_TENDON,
+            name1=name,
+            solimp=list(impedance),
+        )
+
+
+def scale_placeholders(compiled: Any, rows: Rows, softening: float) -> None:
+    """Make each row as soft as its own inverse inertia at the start says; the placeholder's knows nothing of it."""
+    data = mujoco.MjData(compiled)
+    mujoco.mj_fwdPosition(compiled, data)
+    flat, reference = rows(0.0, data.qpos.tolist(), data.qvel.tolist())
+    jacobian = np.array(flat).reshape(len(reference), compiled.nv)
+    moved = np.empty_like(jacobian)
+    mujoco.mj_solveM(compiled, data, moved, jacobian)
+    for number, inverse in enumerate(np.sum(jacobian * moved, axis=1)):
+        compiled.tendon_invweight0[compiled.tendon(_placeholder(number)).id] = softening * inverse
+
+
+def _placeholder(number: int) -> str:
+    return f"written row {number}"
+
+
+def equality_rows(compiled: Any, before: int | None = None) -> int:
+    """How many rows MuJoCo's solver has for the model's equalities, or for those `before` the one with this number."""
+    sizes = {int(mujoco.mjtEq.mjEQ_CONNECT): 3, int(mujoco.mjtEq.mjEQ_WELD): 6}
+    return sum(sizes.get(int(kind), 1) for kind in compiled.eq_type[:before])
 
 
 def chain(tree: Tree, joint: WrittenJoint) -> list[int]:
@@ -72,17 +93,16 @@ def chain(tree: Tree, joint: WrittenJoint) -> list[int]:
     return sorted(column for index in _ancestry(tree, bodies) for column in tree.links[index].columns)
 
 
-def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint]) -> Rows:
+def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], width: int) -> Rows:
     """The function (t, qpos, qvel) -> (efc_J flattened row by row, efc_aref) of the joints' rows.
 
-    `address` is where each tree coordinate stands in qpos and in qvel.
+    `address` is where each tree coordinate stands in qpos and in qvel, and `width` the length of qvel.
     """
     needed = _ancestry(tree, [body for joint in joints for body in (joint.first, joint.second) if body is not None])
     place: dict[int | None, int] = {tree.links[index].body: own for own, index in enumerate(needed)}
     place[None] = -1  # the ground stands last, and rests
     steps = [_kinematics(tree, index, address, place) for index in needed]
     bodies = tree.mechanism.pose.tolist()
-    width = tree.coordinates
     start = [(0.0,) * 12] * (len(needed) + 1)
     plan = []
     for joint in joints:
@@ -144,6 +164,42 @@ def writing(rows: Rows, first_row: int, width: int) -> Callable[[Any, Any], None
             return
         data.efc_J[begin : begin + len(jacobian)] = jacobian
         data.efc_aref[first_row : first_row + len(reference)] = reference
+
+    return write
+
+
+def writing_free(
+    tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], first_row: int, width: int
+) -> Callable[[Any, Any], None] | None:
+    """The same for free bodies on the ground, in half of the time: three numbers a row; None if there are others.
+
+    What the placeholder has in a row stands in one of these three columns, so that all of the row is overwritten.
+    """
+    links = {link.body: link for link in tree.links}
+    plan, row = [], first_row
+    for joint in joints:
+        link = None if joint.second is None else links[joint.second]
+        if joint.first is not None or link is None or link.kind != "free":
+            return None
+        columns = [address[column] for column in link.columns]
+        plan.append((joint.rows, row, *columns, *tree.mechanism.bodies[link.body].pose))
+        row += joint.size
+
+    def write(_model: Any, data: Any) -> None:
+        q, v = data.qpos.tolist(), data.qvel.tolist()
+        jacobian, reference = data.efc_J, data.efc_aref
+        try:
+            for law, row, x, y, turn, start_x, start_y, start in plan:
+                state = (start_x + q[x], start_y + q[y], start + q[turn], v[x], v[y], v[turn])
+                for own in law(data.time, GROUND, state):
+                    begin = row * width
+                    jacobian[begin + x] = own[3]
+                    jacobian[begin + y] = own[4]
+                    jacobian[begin + turn] = own[5]
+                    reference[row] = own[6]
+                    row += 1
+        except (ValueError, OverflowError, ZeroDivisionError):
+            reference[first_row:] = math.nan  # see `writing`
 
     return write
 

@@ -54,7 +54,7 @@ def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) 
         raise ValueError(f"bare_loop: the engine is {engine.name}; it must be pymunk")
     if not isinstance(engine, Pymunk):
         raise Unsupported("bare_loop: a reflection has no model of joints to step")
-    model = engine.model(mechanism, dt)
+    model = engine.model(mechanism, dt, duration=dt * steps)
     step, space = model.stepper(raw=engine.leapfrog)
     dt /= model.unit
     begin = time.process_time()

@@ -17,6 +17,7 @@ and begins to grow between two and three times these within 2 s; with all of the
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil, log
 from typing import Annotated
 
@@ -26,10 +27,10 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
-from reference.kinds import Rule
+from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
-from reference.validation import Count, validated
+from reference.validation import LARGEST_COUNT, Count, Numbers, validated
 
 Array = NDArray[np.float64]
 
@@ -37,7 +38,10 @@ LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable
 MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
 FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a smaller step brings
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
+# The first steps of a run are few, so that they may take more work than the others.
+CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
 
+Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
 _latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
@@ -46,14 +50,19 @@ _latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same 
 @validated
 def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
-    if _latest and _latest[0][0] is mechanism:
-        return _latest[0][1]
+    if not (_latest and _latest[0][0] is mechanism):
+        _latest[:] = [(mechanism, contraction_at(mechanism, mechanism.pose))]
+    return _latest[0][1]
+
+
+@validated
+def contraction_at(mechanism: Mechanism, pose: Numbers) -> float:
+    """The same at a pose (bodies, 3) [m, m, rad]."""
     try:
-        rho = _spectral_radius(*_joint_matrix(mechanism))
+        rho = _spectral_radius(*_joint_matrix(mechanism, pose))
     except np.linalg.LinAlgError:  # masses so far apart that no number is left
         rho = 0.0
-    _latest[:] = [(mechanism, min(max(rho, 0.0), 1 - 1e-12))]
-    return _latest[0][1]
+    return min(max(rho, 0.0), 1 - 1e-12)
 
 
 def _spectral_radius(matrix: Array, starts: list[int]) -> float:
@@ -72,14 +81,14 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
     return float(np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE]).max(initial=0.0))
 
 
-def _joint_matrix(mechanism: Mechanism) -> tuple[Array, list[int]]:
+def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
     """A, without the rows that are prescribed motions here, and where each joint's block begins."""
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
         weights[mechanism.body_index(name), 2] = 0
     for name in find_cranks(mechanism):
         weights[mechanism.body_index(name)] = 0
-    rows = mechanism.rows(mechanism.pose)
+    rows = mechanism.rows(pose)
     matrix = (rows * weights.reshape(-1)) @ rows.T
     kept, starts, row = [], [], 0
     for joint in mechanism.joints:
@@ -104,10 +113,43 @@ def _smallest(matrix: Array, lower: Array) -> float:
     return value
 
 
+@dataclass(frozen=True)
+class Sweeping:
+    """How a model is swept: `iterations` in a step, the `gain` that they allow, and what of the slowest mode is `left`.
+
+    `converged` is the number of iterations that leaves nothing of it, as far as CONVERGED_WORK allows, and `unsettled`
+    what these leave.
+    """
+
+    iterations: int
+    gain: float = 1.0
+    left: float = 0.0
+    converged: int = 1000
+    unsettled: float = 0.0
+
+
 @validated
-def sweeps(rho: Contraction) -> int:
-    """Iterations in a step after which LEFT of the slowest mode is left, within FEWEST and MOST."""
-    return min(MOST, max(FEWEST, ceil(log(LEFT) / log(rho)))) if rho > 0 else FEWEST
+def sweeping(rho: Contraction, joints: Count = 1, fewest: Count = FEWEST, work: Whole = 0) -> Sweeping:
+    """The rule for a mechanism of so many joints; see `sweeps`. All of a gap is closed, or what the sweeps allow."""
+    iterations = sweeps(rho, joints, fewest, work)
+    needed = ceil(log(ROUNDING) / log(rho)) if rho > 0 else 1
+    return swept_by(rho, iterations, max(iterations, min(needed, CONVERGED_WORK // joints)))
+
+
+@validated
+def swept_by(rho: Contraction, iterations: Count, converged: Count = 1000) -> Sweeping:
+    """So many iterations, whatever they leave."""
+    return Sweeping(iterations, gain(rho, iterations), rho**iterations, converged, rho**converged)
+
+
+@validated
+def sweeps(rho: Contraction, joints: Count = 1, fewest: Count = FEWEST, work: Whole = 0) -> int:
+    """Iterations in a step after which LEFT of the slowest mode is left, and at least `fewest`.
+
+    More than MOST only as far as a step may take so much `work`, sweeps times joints; where that is not enough, MOST.
+    """
+    enough = max(fewest, ceil(log(LEFT) / log(rho))) if rho > 0 else fewest
+    return enough if enough * joints <= work else min(enough, max(MOST, fewest))
 
 
 @validated

@@ -11,7 +11,8 @@ from pymunk.constraints import PivotJoint
 from engines import Holder, Promise, Softness, Unpromised
 from engines.motions import over_three
 from engines.pymunk import theory
-from engines.pymunk.contraction import contraction, gain, sweeps
+from engines.pymunk.contraction import FEWEST, Sweeping, Whole, sweeping, swept_by
+from engines.pymunk.expected import worst_contraction
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
 from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
@@ -20,7 +21,7 @@ from engines.pymunk.running import PymunkRun
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Fraction, Name, Positive, Valid, validated
+from reference.validation import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 
 
 def _shipped() -> tuple[int, float]:
@@ -45,6 +46,8 @@ class Pymunk(Valid):
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
+    `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
+    more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -65,6 +68,9 @@ class Pymunk(Valid):
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
+    settled: bool = False
+    fewest: Count = FEWEST
+    work: Whole = 0
 
     @property
     def name(self) -> str:
@@ -108,38 +114,40 @@ class Pymunk(Valid):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> PymunkRun:
         """A model of the mechanism at t = 0 for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        own = self.sweeps(mechanism)
         return PymunkRun(
             mechanism,
             dt,
-            lambda mechanism, iterations: self.model(mechanism, dt, iterations),
+            lambda sweeping: self.swept_model(mechanism, dt, sweeping),
+            lambda duration: self.sweeping(mechanism, duration),
             self.leapfrog,
-            own,
-            self._unconverged(mechanism, own),
+            self.settled,
         )
-
-    def _unconverged(self, mechanism: Mechanism, own: int) -> str:
-        if self.error_bias != CONTRACTION:
-            return ""
-        rho = contraction(mechanism)
-        if gain(rho, own) == 1:
-            return ""
-        return f"ours: not converged, {own} sweeps leave {rho**own:.0%} of the slowest mode"
 
     @validated
     def sweeps(self, mechanism: Mechanism) -> int:
-        """Iterations in a step for this mechanism."""
-        return self.iterations if isinstance(self.iterations, int) else sweeps(contraction(mechanism))
+        """Iterations in a step for this mechanism, as it starts."""
+        return self.sweeping(mechanism).iterations
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive, iterations: Count | None = None) -> Model:
-        """The engine's objects for steps of dt [s], not yet stepped; with other iterations than its own if given."""
-        own = self.sweeps(mechanism)
+    def sweeping(self, mechanism: Mechanism, duration: NonNegative = 0.0) -> Sweeping:
+        """How the mechanism is swept in a motion of `duration` [s]: by its worst pose, where it is by contraction."""
+        if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
+            return Sweeping(self.iterations)
+        rho = worst_contraction(mechanism, duration)
+        if isinstance(self.iterations, int):
+            return swept_by(rho, self.iterations)
+        return sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
+
+    @validated
+    def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:
+        """The engine's objects for steps of dt [s], not yet stepped, swept as a motion of `duration` [s] asks for."""
+        return self.swept_model(mechanism, dt, self.sweeping(mechanism, duration))
+
+    @validated
+    def swept_model(self, mechanism: Mechanism, dt: Positive, sweeping: Sweeping) -> Model:
+        """The same, swept as told."""
         bias, unit = self.error_bias, 1.0
         if not isinstance(bias, int | float):
-            closed = gain(contraction(mechanism), own)
-            bias, unit = 1 - closed, (1.0 if closed == 1 else dt)
-        settings = Settings(
-            own if iterations is None else iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact
-        )
+            bias, unit = 1 - sweeping.gain, (1.0 if sweeping.gain == 1 else dt)
+        settings = Settings(sweeping.iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact)
         return build_model(mechanism, settings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import Pymunk
 from reference.mechanism import Mechanism
 from reference.validation import Positive, validated
@@ -16,8 +17,8 @@ class LimitedGroove(Pymunk):
 
     limit: Positive = 1.0
 
-    def model(self, mechanism: Mechanism, dt: float, iterations: int | None = None) -> Any:
-        model = super().model(mechanism, dt, iterations)
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Any:
+        model = super().swept_model(mechanism, dt, sweeping)
         for constraint in model.space.constraints:
             constraint.max_force = self.limit
         return model

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import repeat
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -14,6 +15,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import Size
+from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -23,8 +25,10 @@ Array = NDArray[np.float64]
 
 VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
-# Enough for the pins of a chain of tens of bodies to agree to rounding, in the few steps that give the first reaction.
-CONVERGED_ITERATIONS = 1000
+# Steps at the beginning of a run with sweeps that leave nothing: what the cold start of the impulses leaves otherwise
+# falls by a fifth only in a step, and is felt in the reactions of the first samples.
+SETTLING = 4
+UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
 
 
 class Recorder:
@@ -83,8 +87,11 @@ class Recording:
     stopped: str = ""  # why the stepping ended early, if it did: from there on everything is NaN
 
 
-def record(model: Model, dt: float, samples: int, every: int, raw: bool) -> Recording:
-    """Step samples * every times and keep every `every`-th state, with the velocities of the step before it."""
+def record(model: Model, dt: float, samples: int, every: int, raw: bool, settling: int = 0) -> Recording:
+    """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
+
+    With `settling`, the first SETTLING steps have so many iterations.
+    """
     velocities = every > 1
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
     visit_each, pointer = lib.cpSpaceEachBody, model.space._space
@@ -94,14 +101,26 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool) -> Reco
     visit_each(pointer, visitor, after)
     steps_between = range(every - 1)
     stopped = ""
+    own = model.space.iterations
+    steps_left = SETTLING if settling else 0
+
+    def settle(space: Any, dt: float) -> None:
+        nonlocal steps_left
+        if steps_left > 0:
+            lib.cpSpaceSetIterations(pointer, max(settling, own))
+        step(space, dt)
+        lib.cpSpaceSetIterations(pointer, own)
+        steps_left -= 1
+
     begin = time.process_time()
     try:
         for _ in repeat(None, samples):
+            move = settle if steps_left > 0 else step
             if velocities:
                 for _ in steps_between:
-                    step(space, dt)
+                    move(space, dt)
                 visit_each(pointer, visitor, before)
-            step(space, dt)
+            move(space, dt)
             visit_each(pointer, visitor, after)
     except (ValueError, ArithmeticError) as reason:  # what is aimed by hand has no place to be aimed at any more
         stopped = f"ours: stopped, as a joint could no longer be placed ({reason})"
@@ -176,30 +195,36 @@ class PymunkRun:
         self,
         mechanism: Mechanism,
         dt: float,
-        make: Callable[[Mechanism, int], Model],
+        make: Callable[[Sweeping], Model],
+        swept: Callable[[float], Sweeping],
         leapfrog: bool,
-        iterations: int,
-        warning: str = "",
+        settled: bool,
     ) -> None:
-        self._mechanism, self._dt, self._make, self._leapfrog = mechanism, dt, make, leapfrog
-        self._warning = warning
-        self._model: Model | None = self._started(iterations)
-        self.size: Size = self._model.size
+        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds."""
+        self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
+        self._leapfrog, self._settled, self._over = leapfrog, settled, False
+        self.size: Size = make(swept(0.0)).size
 
-    def _started(self, iterations: int) -> Model:
-        model = self._make(self._mechanism, iterations)
+    def _started(self, sweeping: Sweeping) -> Model:
+        """The model, half a kick ahead if it is a leapfrog."""
+        model = self._make(sweeping)
         if self._leapfrog:
+            if self._settled:
+                model.space.iterations = max(sweeping.converged, sweeping.iterations)
             model.kick(self._dt / model.unit / 2)
+            model.space.iterations = sweeping.iterations
         return model
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
-        if self._model is None:
+        if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        model, self._model = self._model, None
-        recording = record(model, self._dt, samples, every, raw=self._leapfrog)
+        self._over = True
+        sweeping = self._swept(samples * every * self._dt)
+        model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
+        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         with np.errstate(all="ignore"):
@@ -208,15 +233,15 @@ class PymunkRun:
             acceleration = accelerations(model, recording, self._dt)
         reaction = np.concatenate(
             [
-                self._start_reaction()[None],
+                self._start_reaction(sweeping)[None],
                 reactions(self._mechanism, recording.pose[1:], acceleration, *loads(model)),
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        warnings = tuple(filter(None, (self._warning, recording.stopped)))
+        warnings = tuple(filter(None, (_unconverged(sweeping), recording.stopped)))
         return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
 
-    def _start_reaction(self) -> Array:
+    def _start_reaction(self, sweeping: Sweeping) -> Array:
         """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.
 
         The twin makes enough sweeps that the cold start of the impulses does not matter. The force of its first step
@@ -224,10 +249,20 @@ class PymunkRun:
         left of this falls by one order of dt a step. As a user reads it, the third step's force stands here, first
         order in dt. In a leapfrog the third and the fourth are extrapolated to zero: second order.
         """
-        model = self._started(CONVERGED_ITERATIONS)
+        model = self._started(replace(sweeping, iterations=sweeping.converged, gain=1.0))
         recording = record(model, self._dt, samples=4, every=1, raw=self._leapfrog)
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
             held = loads(model)
             third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
+
+
+def _unconverged(sweeping: Sweeping) -> str:
+    if sweeping.gain < 1:
+        return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
+    if sweeping.unsettled > UNSETTLED:
+        return (
+            f"ours: the reactions at the start are not converged, {sweeping.unsettled:.0e} of the slowest mode is left"
+        )
+    return ""

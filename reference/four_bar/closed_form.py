@@ -134,7 +134,7 @@ def _fill(out: list[Array], c: Constants, theta: Array, theta_dot: Array, theta_
     _fill_angles(out, c, triangles, theta, branch)
     if len(out) == 2:
         return
-    square, m, _, h, p, _, area = triangles
+    square, m, n, h, p, _, area = triangles
     q, half = area if _all_one(branch) else branch * area, 0.5 / square
     y = h / q
     beta_1 = (m - y * p) * half
@@ -143,7 +143,9 @@ def _fill(out: list[Array], c: Constants, theta: Array, theta_dot: Array, theta_
     np.multiply(phi_1, theta_dot, out=out[3])
     if len(out) == 4:
         return
-    y_1 = (2 * c.l1**2 - m - y * y * (c.l2**2 + c.l3**2 - square)) / q
+    # 2 l1 d cos(theta'), from the shorter of the two bars: the square of the other would swamp it.
+    turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
+    y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
     beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
     phi_2 = beta_2 + y_1
     np.multiply(beta_2, theta_dot**2, out=out[4])

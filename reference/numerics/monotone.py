@@ -32,6 +32,7 @@ def solve_increasing(
     low, high = np.full(x.shape, limits[0]), np.full(x.shape, limits[1])
     if not np.all(np.isfinite(target)):
         raise ArithmeticError("a target of the root search is not finite")
+    before = np.full(x.shape, np.inf)
     for _ in range(ROUNDS):
         value, slope = function(x)
         missing = target - value
@@ -39,12 +40,14 @@ def solve_increasing(
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             following: NDArray[Any] = x + missing / slope
             middle = 0.5 * (low + high)
-        newton = np.isfinite(following) & (following >= low) & (following <= high)
+        # A step that is not much shorter than the one before may go to and fro for ever: halve the bracket instead.
+        shrinks = (np.abs(following - x) <= 0.75 * before) | ~np.isfinite(middle)
+        newton = np.isfinite(following) & (following >= low) & (following <= high) & shrinks
         following = np.where(newton, following, middle)
         # A bracket open on one side has no middle: walk towards that side instead.
         following = np.where(np.isfinite(following), following, x + np.sign(missing) * (np.abs(x) + scale))
         moved = np.abs(following - x)
-        x = following
+        x, before = following, moved
         # A Newton step this short squares to less than rounding; asking for more would wait on the noise of `function`.
         enough = np.where(newton, SHORT, 4 * np.finfo(float).eps)
         if np.all(moved <= enough * np.maximum(np.abs(x), scale)):

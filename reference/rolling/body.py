@@ -17,8 +17,9 @@ from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
 GRAVITY = 9.81
-# N and friction are looked at this often [s] for a change of sign, and the instant is then found to rounding.
-WATCH = 2e-3
+# N and friction are looked at this often for a change of sign, in radians at the start's fastest rate, and the instant
+# is then found to rounding. Not in seconds: a clock of another unit must not make it a billion looks, or none.
+WATCH = 8e-3
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
@@ -76,7 +77,7 @@ class RollingBody(Valid):
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
         """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s], any order."""
         t = sample_times("rolling body", t)
-        until = max(float(t.max(initial=0.0)), WATCH)
+        until = float(t.max(initial=0.0)) or math.ulp(1.0)
         # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
         if not self._known or self._known[0][0] < until:
             self._known[:] = [(until, integrate(self._rates, self.start, until, TOLERANCE))]
@@ -117,9 +118,10 @@ class RollingBody(Valid):
 
         return self._first(spare, until)
 
-    @staticmethod
-    def _first(spare: Callable[[ArrayLike], Array], until: float) -> float | None:
-        times = np.linspace(0.0, until, max(2, math.ceil(until / WATCH)) + 1)
+    def _first(self, spare: Callable[[ArrayLike], Array], until: float) -> float | None:
+        pull = abs(float(self.angular_acceleration(*self.start)))
+        fastest = max(abs(self.start_rate), math.sqrt(pull))  # rad/s; where it rests there is nothing to look for
+        times = np.linspace(0.0, until, max(2, math.ceil(until * fastest / WATCH)) + 1)
         below = np.flatnonzero(spare(times) < 0)
         if below.size == 0:
             return None

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.curves.circles_lines import Line, Ring, Side
+from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Array, Curve, Placed, Vector
 from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
@@ -32,6 +32,13 @@ def _hole(curve: Curve) -> tuple[Array, float] | None:
     if inner is None or not isinstance(curve, Placed):
         return None
     return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
+
+
+def _round(curve: Curve) -> float | None:
+    """Radius [m] of a disc, or of a hole with a negative sign, placed or not; None for any other curve."""
+    if isinstance(curve, Placed):
+        return _round(curve.curve)
+    return curve.sense * curve.radius if isinstance(curve, Circle | Ring) else None
 
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]
@@ -168,6 +175,10 @@ class Rolling(Valid):
         rotation = theta - self.theta
         if isinstance(self.ground, Line) and not isinstance(self.body, (Line, Side)):
             return self.body.parameter_at(self._start_angles[1] - rotation)
+        ground, body = _round(self.ground), _round(self.body)
+        if ground is not None and body is not None:
+            # The angles of a disc in a hole of nearly its size cancel; the difference of the radii keeps its digits.
+            return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits
         slack = 1e-12 * (1 + abs(self.theta))
         if np.any((theta < low - slack) | (theta > high + slack)):
@@ -176,8 +187,9 @@ class Rolling(Valid):
                 f"rolling: the body can't turn to {worst!r} rad; between {low:.9g} and {high:.9g} rad it rolls, "
                 "and there a curve ends or curvature_A + curvature_B falls to zero and the curves fit each other"
             )
+        slope = self._mean_slope
         return solve_increasing(
-            self._rotation, -rotation, self._body_start - rotation * self._mean_slope, 1e-3, self._parameter_limits
+            self._rotation, -rotation, self._body_start - rotation * slope, 1e-3 * abs(slope), self._parameter_limits
         )
 
     @cached_property

@@ -3,6 +3,7 @@
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.slider_crank.slotted_lever import SlottedLever
 
 __all__ = [
     "DrivenSliderCrank",
@@ -12,4 +13,5 @@ __all__ = [
     "RodEndInSlot",
     "SliderAtDeadCentre",
     "SliderCrank",
+    "SlottedLever",
 ]

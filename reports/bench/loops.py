@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from engines import Engine, Unsupported
+from engines.entry_points import registered_by_key
+from engines.loading import Kind
 from reference.mechanism import Mechanism
 
+BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
 TURNS = 7  # of each, alternating, so that a slow spell of the machine meets both
 
 
@@ -27,13 +29,12 @@ class LoopCost:
 
 
 def loop_costs(engines: Iterable[Engine], mechanism: Mechanism, dt: float, samples: int, every: int) -> list[LoopCost]:
-    """For each engine that can build the mechanism and whose module has `bare_loop(engine, mechanism, dt, steps)`."""
+    """For each engine that can build the mechanism and has a bare loop under `crosscheck.bare_loops`."""
     out = []
     steps = samples * every
+    loops = registered_by_key("crosscheck.bare_loops", BARE_LOOP)
     for engine in engines:
-        bare_loop = getattr(sys.modules[type(engine).__module__], "bare_loop", None) or getattr(
-            sys.modules.get(f"engines.{engine.name}"), "bare_loop", None
-        )
+        bare_loop = loops.get(engine.name)
         if bare_loop is None:
             continue
         runs, bare = [], []

@@ -51,8 +51,10 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
     family = family_of(engine)
     methods = [(name, each) for name, variants in shown.items() if family_of(name) == family for each in variants]
     usual = [(methods[0][0], each) for each in VARIANTS]
-    named = [method for method in methods if method not in usual]
-    first = 0 if len(named) == len(methods) else len(VARIANTS)
+    first = len(VARIANTS) if any(method in usual for method in methods) else 0
+    # A family without these three: what is run in every scene comes first, and looks the same whatever else is shown.
+    everywhere = [] if first else [(each.name, each.variant) for each in registry.VARIANTS if each.family == family]
+    named = [method for method in dict.fromkeys([*everywhere, *methods]) if method not in usual]
     own = (engine, variant)
     index = usual.index(own) if own in usual else first + named.index(own)
     paint, fill = colour(engine, theme, shown), FILLS[index % len(FILLS)]

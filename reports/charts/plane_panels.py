@@ -43,12 +43,13 @@ class Path:
 
 @dataclass(frozen=True)
 class Blades:
-    """Skates or bars, drawn as strokes of `length` [m] at poses (n, 3) of their middles."""
+    """Skates or bars, drawn as strokes of `length` [m] at poses (n, 3) of their middles; `label` for the legend."""
 
     poses: ArrayLike
     length: float
     colour: str = "ink"
     width: float = 3.0
+    label: str = ""
 
     def strokes(self) -> list[Array]:
         poses = np.asarray(self.poses, dtype=float)
@@ -77,6 +78,7 @@ class Panel:
     across: str = ""
     up: str = ""
     logarithmic: bool = False
+    logarithmic_across: bool = False
 
     def corners(self) -> tuple[Array, Array]:
         """The lowest and highest coordinates of what frames the panel."""
@@ -132,15 +134,11 @@ def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) ->
         if path.label:
             handles.setdefault(path.label, Line2D([], [], label=path.label, **look))
     for blades in panel.blades:
+        look = {"color": getattr(theme, blades.colour), "linewidth": blades.width}
         for stroke in blades.strokes():
-            spot.plot(
-                stroke[:, 0],
-                stroke[:, 1],
-                color=getattr(theme, blades.colour),
-                linewidth=blades.width,
-                solid_capstyle="round",
-                zorder=2.5,
-            )
+            spot.plot(stroke[:, 0], stroke[:, 1], solid_capstyle="round", zorder=2.5, **look)
+        if blades.label:
+            handles.setdefault(blades.label, Line2D([], [], label=blades.label, **look))
     for note in panel.notes:
         spot.annotate(
             note.words,
@@ -156,6 +154,8 @@ def _draw(spot: Axes, panel: Panel, theme: Theme, handles: dict[str, Line2D]) ->
     spot.set_ylabel(panel.up or ("y [m]" if panel.plane else ""))
     if panel.logarithmic:
         spot.set_yscale("log")
+    if panel.logarithmic_across:
+        spot.set_xscale("log")
     if panel.plane:
         low, high = panel.corners()
         margin = MARGIN * float((high - low).max())

@@ -18,6 +18,7 @@ from reports.grid.outcomes import Outcome
 from reports.text.tables import number
 
 HATCHES = {
+    Outcome.UNRESOLVED: "oo",
     Outcome.SATURATED: "..",
     Outcome.BRANCH_FLIP: "\\\\\\",
     Outcome.TORN: "///",
@@ -32,7 +33,7 @@ def outcome_colour(outcome: Outcome, theme: Theme) -> str:
     match outcome:
         case Outcome.FINISHED | Outcome.CONVERGED:
             return theme.good
-        case Outcome.PLATEAU | Outcome.SATURATED | Outcome.BRANCH_FLIP:
+        case Outcome.PLATEAU | Outcome.UNRESOLVED | Outcome.SATURATED | Outcome.BRANCH_FLIP:
             return theme.middling
         case Outcome.TORN | Outcome.DIVERGED | Outcome.RESET:
             return theme.bad

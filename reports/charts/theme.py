@@ -51,10 +51,10 @@ LIGHT = Theme(
     sixth="#94610a",
     seventh="#b8336a",
     eighth="#55606e",
-    good="#cfe8d5",
-    middling="#fae3a8",
-    bad="#f0a58f",
-    worse="#b7a3d8",
+    good="#dcefe0",
+    middling="#f0cb62",
+    bad="#e8947b",
+    worse="#9f8ac6",
 )
 DARK = Theme(
     paper="#15191f",
@@ -69,9 +69,9 @@ DARK = Theme(
     sixth="#e6b84a",
     seventh="#f78bb6",
     eighth="#b9c3ce",
-    good="#24503a",
+    good="#1c4130",
     middling="#6b5617",
-    bad="#8c3b29",
+    bad="#b04a33",
     worse="#55437f",
 )
 

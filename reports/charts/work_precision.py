@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
 
 from reports.charts.families import look
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
@@ -22,6 +23,8 @@ from reports.grid.quantities import quantity
 
 COLUMNS = 2
 LONG_NAME = 30  # letters: beyond, four names don't fit side by side
+SLOPES = (1, 2, 4)
+PLACES = 25  # along each side of a panel, where the fan of slopes is tried
 
 Featured = Callable[[Measurement], bool]
 
@@ -76,8 +79,11 @@ def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure,
 
 
 def _finish(panel: Axes) -> None:
-    for axis in (panel.xaxis, panel.yaxis):
-        axis.set_major_locator(LogLocator(base=10, numticks=9))
+    for axis, (low, high) in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
+        # Less than two decades may have a single power of ten: one tick tells no scale.
+        narrow = math.log10(high / low) < 2
+        axis.set_major_locator(LogLocator(base=10, subs=(1.0, 3.0) if narrow else (1.0,), numticks=9))
+        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(math.inf, math.inf)))
         axis.set_minor_formatter(NullFormatter())
     panel.minorticks_off()
 
@@ -148,32 +154,42 @@ def error_against_step(
                 series = [(row.step, getattr(row, field)) for row in members]
                 panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
-            _guides(panel, [row.step for row in here], quantity(field).rounding, theme)
             panel.set_xlabel("step [s]")
             if panels.index(panel) % COLUMNS == 0:
                 panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
-            _finish(panel)
         for panel in panels:
             panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
+        for panel in panels:
+            _guides(panel, theme)
+            _finish(panel)
         handles = _handles(variants, theme)
         handles.append(Line2D([], [], color=theme.grid, linewidth=8, alpha=0.6, label="rounding"))
         _legend(figure, handles, theme)
     return figure
 
 
-def _guides(panel: Axes, steps: Sequence[float], rounding: float, theme: Theme) -> None:
-    """A fan of slopes where data seldom is: small errors at large steps, just above rounding."""
-    right = 0.8 * max(steps)
-    left, low = right / max(4.0, (max(steps) / min(steps)) ** 0.35), 3 * rounding
-    for slope in (1, 2, 4):
-        end = low * (right / left) ** slope
-        panel.plot([left, right], [low, end], color=theme.quiet, linewidth=0.8, zorder=2)
-        panel.annotate(
-            str(slope),
-            (right, end),
-            xytext=(3, 0),
-            textcoords="offset points",
-            color=theme.quiet,
-            fontsize=8,
-            va="center",
-        )
+def _guides(panel: Axes, theme: Theme) -> None:
+    """A fan of slopes where it is farthest from the lines of the panel, whose limits it leaves as they are."""
+    low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
+    size = high - low  # decades
+    width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
+    # What the fan and its numbers cover, in shares of the panel from the point of the fan.
+    places = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
+    fan = np.array([*places, *((width + gap, slope * width) for slope in SLOPES)]) / size
+    lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
+    between = np.linspace(0, 1, 12)[:, None]
+    taken = [a + between * (b - a) for line in lines for a, b in zip(line, [*line[1:], line[-1]], strict=True)]
+    room = 0.97 - fan.max(axis=0)
+    corners = [np.array([x, y]) for x in np.linspace(0.03, room[0], PLACES) for y in np.linspace(0.03, room[1], PLACES)]
+    points = np.concatenate(taken) if taken else np.array([[0.0, 1.0]])
+
+    def distance(place: np.ndarray) -> float:
+        return float(np.linalg.norm((fan + place)[:, None] - points, axis=-1).min())
+
+    left, bottom = low + max(corners, key=distance) * size
+    for slope in SLOPES:
+        end = bottom + slope * width
+        panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=theme.quiet,
+                   linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
+        panel.annotate(str(slope), (10 ** (left + width), 10**end), xytext=(3, 0), textcoords="offset points",
+                       color=theme.quiet, fontsize=8, va="center")  # fmt: skip

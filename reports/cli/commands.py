@@ -7,14 +7,17 @@ from collections.abc import Sequence
 import typer
 
 from reports.cli.bench import bench
+from reports.cli.compare import compare
 from reports.cli.conform import conform
 from reports.cli.errata import errata
 from reports.cli.listing import list_command
 from reports.cli.report import report
 from reports.cli.run import run
+from reports.cli.search import search
 from reports.cli.shapes import shapes
 from reports.cli.show import show
 from reports.cli.terminal import written
+from reports.cli.versions import versions
 from reports.grid.ending import FINE, STATUSES
 
 app = typer.Typer(
@@ -32,6 +35,9 @@ app.command("bench")(bench)
 app.command("shapes")(shapes)
 app.command("errata")(errata)
 app.command("conform")(conform)
+app.command("search")(search)
+app.command("versions")(versions)
+app.command("compare")(compare)
 
 
 def invoke(arguments: Sequence[str]) -> int:

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.options import REFERENCES
-from reports.grid.ending import BadInput, Broken
+from reports.grid.ending import Broken
 
 if TYPE_CHECKING:
-    from engines import Engine
     from engines.conformance import Case, Result, Status
 
 WIDTH = 150  # into a file or a pipe
@@ -23,15 +22,15 @@ def conform(
     variant: Annotated[str | None, typer.Option("--variant", help="Only this variant.")] = None,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
-    from engines.conformance import cases
+    from reports.cli.supervised_checks import Named, asked
     from reports.cli.terminal import Terminal
 
     screen = Terminal(WIDTH)
     broken = []
-    for each in named_engines(engine, variant):
+    for each, results in asked(Named.here(engine, variant)):
         screen.say(f"{each.name} {each.variant}")
         count = 0
-        for status, line in verdicts((case, case.result()) for case in cases(each)):
+        for status, line in verdicts(results):
             screen.say(f"  {status:<14} {line}")
             count += status == "fails"
         screen.say(f"  {'every check holds' if not count else f'{count} checks fail'}")
@@ -39,20 +38,6 @@ def conform(
             broken.append(f"{each.name} {each.variant}")
     if broken:
         raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
-
-
-def named_engines(word: str, variant: str | None) -> tuple[Engine, ...]:
-    """The engines of a name or of a reference, of this variant if one is given. Raises BadInput."""
-    from engines.loading import is_reference
-    from engines.registry import ENGINES, load
-    from reports.cli.selection import choose_engines
-
-    if not is_reference(word):
-        return choose_engines(word, variant, ENGINES)
-    try:
-        return choose_engines(None, variant, load(word))
-    except ValueError as error:
-        raise BadInput(str(error)) from None
 
 
 def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, str]]:

@@ -11,6 +11,7 @@ import typer
 # Below the current folder, in the checkout too: no command writes to what is published.
 FOLDER = Path("crosscheck-results")
 STORE = "cells.sqlite"
+SEARCH = "search"  # the folder in it with what random mechanisms gave
 REFERENCES = "package.module:NAME, or path/to/file.py"
 
 Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, Folder, with_folder
+from reports.cli.options import FOLDER, SEARCH, STORE, Folder, with_folder
 from reports.cli.terminal import Terminal
 from reports.grid.ending import BadInput
 from reports.grid.files import write_whole
-from reports.grid.store import Store
 
 CHECKOUT = Path(__file__).parents[2]
 
@@ -27,11 +27,18 @@ def report(
     if publish:
         refuse_outside_a_checkout()
     nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
+    searched = search_files(results)
     if not (results / STORE).exists():
-        raise nothing
+        if not searched:
+            raise nothing
+        folder = published() if publish else results
+        line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
+        write_files({folder / name: text for name, text in searched.items()}, line)
+        return
     from reports.cli.known import registered, with_remembered
-    from reports.cli.selection import page_cells
+    from reports.cli.selection import page_cells, shown_cells
     from reports.grid.running import missing
+    from reports.grid.store import Store
     from reports.pages.page import Material
     from reports.text.rendering import render_all, render_readme
 
@@ -40,12 +47,10 @@ def report(
         # What is published is of what is registered; a report of one's own shows what else was run.
         known = own if publish else with_remembered(own, store.remembered())
         # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
-        shown = [item for page in own.pages for item in (*page_cells(page), *page.all_tasks())]
-        borrowed = {cell for page in own.pages for cell in page.borrowed}
-        run = {cell for page in own.pages if not page.borrowed for cell in page_cells(page)}
-        whole = tuple(dict.fromkeys(item for item in shown if item not in borrowed or item in run))
+        asked = (item for page in own.pages for item in (*page_cells(page), *page.all_tasks()))
+        whole = tuple(dict.fromkeys(asked))
         material = {
-            page: Material(store.get(page_cells(page)), store.answers(page.all_tasks())) for page in known.pages
+            page: Material(store.get(shown_cells(page)), store.answers(page.all_tasks())) for page in known.pages
         }
         left = len(missing(whole, store))
     names = {page.name for page in own.pages}
@@ -58,18 +63,35 @@ def report(
     if publish and left:
         raise BadInput(f"nothing is published, {grid}")
     folder = published() if publish else results
-    files = render_all(material, "make report" if publish else "crosscheck report")
+    files = render_all(material, "make report" if publish else "crosscheck report", searched)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
         readme = CHECKOUT / "README.md"
         texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
+    write_files(texts, f"{len(files)} files written to {folder}, index.md is the first to read")
+    if left:
+        Terminal(140).say(grid)
+
+
+def write_files(texts: Mapping[Path, str], line: str) -> None:
+    """Write them whole or not at all, and say so."""
     with kept() as check:  # between two files is no place to stop
         write_whole(texts, "the pages that were there stay as they were")
         check()
-    terminal = Terminal(140)
-    terminal.say(f"{len(files)} files written to {folder}, index.md is the first to read")
-    if left:
-        terminal.say(grid)
+    Terminal(140).say(line)
+
+
+def search_files(results: Path) -> dict[str, str]:
+    """The page of the searches that are stored here, and its picture; nothing without any."""
+    place = results / SEARCH / STORE
+    if not place.exists():
+        return {}
+    from reports.grid.store import Store
+    from reports.search.page import files, read
+    from reports.text.rendering import foot
+
+    with Store.read(place) as store:
+        return files(*read(store), foot("crosscheck search"))
 
 
 def published() -> Path:

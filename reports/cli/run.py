@@ -5,18 +5,20 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, EngineName, Folder, Scenes, Settings, VariantName, with_folder
-from reports.cli.terminal import Terminal, print_table, progress
-from reports.grid.cells import Cell
 from reports.grid.ending import BadInput
-from reports.grid.measure import Measurement
-from reports.grid.store import Store
-from reports.grid.tasks import Task
+
+if TYPE_CHECKING:
+    from reports.cli.terminal import Terminal
+    from reports.grid.cells import Cell
+    from reports.grid.measure import Measurement
+    from reports.grid.store import Store
+    from reports.grid.tasks import Task
 
 
 def run(
@@ -34,6 +36,8 @@ def run(
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
+    from reports.cli.terminal import Terminal
+    from reports.grid.store import Store
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
@@ -59,6 +63,7 @@ def run_interruptible(console: Terminal, store: Store, items: Sequence[Cell | Ta
 
     Raises KeyboardInterrupt, having said what is stored.
     """
+    from reports.cli.terminal import progress
     from reports.grid.running import missing, run_into
 
     with kept() as check:
@@ -76,6 +81,7 @@ def run_interruptible(console: Terminal, store: Store, items: Sequence[Cell | Ta
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
     """A table a scene, a line a method; then what became of the experiments outside the sweeps."""
+    from reports.cli.terminal import print_table
     from reports.grid.convergence import judged
     from reports.text.tables import SUMMARY_HEADER, summary_rows
 

@@ -150,9 +150,14 @@ def _quick(cell: Cell) -> bool:
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
-    """Every cell that a page could show."""
+    """Every cell that a page asks for; those that it borrows are asked for by other pages."""
     cells: list[Cell] = []
     for scene in page.scenes:
         compared = page.engines_of(scene)
         cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
-    return tuple(dict.fromkeys([*cells, *page.extra_cells(), *page.borrowed]))
+    return tuple(dict.fromkeys([*cells, *page.extra_cells()]))
+
+
+def shown_cells(page: Page) -> tuple[Cell, ...]:
+    """Every cell whose row a page may tell: its own, and those that it borrows."""
+    return tuple(dict.fromkeys([*page_cells(page), *page.borrowed]))

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reference.validation import InvalidMechanism
 from reports.grid.ending import BadInput, FileTrouble
 from reports.grid.files import write_whole
 
@@ -44,9 +43,10 @@ def shapes(
         if path.is_symlink() or path.exists():
             raise FileTrouble(f"{path} is there already: give another --folder, or --force to replace it")
     text = _text(motion)
-    # Only this command needs them, and scipy takes longer to load than all else.
+    # Here, since numpy and scipy take longer to load than all else.
     from reference.centrodes import from_poses
     from reference.shapes import as_csv, as_dxf, as_svg, poses_from_csv, shapes_of
+    from reference.validation import InvalidMechanism
 
     writers = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
     try:
@@ -65,6 +65,7 @@ def _told(curves: Centrodes, found: Shapes) -> list[str]:
     """What to say of the shapes before they are cut: how long, how exact, and whether they give the motion back."""
     import numpy as np
 
+    from reference.validation import InvalidMechanism
     from reports.pages.centrodes.centrode_check import returned
 
     size = float(np.ptp(np.vstack([found.space, found.body]), axis=0).max())

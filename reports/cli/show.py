@@ -19,7 +19,6 @@ from reports.cli.options import (
 )
 from reports.cli.terminal import Terminal, print_table
 from reports.grid.ending import BadInput
-from reports.grid.store import Store
 
 
 def show(
@@ -35,6 +34,7 @@ def show(
     from reports.grid.cells import FULL, sweep_cells
     from reports.grid.convergence import judged, sweeps
     from reports.grid.quantities import QUANTITIES
+    from reports.grid.store import Store
     from reports.text.tables import ERROR_HEADER, error_rows, order_rows
 
     known = registered()

@@ -1,6 +1,8 @@
 """The judge: a mechanism with exact multipliers, or with joints that give way in a known manner, by textbook methods.
 
-It knows no engine and shares no code with any, `engines.lagrange` included, since it is to judge that too.
+It knows no engine. Its steps here share no code with any, `engines.lagrange` included, since it is to judge that too;
+with numba it has the compiled rows of that package take the same steps, a hundred times as fast, and a test holds them
+against the steps here, over random mechanisms and every kind of softness.
 """
 
 from __future__ import annotations
@@ -13,6 +15,10 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from engines import Softness
+from engines.lagrange.compiled_run import Machine
+from engines.lagrange.flat import SMALLEST
+from engines.lagrange.loading import installed
+from engines.lagrange.tableaus import Tableau
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
 from reference.scene import Scene
@@ -99,9 +105,44 @@ def projected(mechanism: Mechanism, pose: Array, twist: Array, t: float) -> tupl
 def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False) -> Trajectory:
     """The scene's motion by Runge and Kutta's method of this order, `every` steps a sample."""
     mechanism = scene.mechanism()
-    (stages, weights), nodes = TABLEAUS[order], NODES[order]
     samples = max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
-    dt = scene.spacing / every
+    found = _compiled(mechanism, samples, scene.spacing, order, every, soft, project) if installed() else None
+    return found or in_numpy(mechanism, samples, scene.spacing, order, every, soft, project)
+
+
+def _compiled(
+    mechanism: Mechanism, samples: int, spacing: float, order: int, every: int, soft: Softness | None, project: bool
+) -> Trajectory | None:
+    """As `in_numpy`; None where rows depend on each other, a motion is lost, or what is soft is to be projected too."""
+    machine = Machine.of(mechanism)
+    if machine is None or machine.dependent or (soft is not None and project):
+        return None
+    if soft is not None:
+        machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
+    poses, twists = machine.empty(samples)
+    tableau = Tableau(*TABLEAUS[order], NODES[order])
+    if machine.march(tableau, 1 if project else 0, spacing / every, every, 0, poses, twists) < samples:
+        return None
+    reactions, _ = machine.reactions(spacing, poses, twists)
+    if not np.all(np.isfinite(reactions)) or machine.told(SMALLEST) < RANK_TOLERANCE:
+        return None
+    shape = (samples + 1, *mechanism.pose.shape)
+    t = np.arange(samples + 1, dtype=np.float64) * spacing
+    return Trajectory(t, poses[:, :-3].reshape(shape), twists[:, :-3].reshape(shape), reactions)
+
+
+def in_numpy(
+    mechanism: Mechanism,
+    samples: int,
+    spacing: float,
+    order: int,
+    every: int,
+    soft: Softness | None = None,
+    project: bool = False,
+) -> Trajectory:
+    """A mechanism's motion from its start, samples `spacing` [s] apart, by the steps of this module alone."""
+    (stages, weights), nodes = TABLEAUS[order], NODES[order]
+    dt = spacing / every
     poses = np.full((samples + 1, *mechanism.pose.shape), np.nan)
     twists, reactions = np.full_like(poses, np.nan), np.full((samples + 1, mechanism.row_count), np.nan)
     pose, twist = mechanism.pose, mechanism.twist
@@ -119,7 +160,7 @@ def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None
         twist = twist + dt * np.tensordot(weights, acceleration, 1)
         if project:
             pose, twist = projected(mechanism, pose, twist, t + dt)
-    return Trajectory(np.arange(samples + 1, dtype=np.float64) * scene.spacing, poses, twists, reactions)
+    return Trajectory(np.arange(samples + 1, dtype=np.float64) * spacing, poses, twists, reactions)
 
 
 def errors(

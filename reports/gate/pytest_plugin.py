@@ -6,11 +6,14 @@ and a command line with `-p reports.gate.pytest_plugin`. Only the cells of selec
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from engines import Engine, registry
+from engines.loading import is_reference
 from reports.gate.baseline import BadBaseline, Baseline, read_baseline
 from reports.gate.table import HEADER, changes, lines, plain, report
 from reports.gate.verdicts import Case
@@ -19,12 +22,19 @@ from reports.gate.walk import Verdict, walk
 BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"
 VERDICTS = pytest.StashKey[dict[Case, Verdict]]()
 KNOWN = pytest.StashKey[Baseline]()
+GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # what `--engine` names by a reference
+WANTED = pytest.StashKey[tuple[str, ...]]()  # names and methods
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("crosscheck", "engines against the analytic truth")
     group.addoption("--scene", action="append", default=[], help="only this scene (repeatable)")
-    group.addoption("--engine", action="append", default=[], help='only this engine, or "engine variant" (repeatable)')
+    group.addoption(
+        "--engine",
+        action="append",
+        default=[],
+        help='only this engine, or "engine variant"; or package.module:NAME, path/to/file.py[:NAME] (repeatable)',
+    )
     group.addoption("--baseline", type=Path, default=BASELINE, help="errors.csv of an earlier run to compare with")
     group.addoption("--crosscheck-report", type=Path, metavar="FILE.md", help="write what was found as Markdown")
 
@@ -36,9 +46,32 @@ def pytest_configure(config: pytest.Config) -> None:
         config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
+    config.stash[GIVEN], config.stash[WANTED] = _engines(_option(config, "--engine"))
     target = _option(config, "--crosscheck-report")
     if target is not None and not target.resolve().parent.is_dir():
         raise pytest.UsageError(f"--crosscheck-report {target}: there is no folder {target.parent}")
+
+
+def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
+    """(the engines that references name, the names and methods that are wanted). Raises UsageError."""
+    given: dict[Engine, None] = {}
+    wanted: list[str] = []
+    known = {registry.method(engine): engine for engine in registry.ENGINES}
+    for word in words:
+        if not is_reference(word):
+            wanted.append(word)
+            continue
+        try:
+            found = registry.load(word)
+        except ValueError as reason:
+            raise pytest.UsageError(f"--engine {reason}") from None
+        for engine in found:
+            method = registry.method(engine)
+            if known.setdefault(method, engine) != engine:
+                raise pytest.UsageError(f"--engine {word}: another engine is called {method!r}; give it another name")
+            given[engine] = None
+            wanted.append(method)
+    return tuple(given), tuple(wanted)
 
 
 def _option(config: pytest.Config, name: str) -> Any:
@@ -63,18 +96,18 @@ def case_of(item: pytest.Item) -> Case | None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
-    scenes, engines = _option(config, "--scene"), _option(config, "--engine")
+    scenes, engines = _option(config, "--scene"), config.stash[WANTED]
     if not (scenes or engines):
         return
     kept = [item for item in items if _wanted(case_of(item), scenes, engines)]
     if not kept:
         known = sorted({case.scene.name for case in map(case_of, items) if case is not None})
-        raise pytest.UsageError(f"no case of --scene {scenes} --engine {engines}; scenes are {', '.join(known)}")
+        raise pytest.UsageError(f"no case of --scene {scenes} --engine {list(engines)}; scenes are {', '.join(known)}")
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = kept
 
 
-def _wanted(case: Case | None, scenes: list[str], engines: list[str]) -> bool:
+def _wanted(case: Case | None, scenes: Sequence[str], engines: Sequence[str]) -> bool:
     """Whether a test is kept: those that are about no case are not, once some are asked for."""
     if case is None:
         return False

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 from engines import Engine
+from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.validation import Count, Valid
 from reports.grid.fingerprint import fingerprint
@@ -75,7 +76,17 @@ class Cell(Valid):
 def estimated_cost(cell: Cell) -> float:
     """About how long one run takes [s], by the engine's own formula; deliberately not a measurement."""
     # To a nanosecond: which side of a limit a cell is on is not to be decided by rounding.
-    return round(cell.sample_count * cell.every * cell.engine.step_cost(cell.scene.mechanism()), 9)
+    return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
+
+
+@lru_cache(maxsize=4096)
+def _step_cost(scene: Scene, engine: Engine) -> float:
+    return engine.step_cost(_mechanism(scene))
+
+
+@lru_cache(maxsize=128)
+def _mechanism(scene: Scene) -> Mechanism:
+    return scene.mechanism()
 
 
 def sweep_cells(

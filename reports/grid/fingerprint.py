@@ -160,6 +160,22 @@ def _distributions() -> dict[str, list[str]]:
     return dict(metadata.packages_distributions())
 
 
+def _providing(package: str) -> list[str]:
+    """The distributions that a package is imported from: of two that have it, the one whose folder is searched first.
+
+    MuJoCo comes as `mujoco-core` and came as `mujoco`, and both may be there.
+    """
+    names = _distributions().get(package, [])
+    place = _place(package)[0]
+    if len(names) < 2 or place is None:
+        return names
+    return [name for name in names if _folder(name) in place.parents] or names
+
+
+def _folder(distribution: str) -> Path:
+    return Path(str(metadata.distribution(distribution).locate_file("")))
+
+
 @cache
 def _digest(modules: frozenset[str]) -> str:
     files: set[tuple[str, Path]] = set()
@@ -172,7 +188,7 @@ def _digest(modules: frozenset[str]) -> str:
     # By name, not by place: a checkout in another folder has the same results.
     for name, path in sorted(files):
         digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
-    distributions = {name for package in packages for name in _distributions().get(package, ())}
+    distributions = {name for package in packages for name in _providing(package)}
     for distribution in sorted(with_required(distributions)):
         digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
     return digest.hexdigest()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from engines import Unsupported
+from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -24,6 +25,7 @@ TIMED = ("sweep", "growth", "large")
 
 TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
 BLOWN = 1e3  # of the mechanism's length
+SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
 SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to what causes it
 
 
@@ -101,9 +103,25 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
     )
 
 
-@lru_cache(maxsize=16)
-def _truth(scene: Scene, instants: bytes) -> Trajectory:
+def _truth(cell: Cell, t: Floats) -> Trajectory:
+    """The scene's motion at an engine's instants t (times,) [s].
+
+    Engines that take other steps meet the same instants but for rounding, and then share one motion: a motion moves by
+    no more than its own rounding meanwhile.
+    """
+    usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
+    shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
+    return _motion(cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes())
+
+
+@lru_cache(maxsize=128)  # of the scenes of a run, each worker knows the motions of all: some take seconds
+def _motion(scene: Scene, instants: bytes) -> Trajectory:
     return scene.motion(np.frombuffer(instants))
+
+
+@lru_cache(maxsize=128)
+def _own_freedoms(scene: Scene) -> int:
+    return scene.mechanism().degrees_of_freedom()[0]
 
 
 def measure(cell: Cell, repeat: bool = True) -> Measurement:
@@ -116,7 +134,7 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
         try:
             mechanism = cell.scene.mechanism()
             build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
-            row = replace(row, build=build, **sizes(mechanism, run.size))
+            row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
             trajectory = run(cell.sample_count, cell.every)
         except Unsupported as reason:
             return replace(row, outcome=Outcome.UNSUPPORTED, sentence=str(reason))
@@ -130,14 +148,14 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
     return replace(row, cpu=cpu / cell.scene.duration, runs=runs, build=build)
 
 
-def sizes(mechanism: Mechanism, size: Any) -> dict[str, int]:
+def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
     """The engine's model beside the mechanism's own size."""
     return {
         **asdict(size),
         "own_bodies": len(mechanism.bodies),
         "own_coordinates": 3 * len(mechanism.bodies),
         "own_rows": mechanism.row_count,
-        "own_freedoms": mechanism.degrees_of_freedom()[0],
+        "own_freedoms": freedoms,
     }
 
 
@@ -160,7 +178,7 @@ def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measu
         told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
         return replace(row, outcome=Outcome.REFUSED, sentence=told)
     try:
-        truth = _truth(cell.scene, np.ascontiguousarray(finite.t, dtype=float).tobytes())
+        truth = _truth(cell, finite.t)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
     except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it
@@ -179,14 +197,18 @@ def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Traject
     count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
     if count == len(trajectory.t):
         return trajectory, ""
-    reset = trajectory.reset_at
     kept = replace(
         trajectory,
         **{name: getattr(trajectory, name)[:count] for name in ("t", "pose", "twist", "reaction")},
         estimate=None if trajectory.estimate is None else trajectory.estimate[:count],
-        reset_at=reset if reset is not None and reset <= limit else None,
+        reset_at=_until(limit, trajectory.reset_at),
+        unresolved_at=_until(limit, trajectory.unresolved_at),
     )
     return kept, f"compared until {limit:.4g} s only: beyond, the ideal motion asks for what a real contact can't give"
+
+
+def _until(limit: float, t: float | None) -> float | None:
+    return t if t is not None and t <= limit else None
 
 
 def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
@@ -208,6 +230,8 @@ def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, cou
         return Outcome.BRANCH_FLIP, f"{row.flips} change{'s' if row.flips > 1 else ''} of assembly that the truth lacks"
     if row.angle > SATURATED:
         return Outcome.SATURATED, f"an angle is wrong by {row.angle:.2g} rad within the horizon"
+    if trajectory.unresolved_at is not None:
+        return Outcome.UNRESOLVED, f"its own estimate is {row.estimate:.2g} rad"
     if row.angle_duration > SATURATED:
         return Outcome.FINISHED, f"beyond the horizon an angle is wrong by {row.angle_duration:.2g} rad"
     return Outcome.FINISHED, ""

@@ -13,6 +13,7 @@ class Outcome(StrEnum):
     FINISHED = "finished"
     CONVERGED = "converged"
     PLATEAU = "plateau"
+    UNRESOLVED = "unresolved"
     SATURATED = "saturated"
     BRANCH_FLIP = "branch flip"
     TORN = "torn"
@@ -50,6 +51,7 @@ MEANINGS = {
     Outcome.FINISHED: "ran to its end on the right branch with closed joints; the error may still be large",
     Outcome.CONVERGED: "the error falls with the step, to rounding or as far as it was followed",
     Outcome.PLATEAU: "the error stops falling while the step still does: the constraint is not the ideal one",
+    Outcome.UNRESOLVED: "the method's own estimate of its error is above what it claims, and it says so",
     Outcome.SATURATED: "an angle is wrong by more than half a radian: nothing is left to compare",
     Outcome.BRANCH_FLIP: "went over to the other assembly mode",
     Outcome.TORN: "a joint opened by more than a twentieth of the mechanism's length",
@@ -67,6 +69,7 @@ LETTERS = {
     Outcome.FINISHED: "·",
     Outcome.CONVERGED: "·",
     Outcome.PLATEAU: "p",
+    Outcome.UNRESOLVED: "u",
     Outcome.SATURATED: "S",
     Outcome.BRANCH_FLIP: "B",
     Outcome.TORN: "T",

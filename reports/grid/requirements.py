@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import cache
 from importlib import metadata
 
 
@@ -18,13 +19,22 @@ def with_required(distributions: Iterable[str]) -> set[str]:
         name = normalised(waiting.pop())
         if name in found:
             continue
-        try:
-            requirements = metadata.requires(name) or []
-        except metadata.PackageNotFoundError:  # asked for on other systems only
+        requirements = _required(name)
+        if requirements is None:  # asked for on other systems only
             continue
         found.add(name)
-        waiting += [_name(text) for text in requirements if not re.search(r"\bextra\s*==", text)]
+        waiting += requirements
     return found
+
+
+@cache  # reading what is installed takes longer than all else that a key needs
+def _required(name: str) -> tuple[str, ...] | None:
+    """What an installed distribution requires; None if it is not installed."""
+    try:
+        requirements = metadata.requires(name) or []
+    except metadata.PackageNotFoundError:
+        return None
+    return tuple(_name(text) for text in requirements if not re.search(r"\bextra\s*==", text))
 
 
 def normalised(name: str) -> str:

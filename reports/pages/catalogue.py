@@ -21,6 +21,7 @@ from reports.pages.page import Page
 
 # Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
 LONGEST_NAME = 100
+INDEX = "index.md"
 NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")
 
 
@@ -71,14 +72,15 @@ def untaught(scenes: Iterable[Scene], pages: Sequence[Page] | None = None) -> tu
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page with all that rows tell of a scene, under a name that is none of those taken."""
-    name = stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
-    number = 1
-    while name in taken:
-        number += 1
-        name = f"{stem}_{number}"
+    """A page with all that rows tell of a scene, under a name by which its documents are none of those taken."""
+    stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
-    return Page(name, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
+    page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
+    number, forbidden = 1, {INDEX, *taken}
+    while page.documents & forbidden:
+        number += 1
+        page = replace(page, name=f"{stem}_{number}")
+    return page
 
 
 def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequence[Engine]) -> tuple[Page, ...]:
@@ -86,7 +88,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
     out = list(pages)
     for scene in scenes:
         if page_of(scene, out) is None:
-            out.append(generic_page(scene, engines, {page.name for page in out}))
+            out.append(generic_page(scene, engines, {name for page in out for name in page.documents}))
     return tuple(out)
 
 
@@ -106,13 +108,17 @@ def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page
 
 
 def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str, ...]]:
-    """(pages of which no two teach the same scene, a line about each that is left out)."""
+    """(pages of which no two teach the same scene or are the same document, a line about each that is left out)."""
     kept: list[Page] = []
     troubles: list[str] = []
     for page in pages:
         double = next((f"{s.name!r}, as {p.name!r} does" for s in page.scenes for p in kept if p.teaches(s)), "")
-        if double:
-            troubles.append(f"crosscheck.pages: the page {page.name!r} is left out, since it teaches {double}")
+        same = next((f"{name}, as {p.name!r} has" for p in kept for name in sorted(page.documents & p.documents)), "")
+        if INDEX in page.documents:
+            same = f"{INDEX}, as the index of all pages has"
+        if double or same:
+            why = f"it teaches {double}" if double else f"it would have the file {same}"
+            troubles.append(f"crosscheck.pages: the page {page.name!r} is left out, since {why}")
         else:
             kept.append(page)
     return tuple(kept), tuple(troubles)

@@ -35,12 +35,13 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    `expected` says what the reference says should happen. `cells` have the purpose "failure". `tasks` are run with
-    them; `observations` reads their answers, and formulas that cost nothing: it steps and integrates nothing.
-    `columns` are the quantities (`reports.grid.quantities`) whose largest errors are told of every cell; without any, a
-    grid of methods and steps tells the angle's. `remark` is a template: its numbers are `at(method, step)`, the row of
-    the experiment at about a step [s], `count(outcome)`, how many of its rows ended so, `count()`, how many there are,
-    and what `words` gives. A clause within `if_measured` vanishes where one of its numbers is missing.
+    `expected` says what the reference says should happen, a template of what `words` gives. `cells` have the
+    purpose "failure". `tasks` are run with them; `observations` reads their answers, and formulas that cost
+    nothing: it steps and integrates nothing. `columns` are the quantities (`reports.grid.quantities`) whose largest
+    errors are told of every cell; without any, a grid of methods and steps tells the angle's. `remark` is a
+    template: its numbers are `at(method, step)`, the row of the experiment at about a step [s], `count(outcome)`,
+    how many of its rows ended so, `count()`, how many there are, and what `words` gives. A clause within
+    `if_measured` vanishes where one of its numbers is missing.
     """
 
     title: str
@@ -168,6 +169,11 @@ class Page:
     def data_page(self) -> str:
         """The file beside the page that has all of its numbers."""
         return f"{self.name}_data.md"
+
+    @property
+    def documents(self) -> frozenset[str]:
+        """The Markdown files that are written of it."""
+        return frozenset({f"{self.name}.md", self.data_page} if self.scenes else {f"{self.name}.md"})
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""

@@ -41,7 +41,7 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
     grid = tables.cell_table(rows, failure.columns, held) if failure.columns else tables.outcome_grid(rows, held)
     return ToldExperiment(
         failure.title,
-        failure.expected,
+        environment().from_string(failure.expected).render(**failure.words(material)),
         happened(rows, seen, failure.columns[0] if failure.columns else "angle"),
         tables.markdown(["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3)
         if seen

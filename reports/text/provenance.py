@@ -4,35 +4,41 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 
-from engines import registry
+from engines import Engine, registry
 
 # What every number depends on, whatever the engine: the truth and the errors are made with these.
 MEASURED_WITH = ("numpy", "scipy")
 
 
-def packages() -> tuple[str, ...]:
-    """The distributions whose versions are printed: ours for the measuring, and those that registered engines name."""
-    return tuple(dict.fromkeys([*MEASURED_WITH, *(name for engine in registry.ENGINES for name in engine.packages)]))
+def packages(engines: Iterable[Engine] = ()) -> tuple[str, ...]:
+    """The distributions whose versions are printed: ours for the measuring, those of registered engines, of these."""
+    told = (name for engine in (*registry.ENGINES, *engines) for name in engine.packages)
+    return tuple(dict.fromkeys([*MEASURED_WITH, *told]))
 
 
-def versions() -> str:
-    """'Python 3.11.7, numpy 2.4.0, ...' of what the numbers depend on."""
-    found = [f"Python {platform.python_version()}"]
-    for package in packages():
-        try:
-            found.append(f"{package} {metadata.version(package)}")
-        except metadata.PackageNotFoundError:
-            found.append(f"{package} not installed")
-    return ", ".join(found)
+def versions(engines: Iterable[Engine] = ()) -> str:
+    """'Python 3.11.7, numpy 2.4.0, ...' of what the numbers depend on; `engines`: those beside the registered ones."""
+    return ", ".join([f"Python {platform.python_version()}", *map(_version, packages(engines))])
+
+
+def _version(package: str) -> str:
+    try:
+        return f"{package} {metadata.version(package)}"
+    except metadata.PackageNotFoundError:
+        return f"{package} not installed"
 
 
 def still_installed(told: str) -> bool:
     """Whether all that such a line names is here in the same versions; what else is installed by now doesn't count."""
-    return set(told.split(", ")) <= set(versions().split(", "))
+    python, *others = told.split(", ")
+    return python == f"Python {platform.python_version()}" and all(
+        each == _version(each.split(" ", 1)[0]) for each in others
+    )
 
 
 def machine() -> str:

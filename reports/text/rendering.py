@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from engines import Engine
 from reference.scene import Scene
 from reports.charts import stability as maps
 from reports.charts import work_precision as charts
@@ -17,7 +18,8 @@ from reports.grid.usual_steps import USUAL_STEPS
 from reports.pages.findings.findings import findings, pictures
 from reports.pages.page import Material, Page, StabilityMap
 from reports.pages.symptoms import SYMPTOMS
-from reports.text import tables, unmeasured
+from reports.text import unmeasured
+from reports.text.csv_files import as_csv, descriptions_csv
 from reports.text.experiments import told_experiment
 from reports.text.holders import holders
 from reports.text.links import link
@@ -67,7 +69,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
         "maps": [told for told in told_maps if told],
         "outcomes": [outcome for outcome in Outcome if outcome in met],
-        "foot": foot(command),
+        "foot": foot(command, page.engines),
         **page.words(material),
     }
     texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
@@ -84,9 +86,14 @@ def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) 
     return {"title": picture.title, "remark": picture.remark, "picture": f"{page.name}_{picture.name}.svg"}
 
 
-def foot(command: str) -> str:
-    """What the page was made with."""
-    return f"Made by `{command}` with {versions()}; timings on {machine()}."
+def foot(command: str, engines: Iterable[Engine] = ()) -> str:
+    """What the page was made with, its engines that are not registered included."""
+    return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
+
+
+def engines_of(pages: Iterable[Page]) -> list[Engine]:
+    """Every engine that these pages compare."""
+    return list(dict.fromkeys(engine for page in pages for engine in page.engines))
 
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
@@ -106,7 +113,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             steps=list(USUAL_STEPS),
             outcomes=list(Outcome),
             files=files,
-            foot=foot(command),
+            foot=foot(command, engines_of(pages)),
         )
     )
     return unmeasured.without_marks(text)
@@ -128,17 +135,23 @@ def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
     return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
 
 
-def render_all(pages: Mapping[Page, Material], command: str) -> dict[str, str]:
-    """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines."""
-    files: dict[str, str] = {}
+def render_all(
+    pages: Mapping[Page, Material], command: str, further: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, str]:
+    """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines.
+
+    `further`: files of another kind beside them, which the index may name.
+    """
+    files: dict[str, str] = dict(further)
     rows: dict[str, Measurement] = {}
     for page, material in pages.items():
         files.update(render_page(page, material, command))
         rows.update({row.key: row for row in material.rows.values()})
     files |= pictures(findings(pages))
     files["index.md"] = render_index(pages, command, files)
-    files["errors.csv"] = tables.as_csv(rows.values(), timings=False)
-    header = f"{today()}\n{machine()}\n{versions()}\n{command}\nCPU seconds: cpu per simulated second; build once"
-    files["descriptions.csv"] = tables.descriptions_csv(rows.values())
-    files["timings.csv"] = tables.as_csv(rows.values(), timings=True, header=header)
+    files["errors.csv"] = as_csv(rows.values(), timings=False)
+    made_with = versions(engines_of(pages))
+    header = f"{today()}\n{machine()}\n{made_with}\n{command}\nCPU seconds: cpu per simulated second; build once"
+    files["descriptions.csv"] = descriptions_csv(rows.values())
+    files["timings.csv"] = as_csv(rows.values(), timings=True, header=header)
     return files

@@ -1,17 +1,13 @@
-"""Rows to Markdown tables and CSV; pure functions of their arguments."""
+"""Rows to Markdown tables; pure functions of their arguments."""
 
 from __future__ import annotations
 
-import csv
-import hashlib
-import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields
 
 from reports.grid.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
 from reports.grid.errors import NAN
-from reports.grid.measure import TIMINGS, Measurement
+from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES, quantity
 
@@ -235,42 +231,3 @@ def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
         outcomes = ", ".join(dict.fromkeys(row.outcome for row in members))
         out.append([members[0].method, *map(number, numbers), order, end, outcomes])
     return out
-
-
-def as_csv(rows: Iterable[Measurement], timings: bool, header: str = "") -> str:
-    """Rows as CSV, sorted: the errors without any timing, or the timings alone; `header` lines become comments.
-
-    Parameters and settings stand as digests, see `descriptions_csv`. Numbers have four digits: what remains after that
-    differs with the machine's rounding.
-    """
-    identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
-    rest = [f.name for f in fields(Measurement) if f.name not in (*identity, *TIMINGS, "key", "limit")]
-    names = [*identity, *(TIMINGS if timings else rest)]
-    out = io.StringIO()
-    out.writelines(f"# {line}\n" for line in header.splitlines())
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(names)
-    ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in identity))
-    for row in ordered:
-        values = (digest(getattr(row, name)) if name in DESCRIPTIONS else getattr(row, name) for name in names)
-        writer.writerow([f"{v:.4g}" if isinstance(v, float) else str(v) for v in values])
-    return out.getvalue()
-
-
-# A scene with its numbers and an engine with its settings are long, and stand in many rows: these give their digests.
-DESCRIPTIONS = ("parameters", "settings")
-
-
-def digest(description: str) -> str:
-    """The short name of a scene's parameters or an engine's settings in the CSV files."""
-    return hashlib.sha256(description.encode()).hexdigest()[:8]
-
-
-def descriptions_csv(rows: Iterable[Measurement]) -> str:
-    """What the digests stand for, each once."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["digest", "of", "description"])
-    found = {(name, getattr(row, name)) for row in rows for name in DESCRIPTIONS}
-    writer.writerows([digest(text), name, text] for name, text in sorted(found))
-    return out.getvalue()

@@ -1,5 +1,10 @@
 """A prescribed rotation in MuJoCo, which has no joint for it: a tree coordinate that turns at a given rate.
 
+Where the rotation is a sum of several coordinates, a fixed tendon adds them up, less the angle of a clock: a wheel of
+its own that turns at the rate and that nothing can accelerate. An equality holds the tendon at its length, so the drive
+is as soft as a loop is. The sum's coefficients are constant: MuJoCo's tendon equalities, which have no velocity term,
+need none here.
+
 `DriveBy` names what keeps the rate:
 
 - "inertia": nothing can accelerate the coordinate, because its armature is many times the mechanism's own inertia.
@@ -22,6 +27,7 @@ from typing import Any, Literal
 import mujoco
 
 from engines import Unsupported
+from engines.mujoco.construction import Building
 from engines.mujoco.tree import Tree
 from reference.joints import Drive
 from reference.mechanism import Mechanism
@@ -38,24 +44,52 @@ class DrivenCoordinate:
 
 
 def driven_coordinates(tree: Tree, drives: Sequence[Drive]) -> tuple[DrivenCoordinate, ...]:
-    """What each drive turns. Raises Unsupported where no coordinate stands for it, or another drive has it already."""
-    driven = tuple(_driven_coordinate(tree, joint) for joint in drives)
-    for index, one in enumerate(driven):
-        if one.column in [other.column for other in driven[:index]]:
-            raise Unsupported(f"drive {drives[index].name!r} turns a joint that another drive turns already")
-    return driven
+    """What each drive turns, of those that turn one coordinate. Raises Unsupported where two turn the same one."""
+    driven: list[DrivenCoordinate] = []
+    for drive in drives:
+        ((column, sign),) = tree.turning(drive.first, drive.second).items()
+        if column in [other.column for other in driven]:
+            raise Unsupported(f"drive {drive.name!r} turns a joint that another drive turns already")
+        driven.append(DrivenCoordinate(column, sign * drive.turning_rate))
+    return tuple(driven)
 
 
-def _driven_coordinate(tree: Tree, joint: Drive) -> DrivenCoordinate:
-    found = tree.rotation_of(joint.first, joint.second)
-    if found is None:
-        first, second = (repr(name) if name else "the ground" for name in (joint.first, joint.second))
-        raise Unsupported(
-            f"drive {joint.name!r}: the rotation of {second} against {first} is no coordinate of MuJoCo's tree here, "
-            "and only a coordinate can be driven"
+def add_geared_drives(building: Building, drives: Sequence[Drive], by: DriveBy, armature: float) -> tuple[str, ...]:
+    """A tendon for each drive over several coordinates; the names of the clocks' joints. Raises Unsupported."""
+    clocks = []
+    for drive in drives:
+        signs = building.tree.turning(drive.first, drive.second)
+        if by != "inertia" or not signs:
+            first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
+            what = "a sum of coordinates" if signs else "no coordinate"
+            raise Unsupported(
+                f"drive {drive.name!r}: the rotation of {second} against {first} is {what} of MuJoCo's tree here; "
+                + (f"{by!r} drives single ones, take 'inertia'" if signs else "nothing can drive it")
+            )
+        name = f"drive {drive.name}"
+        tendon = building.spec.add_tendon(name=name)
+        for column, sign in signs.items():
+            tendon.wrap_joint(f"coordinate {column}", sign)
+        if drive.turning_rate:
+            mass = sum(body.mass for body in building.mechanism.bodies)
+            inertia = _inertia_scale(building.mechanism)
+            clock = building.spec.worldbody.add_body(
+                name=name, ipos=[0.0, 0.0, 0.0], mass=mass, inertia=[inertia] * 3, explicitinertial=True
+            )
+            hinge = mujoco.mjtJoint.mjJNT_HINGE
+            clock.add_joint(name=name, type=hinge, axis=[0.0, 0.0, 1.0], armature=armature * inertia)
+            tendon.wrap_joint(name, -1.0)
+            building.start_rates[name] = drive.turning_rate
+            clocks.append(name)
+        building.spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_TENDON,
+            objtype=mujoco.mjtObj.mjOBJ_TENDON,
+            name1=name,
+            solref=list(building.stiffness.reference(building.mechanism, building.dt)),
+            solimp=list(building.stiffness.impedance),
         )
-    column, sign = found
-    return DrivenCoordinate(column, sign * joint.turning_rate)
+    building.size += len(drives)
+    return tuple(clocks)
 
 
 def add_drives(

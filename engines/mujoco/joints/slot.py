@@ -1,4 +1,11 @@
-"""Slots that no slide of the tree stands for: a linear equality where the line rests, a written row elsewhere."""
+"""Slots that no slide of the tree stands for: a linear equality where the line rests, else a weld or a written row.
+
+`SlotBy` names what holds those whose line moves, or whose point a rotation moves:
+
+- "halves": MuJoCo's own parts alone. The second body is cut into two halves of the same centre of mass; one of them
+  slides and turns in the first body by joints of the tree, and a `weld` holds it to the other.
+- "rows": the slot's own row, written by a callback in every stage.
+"""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -10,18 +17,19 @@ from collections.abc import Callable, Sequence
 from typing import Literal
 
 import mujoco
+import numpy as np
 
-from engines import Unsupported
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import Link, Tree
+from engines.mujoco.tree import Link, Tree, world_offset
 from engines.mujoco.written_rows import Row, State, WrittenJoint
 from reference.joints import Slot
+from reference.plane import rotation_velocity
 
-SlotBy = Literal["tendon", "rows"]
+SlotBy = Literal["halves", "rows"]
 
 
 def add_slots(building: Building, slots: Sequence[Slot], by: SlotBy) -> None:
-    """Add the slots that the tree doesn't hold. Raises Unsupported where public constructions don't suffice."""
+    """Add the slots that the tree doesn't hold."""
     for slot in slots:
         link = resting_line(slot, building.tree)
         if link is not None:
@@ -32,10 +40,7 @@ def add_slots(building: Building, slots: Sequence[Slot], by: SlotBy) -> None:
             rows = slot_rows(slot, stiffness, damping)
             building.written.append(WrittenJoint(building.index(slot.first), body, 1, rows))
         else:
-            raise Unsupported(
-                f"slot {slot.name!r} is neither a slide of MuJoCo's tree nor a resting line for the centre of a free "
-                "body; MuJoCo has no such equality, only rows written in a callback would do"
-            )
+            _add_half(building, slot)
 
 
 def resting_line(slot: Slot, tree: Tree) -> Link | None:
@@ -58,6 +63,72 @@ def _add_tendon(building: Building, slot: Slot, column: int) -> None:
         solimp=list(building.stiffness.impedance),
     )
     building.size += 1
+
+
+def _add_half(building: Building, slot: Slot) -> None:
+    """Half of the second body on a slide and a hinge in the first, welded to the other half.
+
+    Halves, because a weld is the softer the lighter the lighter part is. Where the second is the ground, the half can
+    weigh anything, since it rests: it is as heavy as half of the first, of which nothing is cut off.
+    """
+    spec, mechanism = building.spec, building.mechanism
+    first, second = building.index(slot.first), building.index(slot.second)
+    base = np.zeros(3) if first is None else mechanism.pose[first]
+    centre = np.zeros(2) if second is None else mechanism.pose[second, :2]
+    anchor = world_offset(mechanism, slot.second, slot.second_point)
+    other = spec.body(f"body {first if second is None else second}")
+    mass, inertia = other.mass / 2, other.inertia[2] / 2
+    name, line = f"half {slot.name}", slot.line_angle + base[2]
+    if second is not None:
+        other.mass, other.inertia = mass, [inertia] * 3
+        building.halves.append((name, second))
+    carrier = spec.worldbody if first is None else spec.body(f"body {first}")
+    half = carrier.add_body(
+        name=name,
+        pos=[*(centre - base[:2]), 0.0],
+        ipos=[0.0, 0.0, 0.0],
+        mass=mass,
+        inertia=[inertia] * 3,
+        explicitinertial=True,
+    )
+    turn, direction = f"{name}: turn", (math.cos(line), math.sin(line))
+    half.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[*direction, 0.0])
+    half.add_joint(name=turn, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0.0, 0.0, 1.0], pos=[*anchor, 0.0])
+    building.start_rates |= {name: _along(building, slot, direction), turn: _turning(building, slot)}
+    weld = spec.add_equality(
+        type=mujoco.mjtEq.mjEQ_WELD,
+        objtype=mujoco.mjtObj.mjOBJ_BODY,
+        name1=name,
+        name2="world" if second is None else f"body {second}",
+        solref=list(building.stiffness.reference(mechanism, building.dt)),
+        solimp=list(building.stiffness.impedance),
+    )
+    weld.data[:3] = [*anchor, 0.0]
+    building.size += 3
+
+
+def _along(building: Building, slot: Slot, direction: tuple[float, float]) -> float:
+    """How fast the second body's point moves along the slot at the start, relative to the first's material [m/s]."""
+    mechanism = building.mechanism
+    at = np.array(world_offset(mechanism, slot.second, slot.second_point))
+    if slot.second is not None:
+        at = at + mechanism.pose[mechanism.body_index(slot.second), :2]
+    velocity = np.zeros(2)
+    for name, sign in ((slot.first, -1.0), (slot.second, 1.0)):
+        if name is not None:
+            index = mechanism.body_index(name)
+            twist = mechanism.twist[index]
+            velocity += sign * (twist[:2] + rotation_velocity(twist[2], at - mechanism.pose[index, :2]))
+    return float(velocity @ np.array(direction))
+
+
+def _turning(building: Building, slot: Slot) -> float:
+    """How fast the second body turns against the first at the start [rad/s]."""
+    mechanism = building.mechanism
+    rates = [
+        0.0 if name is None else mechanism.twist[mechanism.body_index(name), 2] for name in (slot.first, slot.second)
+    ]
+    return float(rates[1] - rates[0])
 
 
 def slot_rows(slot: Slot, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:

@@ -20,7 +20,7 @@ impulse is the right one (see `engines.pymunk.joints.link`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, sin
+from math import cos, log2, sin
 from typing import Literal
 
 import pymunk
@@ -54,7 +54,7 @@ def blade(
     if joint.first is not None:
         raise Unsupported(f"joint {joint.name!r}: the construction {construction!r} knows a skate on the ground only")
     if construction in ("groove", "stale groove"):
-        groove = AimedGroove(joint, first, second, predicted=construction == "groove")
+        groove = AimedGroove(joint, first, second, length, predicted=construction == "groove")
         return [groove.constraint], [groove], []
     return [], [], [Zeroed(joint, second, construction)]
 
@@ -67,15 +67,15 @@ def along_blade(joint: Skate) -> float:
 class AimedGroove:
     """A groove in the ground under the blade, laid anew before every step."""
 
-    def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, predicted: bool) -> None:
+    def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, length: float, predicted: bool) -> None:
         along = along_blade(joint)
         anchor = (along * cos(joint.angle), along * sin(joint.angle))
         self.constraint = GrooveJoint(ground, body, (-1.0, 0.0), (1.0, 0.0), anchor)
         self._pointer, self._body = self.constraint._constraint, body._body
         self._angle, self._predicted = joint.angle, predicted
-        # Its ends [m]: the blade can't come near them in a step, as the groove is laid anew under it. A metre whatever
-        # the mechanism's size, because another length rounds the slip otherwise, and with it published numbers.
-        half = 1.0 + abs(along)
+        # Its ends [m]: the blade can't come near them in a step, as the groove is laid anew under it. A power of two,
+        # so that it rounds alike in mechanisms of nearly the same size, and in those that differ by such a power.
+        half = 2.0 ** (1 + round(log2(length))) + abs(along)
         self._back, self._front = along - half, along + half
 
     def __call__(self, ahead: float) -> None:

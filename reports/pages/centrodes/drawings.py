@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -41,6 +42,7 @@ def draw_centrodes(
             draw_pose(panel, mechanism, pose, color=theme.ink, linewidth=2, marker="o", markersize=4.5,
                       markerfacecolor=theme.paper, markeredgecolor=theme.ink, zorder=3)  # fmt: skip
             panel.plot(*centre, "o", color=theme.fourth, markersize=6, zorder=4)
+            _letters(panel, mechanism, pose, theme)
         handles = [
             Line2D([], [], color=theme.first, linewidth=2, label="fixed centrode"),
             Line2D([], [], color=theme.second, linewidth=2, linestyle="--", label="moving centrode"),
@@ -49,6 +51,22 @@ def draw_centrodes(
         for text in figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False).get_texts():
             text.set_color(theme.ink)
     return figure
+
+
+def _letters(panel: Axes, mechanism: Mechanism, pose: Array, theme: Theme) -> None:
+    """The pins' names: beyond the end of a bar on the ground, of the others away from the middle of all pins."""
+    places, bars = {}, {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Pin) and joint.second is not None:
+            own = pose[mechanism.body_index(joint.second)]
+            bars[joint], places[joint] = own[:2], rotated(own[2], np.asarray(joint.second_point)) + own[:2]
+    middle = np.mean(list(places.values()), axis=0)
+    for joint, place in places.items():
+        away = place - (middle if joint.first is not None else bars[joint])
+        away = away if np.any(away) else np.array([0.0, 1.0])
+        panel.annotate(joint.name, place, xytext=tuple(11 * away / np.linalg.norm(away)), textcoords="offset points",
+                       ha="center", va="center", color=theme.ink, zorder=5,
+                       bbox={"facecolor": theme.paper, "edgecolor": "none", "pad": 0.0})  # fmt: skip
 
 
 def draw_rate(curves: Centrodes, theme: Theme = LIGHT) -> Figure:

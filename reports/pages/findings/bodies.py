@@ -22,8 +22,8 @@ def energy(rows: Rows) -> Finding:
         "energy",
         "A pendulum without friction slows down in pymunk as shipped, and one setting cures most of it",
         f"After {number(rows.seconds(scene))} s at 1 ms the energy is off by {number(100 * lost)} % of the largest "
-        f"kinetic energy; with `error_bias = 0` on the pin by {number(100 * kept)} %. In MuJoCo a pendulum is a tree, "
-        f"whose hinges are exact: with RK4 it is {number(100 * exact)} %.",
+        f"kinetic energy. With `error_bias = 0` on the pin it is off by {number(100 * kept)} %. In MuJoCo a pendulum "
+        f"is a tree, whose hinges are exact: with RK4 the energy is off by {number(100 * exact)} %.",
         "pendulum",
         lost > 10 * kept > 1e3 * exact,
         (
@@ -50,10 +50,10 @@ def iterations(rows: Rows) -> Finding:
     return Finding(
         "iterations",
         "With too few iterations a smaller step makes pymunk worse",
-        "Of a falling person, five unequal bodies in a chain, with all of each gap closed in every step "
-        f"(`error_bias = 0`): pymunk's usual 10 iterations leave an error of {number(coarse.angle)} rad at 10 ms and "
-        f"of {number(fine.angle)} rad at 1 ms; 20 leave {number(right.angle)} rad at 1 ms. Long chains and unequal "
-        "masses need more iterations before they need smaller steps.",
+        "A falling person is a chain of five unequal bodies. With all of each gap closed in every step "
+        f"(`error_bias = 0`), pymunk's usual 10 iterations leave an error of {number(coarse.angle)} rad at 10 ms, and "
+        f"of {number(fine.angle)} rad at 1 ms. 20 iterations leave {number(right.angle)} rad at 1 ms. Long chains and "
+        "unequal masses need more iterations before they need smaller steps.",
         "person",
         fine.angle > 2 * coarse.angle and right.angle < fine.angle / 20,
         tuple(Line(f"{count} iterations", rows.of(*PERSON, iterations=count)) for count in (5, 10, 20)),
@@ -67,10 +67,10 @@ def forces(rows: Rows) -> Finding:
     return Finding(
         "forces",
         "The right motion does not mean the right forces",
-        f"The same falling person in pymunk at 1 ms: with 20 and with 100 iterations the motion is the same and "
-        f"{number(less.angle)} rad off, but the joint forces are off by {number(100 * less.reaction)} and by "
-        f"{number(100 * more.reaction)} % of the largest. Before you use a force, see whether it changes with the "
-        "iterations and with the step.",
+        "Take the same falling person in pymunk at 1 ms. With 20 and with 100 iterations the motion is the same, "
+        f"{number(less.angle)} rad off. But with 20 the joint forces are off by {number(100 * less.reaction)} % of "
+        f"the largest, and with 100 by {number(100 * more.reaction)} %. Before you use a force, see whether it "
+        "changes with the iterations and with the step.",
         "person",
         abs(less.angle - more.angle) < 0.02 * more.angle and less.reaction > 5 * more.reaction,
         tuple(Line(f"{count} iterations", rows.of(*PERSON, iterations=count)) for count in (20, 100)),
@@ -86,8 +86,8 @@ def skate(rows: Rows) -> Finding:
     return Finding(
         "skate",
         "A body whose sideways velocity is set to zero is no skate",
-        "Neither engine has a skate or an ideal wheel, and a common trick sets the sideways velocity of the body's "
-        "centre to zero after each step. Where the blade is not below the centre, that is another mechanism: after "
+        "Neither engine has a skate or an ideal wheel. A common trick sets the sideways velocity of the body's centre "
+        "to zero after each step. Where the blade is not below the centre, that is another mechanism: after "
         f"{number(rows.seconds(scene))} s it is off by {number(least)} m or more at every step. A groove of pymunk "
         f"that our code aims anew before each step is {number(better.position)} m off at 1 ms.",
         "skate",
@@ -108,9 +108,9 @@ def contact(rows: Rows) -> Finding:
     return Finding(
         "contact",
         "A body that is not round does not roll truly on an engine's contact",
-        f"However small the step, a rolling ellipse is {number(corners.plateau)} rad off as a polygon of 512 corners "
-        f"in pymunk, which has no ellipses, and {number(smooth.plateau)} rad on MuJoCo's contact as shipped. With two "
-        f"constraint rows that our code writes into MuJoCo instead of the contact it is {number(exact.angle)} rad off "
+        f"pymunk has no ellipses. However small the step, a rolling ellipse is {number(corners.plateau)} rad off as a "
+        f"polygon of 512 corners in pymunk, and {number(smooth.plateau)} rad on MuJoCo's contact as shipped. Our code "
+        f"can write two constraint rows into MuJoCo instead of the contact: then it is {number(exact.angle)} rad off "
         "at 1 ms.",
         "rolling",
         corners.verdict is smooth.verdict is Verdict.PLATEAU

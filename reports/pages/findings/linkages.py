@@ -20,10 +20,10 @@ def spring(rows: Rows) -> Finding:
     return Finding(
         "spring",
         "A loop in MuJoCo is closed by a spring, and no smaller step removes the spring's error",
-        f"As the step goes to zero, a freely swinging four-bar as shipped is {number(same.plateau)} rad off and the "
-        f"pin that closes its loop {number(1e3 * gap.plateau)} mm open, by Euler and by RK4 alike. The cure is a "
-        f"stiffer `solref` and `solimp`: with both as stiff as is documented, and RK4, it is {number(stiff.angle)} rad "
-        "off at 1 ms.",
+        f"As the step goes to zero, a freely swinging four-bar as shipped is {number(same.plateau)} rad off. The pin "
+        f"that closes its loop is {number(1e3 * gap.plateau)} mm open, by Euler and by RK4 alike. The cure is a "
+        f"stiffer `solref` and `solimp`: with both as stiff as is documented, and RK4, the four-bar is "
+        f"{number(stiff.angle)} rad off at 1 ms.",
         "four_bar",
         limit.verdict is same.verdict is gap.verdict is Verdict.PLATEAU
         and abs(limit.plateau - same.plateau) < 0.1 * same.plateau
@@ -46,7 +46,7 @@ def luck(rows: Rows) -> Finding:
         "luck",
         "A small error at one step may be luck",
         f"A spinning four-bar in MuJoCo as shipped is {number(best.angle)} rad off at 1 ms, but "
-        f"{number(found.plateau)} rad as the step goes to zero: the error of the step and that of the soft loop have "
+        f"{number(found.plateau)} rad as the step goes to zero. The error of the step and that of the soft loop have "
         "opposite signs, and at 1 ms they cancel. Compare three steps before you believe one.",
         "four_bar",
         found.verdict is Verdict.PLATEAU
@@ -69,10 +69,10 @@ def tuned(rows: Rows) -> Finding:
     return Finding(
         "tuned",
         "A few documented settings win more than a step a tenth as large",
-        f"At 1 ms on the free four-bar they divide the error by {number(wins['pymunk'])} in pymunk "
-        f"(`error_bias = 0`, and as many iterations as the loop needs) for {number(costs['pymunk'])} times the CPU "
-        f"time, and by {number(wins['mujoco'])} in MuJoCo (RK4 and a stiff loop) for {number(costs['mujoco'])} times "
-        "the CPU time.",
+        "Take the free four-bar at 1 ms. In pymunk (`error_bias = 0`, and as many iterations as the loop needs) they "
+        f"divide the error by {number(wins['pymunk'])}, for {number(costs['pymunk'])} times the CPU time. In MuJoCo "
+        f"(RK4 and a stiff loop) they divide it by {number(wins['mujoco'])}, for {number(costs['mujoco'])} times the "
+        "CPU time.",
         "four_bar",
         better,
         tuple(
@@ -92,10 +92,10 @@ def reading(rows: Rows) -> Finding:
     return Finding(
         "reading",
         "The moment at which pymunk's velocities are read decides the order",
-        "After a step the positions are those of t and the velocities those of t + dt / 2. Start them half a step "
-        f"apart and read the velocity at t as the mean of its two neighbours: the order is "
-        f"{formatted('%.1f', second.order)} instead of {formatted('%.1f', first.order)}, and at 1 ms the free four-bar "
-        f"is {number(after.angle)} rad off instead of {number(before.angle)}, with the same engine and settings.",
+        "After a step $h$ the positions are those of $t$, and the velocities those of $t + h/2$. Start them half a "
+        "step apart, and read the velocity at $t$ as the mean of its two neighbours. With the same engine and "
+        f"settings the order is then {formatted('%.1f', second.order)} instead of {formatted('%.1f', first.order)}. "
+        f"At 1 ms the free four-bar is {number(after.angle)} rad off instead of {number(before.angle)} rad.",
         "four_bar",
         abs(first.order - 1) < 0.1 and abs(second.order - 2) < 0.1 and after.angle < before.angle / 5,
         (
@@ -119,10 +119,10 @@ def crank(rows: Rows) -> Finding:
     return Finding(
         "crank",
         "A crank whose angle is overwritten after each step is not a driven crank",
-        "MuJoCo still takes it for a body that the loop's forces accelerate, so these forces are wrong: with the loop "
-        f"as shipped the linkage is {number(soft[0].angle)} rad off at 1 ms and {number(soft[1].angle)} rad at 0.1 ms, "
-        f"with a stiff loop {number(over.angle)} rad at 1 ms. Give the crank an armature that nothing can accelerate "
-        f"(a kinematic body in pymunk) and it is {number(right.angle)} rad.",
+        "MuJoCo still takes it for a body that the loop's forces accelerate, so these forces are wrong. With the loop "
+        f"as shipped the linkage is {number(soft[0].angle)} rad off at 1 ms and {number(soft[1].angle)} rad at 0.1 ms. "
+        f"With a stiff loop it is {number(over.angle)} rad off at 1 ms. Give the crank an armature that nothing can "
+        f"accelerate (in pymunk: make it a kinematic body), and it is {number(right.angle)} rad off.",
         "four_bar",
         soft[1].angle > 0.9 * soft[0].angle and soft[0].angle > over.angle > 1000 * right.angle,
         (

@@ -42,7 +42,7 @@ def rates_drift(material: Material) -> list[Observation]:
         if answer.finished:
             stopped = f", {answer.values['stopped']}" if answer.values["stopped"] else ""
             told = (
-                f"beta off by {number(answer.number('error'))} rad after {answer.number('evaluations'):.0f} "
+                rf"$\beta$ off by {number(answer.number('error'))} rad after {answer.number('evaluations'):.0f} "
                 f"evaluations{stopped}"
             )
         turns = "one revolution" if task.revolutions == 1 else f"{task.revolutions} revolutions"
@@ -74,26 +74,24 @@ FAILURES: tuple[Failure, ...] = (
         tasks=DRIFTS,
         observations=rates_drift,
         remark=(
-            "A linkage is a position constraint. Integrating (18.70) and (18.71) keeps every error that was ever "
-            "made, and since the crank goes round, the same errors are made again in every revolution. A smaller "
-            "tolerance only delays the drift; a closed form, or a projection onto closed positions, removes it."
+            "A linkage is a position constraint. An integration of (18.70) and (18.71) keeps every error that was ever "
+            "made, and makes the same errors again in every revolution. A smaller tolerance only delays the drift. A "
+            "closed form, or a projection onto closed positions, removes it."
         ),
     ),
     Failure(
         title="A parallelogram through its change points",
         expected=(
             "Twice a revolution all four bars lie in line. There the loop closes in two ways, parallel and crossed, "
-            "the rows lose rank, and only the bars' inertia says which way the motion goes on: parallel."
+            "and the rows lose rank. Only the inertia of the bars decides which way the motion goes on: parallel."
         ),
         cells=_cells(Parallelogram(), ALL[:-1], (1, 10, 100)) + _cells(Parallelogram(), ALL[-1:], (1, 10)),
         remark=(
-            "Methods differ here. pymunk as shipped and exact multipliers get through at each step; the error of the "
-            "first falls tenfold from step to step. MuJoCo as shipped gets through as well, and its softness leaves "
-            "the same error at each step. Only pymunk tuned gets worse with every smaller step: the closer a sample "
-            "comes to the singular position, the larger the forces that are asked for, and it closes all of the gap "
-            "at once. MuJoCo tuned and extended start anew at one step and are accurate at the others: what counts "
-            "is where the samples fall. pymunk extended tears at each step, as its extrapolation needs an error that "
-            "is smooth in the step."
+            "Methods differ here. pymunk, as shipped and tuned, and exact multipliers get through at each step. The "
+            "errors of pymunk fall by a factor of five or more from step to step. MuJoCo as shipped gets through as "
+            "well, and its softness leaves the same error at each step. MuJoCo tuned and extended start anew at one "
+            "step and are accurate at the others: it depends on where the samples fall. The extended variant of pymunk "
+            "needs an error that is smooth in the step. At the largest step it says that its error is not resolved."
         ),
     ),
     Failure(
@@ -106,7 +104,7 @@ FAILURES: tuple[Failure, ...] = (
         observations=_refusal,
         remark=(
             "No engine says that the task is impossible. The loop is torn, usually without a warning, or the engine "
-            "starts anew by itself. Watch the largest gap over the whole run: a torn loop may close again, on either "
+            "starts anew by itself. Look at the largest gap over the whole run: a torn loop may close again, on either "
             "branch."
         ),
     ),
@@ -115,18 +113,19 @@ FAILURES: tuple[Failure, ...] = (
         expected="The crank turns at 10 rad/s exactly, and the other bars follow: there is nothing to be simulated.",
         cells=_cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),
         remark=(
-            "Overwriting the crank's state after every step is the common trick. The solver still believes that the "
-            "loop's forces accelerate the crank, so it takes wrong forces for the loop. With the loop as shipped the "
-            "error does not fall with the step. With the tuned loop, whose spring is tied to the step, it falls, from "
-            "a torn loop at the largest step, but stays far larger than with a crank that nothing can accelerate. A "
-            "servo lags by torque over gain, at every step. A kinematic body, or an armature that nothing can "
-            "accelerate, is what a prescribed rate means."
+            "The common trick is to overwrite the crank's state after every step. The solver still computes as if the "
+            "loop's forces accelerated the crank, so it finds wrong forces. With the loop as shipped the error does "
+            "not fall with the step. With the tuned loop, whose spring is tied to the step, the largest step tears the "
+            "loop, and the error falls from there. But it is far larger than with a crank that nothing can accelerate. "
+            "A servo lags behind by torque over gain, at every step. For a prescribed rate take a kinematic body, or "
+            "an armature that nothing can accelerate."
         ),
     ),
     Failure(
         title="Steps far too large",
         expected=(
-            "At 10 rad/s a step of 0.1 s is a radian of the crank: no method is accurate here; an engine could warn."
+            "At 10 rad/s the crank turns by a radian in a step of 0.1 s. No method is accurate here; an engine could "
+            "warn."
         ),
         cells=tuple(cell for samples in (20, 10, 5) for cell in _cells(SpinningFourBar(), ALL, (1,), samples)),
         remark=(
@@ -136,11 +135,11 @@ FAILURES: tuple[Failure, ...] = (
     ),
     Failure(
         title="Too few iterations",
-        expected="Sweeps over the joints go on until they agree; what is left open is closed in the next step.",
+        expected="Sweeps over the joints should go on until these agree. What they leave is closed in the next step.",
         cells=_cells(SpinningFourBar(), SWEEPS, (1, 10, 100)),
         remark=(
-            "With the whole gap closed in every step, the correction's speed is the gap over the step, so that what "
-            "the sweeps leave undone grows as the step shrinks: two sweeps are enough at 1e-3 s and tear the loop at "
+            "Where the whole gap is closed in every step, the speed of the correction is the gap over the step. So "
+            "what the sweeps leave grows as the step shrinks: two sweeps are enough at 1e-3 s, and tear the loop at "
             "1e-4 s."
         ),
     ),
@@ -150,7 +149,7 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
         remark=(
             "MuJoCo as shipped has two errors here: Euler's, which falls with the step, and that of a soft loop, "
-            "which does not. At 1e-3 s they happen to cancel, so that a user who refines the step sees the answer "
+            "which does not. At 1e-3 s they happen to cancel, so a user who takes a smaller step sees the answer "
             'become worse{% filter if_measured %}: {{ at("mujoco default", 1e-3).angle | number }} rad there, '
             '{{ at("mujoco default", 1e-4).angle | number }} rad at a tenth of that step{% endfilter %}. The smaller '
             "error was luck; the plateau is the model."
@@ -174,13 +173,12 @@ MAPS: tuple[StabilityMap, ...] = (
             for every in MAP_STEPS
         ),
         remark=(
-            "A bar that is much lighter than its neighbours is what sweeps over the joints find hardest: each joint "
-            "undoes what the last one did, and with the whole gap closed in every step the error feeds on itself, at "
-            "the smallest step too. pymunk as shipped, which closes little of the gap in a step, gets through "
+            "Sweeps over the joints have most trouble with a bar that is much lighter than its neighbours: each joint "
+            "undoes what the last one did. If the whole gap is closed in every step, this error grows from step to "
+            "step, at the smallest step too. As shipped pymunk closes little of the gap in a step, and gets through "
             "everywhere once the step is small enough. MuJoCo as shipped tears at the lightest and the heaviest "
-            "coupler, whatever the step: its loop's spring is too soft for them. MuJoCo tuned, with reduced "
-            "coordinates, a stiff spring and one exact solve a step, gets through but for one case at the largest "
-            "step."
+            "coupler, whatever the step: its loop's spring is too soft for them. MuJoCo tuned has reduced coordinates, "
+            "a stiff spring and one exact solution a step. It gets through except in one case at the largest step."
         ),
     ),
 )

@@ -45,7 +45,7 @@ def figures(material: Material) -> dict[str, str]:
         for name, cell in POSED.items()
         if cell in found
     }
-    titles = [f"t{i} = {t:.3f} s" for i, t in enumerate(truth.t)]
+    titles = [f"$t_{i}$ = {t:.3f} s" for i, t in enumerate(truth.t)]
     figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others)
     return {"configurations": svg(figure, "The nine configurations of Fig. 18.66, from the closed form")}
 

@@ -48,11 +48,11 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=SOFT,
         remark=(
-            "The loops are soft by a time constant of 0.02 s whatever the step, so that near the line each crank "
-            "finds its own way, and the error does not fall with the step, nor with a better integrator. A user with "
-            "an inaccurate closed loop was told that the defaults are fairly soft and to make the equality "
-            "constraints stiffer ([mujoco#2172](https://github.com/google-deepmind/mujoco/issues/2172)). Another "
-            "reports a loop that breaks at a step of 5e-4 s with a thousand iterations "
+            "The loops have a time constant of 0.02 s, whatever the step. So near the line each crank goes its own "
+            "way. The error falls neither with the step nor with a better integrator. A user with an inaccurate closed "
+            "loop was told that the defaults are fairly soft and to make the equality constraints stiffer "
+            "([mujoco#2172](https://github.com/google-deepmind/mujoco/issues/2172)). Another reports a loop that "
+            "breaks at a step of 5e-4 s with a thousand iterations "
             "([mujoco#2698](https://github.com/google-deepmind/mujoco/issues/2698)). Neither speaks of a singular "
             "position, and both are older than MuJoCo 3.7, whose loops have the velocity term that was missing before "
             "([changelog](https://mujoco.readthedocs.io/en/stable/changelog.html))."
@@ -61,18 +61,20 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Forces that have no limit",
         expected=(
-            "An inner crank carries twice the coupler's weight of an outer one, so their own balances disagree, and "
-            "the forces along the couplers that keep them together grow like 1 / cos of the angle. The motion stays "
-            "smooth: the truth passes the line at finite speed."
+            "An inner crank carries twice the coupler's weight of an outer one. Alone they would accelerate "
+            r"differently, and the forces along the couplers that keep them together grow like $1 / \cos\varphi$, "
+            r"where $\varphi$ is the angle from upright. The motion is smooth: the truth passes the line at finite "
+            "speed."
         ),
         cells=_cells(ONCE, (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED), (1, 10, 100)),
         observations=forces_without_a_limit,
         remark=(
-            "A smaller step brings a sample closer to the line and asks for a larger force. Of these six methods only "
-            "pymunk tuned can't bear that: it passes at 1e-2 s, and not at the smaller steps. The errors of pymunk as "
-            "shipped and of MuJoCo tuned fall with the step, that of MuJoCo as shipped stays, and that of MuJoCo "
-            "extended is small throughout but has no order. Extrapolation (pymunk extended) needs an error that is "
-            "smooth in the step and finds one that isn't: it makes a wrong answer of several usable ones. In another "
+            "A smaller step brings a sample closer to the line, where a larger force is needed. For that reason pymunk "
+            "tuned fails at the smallest step, and passes at the two larger ones. The errors of "
+            "pymunk as shipped and of MuJoCo tuned fall with the step. That of MuJoCo as shipped has a plateau. That "
+            "of MuJoCo extended is small throughout but has no order. Extrapolation (pymunk extended) needs an error "
+            "that is smooth in the step. Here it is not: its own estimate is larger than its error at every step, and "
+            "at the smaller steps its answers are wrong. In another "
             "library a closed loop was seen to drift exponentially until it was NaN ([RigidBodyDynamics.jl#480]"
             "(https://github.com/JuliaRobotics/RigidBodyDynamics.jl/issues/480)); nothing there says that a singular "
             "position was the cause."
@@ -87,9 +89,9 @@ FAILURES: tuple[Failure, ...] = (
             (1, 3, 10),
         ),
         remark=(
-            "At fixed steps of order 4 a method steps over the instant and keeps its order, since a stage seldom falls "
-            "on it. An integrator with error control would be stopped by the forces and crawl: so the truth is never "
-            "taken from one here, but from the symmetric motion's own equation."
+            "With fixed steps a method of order 4 steps over the instant and keeps its order, since a stage seldom "
+            "falls on it. An integrator with error control would make ever smaller steps there, because of the forces. "
+            "So the truth is not taken from such an integrator, but from the equation of the symmetric motion."
         ),
     ),
 )
@@ -107,6 +109,6 @@ MAPS: tuple[StabilityMap, ...] = (
             for loops in LOOPS
             for every in (5, 15, 50)
         ),
-        remark="With a single loop the line is a parallelogram's change point; each loop more adds a freedom to it.",
+        remark="With a single loop the line is a parallelogram's change point. Each further loop adds a freedom there.",
     ),
 )

@@ -60,7 +60,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="N four-bars side by side",
-    lesson="Twice a turn all loops lie in one line and one freedom becomes N + 1: there an engine may go on wrongly.",
+    lesson="Twice a turn all bars lie in one line and one freedom becomes $N + 1$: there an engine may go on wrongly.",
     scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,

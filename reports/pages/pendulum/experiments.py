@@ -16,8 +16,8 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
 from reports.grid.cells import Cell
-from reports.pages.page import Failure, Material, Observation, StabilityMap
-from reports.pages.pendulum.neighbours import Neighbours
+from reports.pages.page import Failure, Material, StabilityMap
+from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence
 from reports.text.tables import number
 from reports.text.unmeasured import UNMEASURED
 
@@ -42,30 +42,12 @@ SOLVED = replace(
     jacobian="sparse",
 )
 
-BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
-
 
 def _cells(
     scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
 ) -> tuple[Cell, ...]:
     steps = tuple(every)
     return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
-
-
-PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
-
-
-def divergence(material: Material) -> list[Observation]:
-    """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
-    if (answer := material.answers.get(PARTING)) is None:
-        return []
-    method = "the reference, by neighbouring starts"
-    if not answer.finished:
-        return [Observation(method, "", answer.told)]
-    return [
-        Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
-        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
-    ]
 
 
 def sweeps(count: int) -> Engine:
@@ -122,10 +104,16 @@ def beyond_the_horizon(material: Material) -> dict[str, Any]:
     return {"worst": np.max([row.angle for row in rows]) if rows else UNMEASURED}
 
 
+def fastest(scene: LinkPendulum) -> float:
+    """The highest frequency of small oscillations about hanging [rad/s]."""
+    return float(scene.chain.modes()[0][-1])
+
+
 def opened_joints(material: Material) -> dict[str, Any]:
-    """`opened`: how far joints of pymunk opened at most, over a link's length."""
+    """`opened`: how far joints of pymunk opened at most, over a link's length; `fastest` [rad/s], the chain's mode."""
     rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
-    return {"opened": np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED}
+    opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
+    return {"opened": opened, "fastest": fastest(HundredLinks())}
 
 
 FAILURES: tuple[Failure, ...] = (
@@ -138,15 +126,15 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=PHASE,
         remark=(
-            "Benchmark A01 of the IFToMM library, a test of phase alone. The inertia of one hinge is constant, and for "
-            "that alone MuJoCo's semi-implicit Euler is symplectic: its energy only wavers, so at large steps its "
-            "phase is better than that of RK4, which loses a little energy in every swing; at small steps order 4 "
-            "wins. A chain of two links or more has no such protection: MuJoCo's own example of a pendulum that "
-            "keeps its energy takes RK4 ([pendulum.xml](https://mujoco.readthedocs.io/en/3.2.1/_static/pendulum.xml)). "
-            "pymunk as shipped loses nearly all of its energy at each of these steps; with all of the gap closed it "
-            "keeps nearly all at the smallest one, but its phase is lost at each. Extrapolation can't help once its "
-            "runs are a swing apart. A user who saw a pendulum slow down, at a smaller step too, was told that an "
-            "ideal one is in general not possible, as small inconsistencies build up over time "
+            "Benchmark A01 of the IFToMM library, a test of phase alone. MuJoCo's semi-implicit Euler is symplectic if "
+            "the inertia is constant, as that of one hinge is: its energy only wavers. So at large steps its phase is "
+            "better than that of RK4, which loses a little energy in every swing. At small steps RK4 is better. The "
+            "inertia of two links or more is not constant. MuJoCo's own example of a pendulum that keeps its energy "
+            "takes RK4 ([pendulum.xml](https://mujoco.readthedocs.io/en/3.2.1/_static/pendulum.xml)). As shipped "
+            "pymunk loses nearly all of its energy at each of these steps. With all of the gap closed it keeps nearly "
+            "all of it at the smallest step, but the phase is lost at each. Extrapolation can't help once its runs are "
+            "a swing apart. A user saw a pendulum slow down, at a smaller step too. The answer was that an ideal one "
+            "is in general not possible, as small inconsistencies build up over time "
             "([pymunk#216](https://github.com/viblo/pymunk/issues/216))."
         ),
         columns=("angle", "rate", "gap", "energy"),
@@ -154,60 +142,62 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="A light chain with a heavy tip",
         expected=(
-            "Three links, the last ten thousand times as heavy: it swings nearly as if alone, while the light ones are "
-            "pulled straight by forces large against their weight, and quiver about that line at 540 rad/s."
+            "Three links, the last ten thousand times as heavy. It swings nearly as if alone. The light ones are "
+            "pulled straight by forces that are large against their weight, and oscillate about that line with up to "
+            f"{number(fastest(tip(1e4)))} rad/s."
         ),
         cells=_cells(tip(1e4), HEAVY, (1, 10, 100)) + _cells(tip(1e4), (PATIENT,), (10,)),
         remark=(
-            "Each joint's impulse moves the light link and undoes its neighbour's; a sweep removes only about "
-            "1 / (mass ratio) of the error, so not even a thousand sweeps agree, and as many sweeps as shipped that "
-            "close all of the gap are worse than as shipped. pymunk still finishes from 1e-3 s on, but for a thousand "
-            "sweeps that close all of the gap. In free coordinates MuJoCo's PGS, a sweep too, tears or starts anew at "
-            "each step in the extended variant, because that divides the regularisation by 1e8, far beyond what "
-            "solimp admits, and stops after 100 sweeps; at 1e-3 s with the stiffness that is documented and 10000 "
-            "sweeps it finishes. MuJoCo's Newton solver, which factorises, needs a step that follows the quiver, and "
-            "so does the tree, whose mass matrix has the ratio in it and no row. "
-            "With weak chains users are told to raise the iterations or to take reduced coordinates "
+            "The impulse of one joint moves the light link, and undoes what its neighbour's did. A sweep removes only "
+            "about $1 / r$ of the error, where $r$ is the ratio of the masses, so even a thousand sweeps are too few. "
+            "Ten sweeps, the number as shipped, are worse if they close all of the gap. At 1e-3 s and below pymunk "
+            "finishes, as shipped and tuned. A thousand sweeps that close all of the gap fail at 1e-4 s. The extended "
+            "variant says of its two larger steps that the error is not resolved. MuJoCo's PGS is a sweep too. In free "
+            "coordinates the extended variant tears or starts anew with it at each step: it divides the regularisation "
+            "by 1e8, far beyond what `solimp` admits, and stops after 100 sweeps. With the documented stiffness and "
+            "10000 sweeps PGS finishes at 1e-3 s. MuJoCo's Newton solver factorises a matrix, and needs a step that "
+            "follows the oscillation. So does the tree, which has the ratio in its mass matrix and has no rows. A user "
+            "with a weak chain was told to raise the iterations or to take reduced coordinates "
             "([PhysX#308](https://github.com/NVIDIAGameWorks/PhysX/issues/308))."
         ),
     ),
     Failure(
         title="A ring of a hundred links, closed by one joint",
         expected=(
-            "It turns like a rigid wheel. The chain is a tree; the hundredth joint closes it, by a row that reaches "
+            "It turns like a rigid wheel. The chain is a tree. The hundredth joint closes it, by rows that reach "
             "through a hundred coordinates."
         ),
         cells=_cells(SpinningRing(), RING, (1, 10)),
         remark=(
-            "As shipped the ring is soft: its error does not fall with the step. Hardened a millionfold its angles "
-            'are right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number }} '
-            "rad{% endfilter %}. A hundred times harder again, the same solver returns accelerations that are not "
-            "solutions: at 0.01 s the joint stays shut and the angles look right while the energy is wrong by more "
-            'than all there was{% filter if_measured %} ({{ at("mujoco Newton, softening 1e-8", 1e-2).energy | '
-            "number }} times as much){% endfilter %}, without a warning. This is no fault of a model that MuJoCo "
-            "documents: its softness is 1e8 times less than solimp admits, and only fields of the compiled model can "
-            "ask for it ([solver "
-            "parameters](https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters)). Only asking "
-            "whether the accelerations satisfy their equation shows it: the sentences that begin with ours are from "
-            "such a check, which the extended variant makes at the start before it takes a solver."
+            "As shipped the ring is soft: its error does not fall with the step. Asked for one a million times "
+            "harder, our adapter stops where the solver's rounding begins, and its angles are "
+            'right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number }} rad{% '
+            "endfilter %}. Asked for a hundred times more, the same solver gives accelerations that are no solutions. "
+            "At 0.01 s the joint stays shut and the angles look right, but the error of the energy is more than all "
+            'there was{% filter if_measured %} ({{ at("mujoco Newton, softening 1e-8", 1e-2).energy | number }} times '
+            "as much){% endfilter %}. There is no warning. This is no fault of a model that MuJoCo documents: its "
+            "softness is 1e8 times less than `solimp` admits, and only fields of the compiled model can ask for it "
+            "([solver parameters](https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters)). One can "
+            "see it only by testing whether the accelerations satisfy their equation. The extended variant does so at "
+            "the start, before it chooses a solver; the messages that begin with 'ours' are from this test."
         ),
     ),
     Failure(
         title="Beyond the horizon of the double pendulum",
         expected=(
-            "It is chaotic: a difference of its start grows as listed, so every error does. Within the horizon methods "
-            "can be compared; beyond, the same growth takes one digit after another from each, whatever its order."
+            "It is chaotic: a difference of its start grows as listed, and so does every error. Within the horizon "
+            "methods can be compared. Beyond it, each of them loses one digit after another, whatever its order."
         ),
         cells=LATE,
         tasks=(PARTING,),
         words=beyond_the_horizon,
         observations=divergence,
         remark=(
-            "An error of 1e-12 times the growth is what the best can reach. At 12 s the methods of first order, "
-            "pymunk tuned among them, are lost at both steps, while those of higher order are still right at 1e-3 "
-            "s{% filter if_measured %}, to {{ worst | number }} rad or better{% endfilter %}: their smaller error "
-            "leaves them more time. Whether a simulation of a chaotic motion is right can be asked only up to a "
-            "time, and that time is part of the scene."
+            "The best that a method can reach is 1e-12 times the growth. At 12 s the methods of first order, pymunk "
+            "tuned among them, are lost at both steps. Those of higher order are still right at 1e-3 s{% filter "
+            "if_measured %}, to {{ worst | number }} rad or better{% endfilter %}, since their smaller error needs "
+            "more time to grow. One can ask only up to a certain time whether a simulation of a chaotic motion is "
+            "right, and that time is part of the scene."
         ),
     ),
     Failure(
@@ -216,13 +206,13 @@ FAILURES: tuple[Failure, ...] = (
         cells=LARGE_STEPS,
         words=opened_joints,
         remark=(
-            "Hanging, the chain has modes of up to 103 rad/s beside the visible ones, and an explicit method must "
-            "follow all of them or explode, though the motion does not show them. Impulses forget the fast modes at "
-            "the end of a step: joints open{% filter if_measured %}, by up to {{ opened | number }} times a link's "
-            "length{% endfilter %}, but the numbers stay finite and the energy near what it was. MuJoCo's Euler in "
-            "the tree starts anew at 0.1 s, and stays finite but wrong at 0.05 s; its RK4 starts anew at both, and "
-            "exact multipliers under Euler end in infinity. No method is right; at 0.02 s all of them can be "
-            "compared again."
+            "When it hangs, the chain has modes of up to {{ fastest | number }} rad/s. The motion does not show the "
+            "fast ones, but an explicit method must follow all of them, or its numbers grow without limit. pymunk's "
+            "impulses forget the fast modes at the end of a step. Its joints open{% filter if_measured %}, by up to {{ "
+            "opened | number }} times a link's length{% endfilter %}, but the numbers stay finite and the energy stays "
+            "near what it was. MuJoCo's Euler in the tree starts anew at 0.1 s, and at 0.05 s it ends with wrong "
+            "numbers. RK4 starts anew at both, and exact multipliers under Euler end in infinity. At these two steps "
+            "no method is right; at 0.02 s all of them can be compared again."
         ),
     ),
 )
@@ -254,9 +244,9 @@ MAPS: tuple[StabilityMap, ...] = (
             for every in (5, 50)
         ),
         remark=(
-            "With too few sweeps what they leave is corrected again in the next step, too much of it, until the motion "
-            "explodes; a smaller step explodes as well. As shipped pymunk closes a gap so slowly that nothing "
-            "explodes, and stays soft instead."
+            "If the sweeps are too few, the next step corrects what they left, and corrects too much, until the "
+            "numbers grow without limit. A smaller step does not help. As shipped pymunk closes a gap so slowly that "
+            "this does not happen; its joints are soft instead."
         ),
     ),
 )

@@ -46,7 +46,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Pendulums of 1, 2, 10 and 100 links",
-    lesson="Open chains: joints that a tree of coordinates gives for nothing, and that pymunk finds by iteration.",
+    lesson="Open chains: in a tree of coordinates the joints are exact, and pymunk finds their impulses by iteration.",
     scenes=SCENES,
     advised="pendulum_2",
     engines=(*VARIANTS, *FREE),

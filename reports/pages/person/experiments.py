@@ -64,9 +64,9 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(LONGER, ALL, (1, 10, 100)),
         observations=growth,
         remark=(
-            "The knee's mode makes a millionth of a radian a visible angle within half a second: without muscles "
-            "nobody sways for longer than that, and a simulation that shows a body without muscles standing shows its "
-            "own softness, friction or rounding. The errors grow with the same mode{% filter if_measured %}: "
+            "The knee's mode makes a millionth of a radian a visible angle within half a second. Without muscles "
+            "nobody sways for longer than that. If a simulated body without muscles stands, then because of the "
+            "simulation's softness, friction or rounding. The errors grow with the same mode{% filter if_measured %}: "
             "pymunk as shipped, of first order, is off by "
             '{{ at("pymunk default", 1e-2).angle | number }} rad at 1e-2 s, by '
             '{{ at("pymunk default", 1e-3).angle | number }} rad at 1e-3 s and by '
@@ -78,15 +78,15 @@ FAILURES: tuple[Failure, ...] = (
         expected="A shank has a fifteenth of the trunk's mass and is two joints away from it.",
         cells=_cells(OneFoot(), (pymunk.DEFAULT, *map(sweeps, (5, 10, 30, 100))), (1, 10)),
         remark=(
-            "What a chain needs depends on its masses as well as on its length: five sweeps would do for a few equal "
-            "links; here ten are not enough, and with five or ten the smaller step is the worse one."
+            "How many sweeps a chain needs depends on its masses as well as on its length. For a few equal links five "
+            "sweeps would be enough. Here ten are too few, and with five or ten the smaller step is the worse one."
         ),
     ),
     Failure(
         title="Stances that can't be",
         expected="Feet too far apart, a hip out of reach, a person without a height.",
         observations=refusals,
-        remark="Nothing is built: an engine would start with a torn leg and pull it together at once.",
+        remark="Nothing is built: an engine would start with a torn leg and close the gap at once.",
     ),
 )
 
@@ -106,7 +106,7 @@ MAPS: tuple[StabilityMap, ...] = (
         ),
         remark=(
             "With all of the gap closed in every step, too few sweeps are worse the smaller the step: what they leave "
-            "is corrected at a speed of the gap over the step. As shipped nothing explodes, and more sweeps buy little."
+            "is corrected at a speed of the gap over the step. As shipped no run fails so, and more sweeps help little."
         ),
     ),
 )

@@ -46,7 +46,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="A person on one foot and on two",
-    lesson="Five segments and no muscle: an open chain on one foot, a loop on two; unheld, the knee buckles.",
+    lesson="Five segments without muscles: an open chain on one foot, a loop on two. The knee buckles.",
     scenes=SCENES,
     advised="person_two_feet",
     engines=VARIANTS,

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from reference.curves.circles_lines import Line
 from reference.curves.ellipse import Ellipse
@@ -47,7 +48,7 @@ def draw_acceleration(theme: Theme = LIGHT) -> Figure:
         fit = np.geomspace(1e-3, 30, 200)  # (kappa_A + kappa_B) / kappa_B of a disc
         right.plot(fit, 1 / fit, color=theme.first, linewidth=2)
         right.axhline(1.0, color=theme.second, linewidth=2)
-        right.annotate("as if pinned at C", (1.2e-3, 1.0), xytext=(0, -12), textcoords="offset points",
+        right.annotate("as if pinned at C", (1.3e-2, 1.0), xytext=(0, -12), textcoords="offset points",
                        color=theme.second)  # fmt: skip
         right.annotate("what rolling adds", (2e-3, 500), xytext=(12, 2), textcoords="offset points",
                        color=theme.first)  # fmt: skip
@@ -80,8 +81,10 @@ def draw_friction(scenes: Sequence[RollingScene], theme: Theme = LIGHT) -> Figur
             for friction in COEFFICIENTS:
                 slip = law.slip(friction, scene.duration)
                 panel.axhline(friction, color=theme.second, linewidth=1.0, linestyle="--")
-                panel.annotate(f"given $\\mu$ = {friction:g}", (0.0, friction), xytext=(2, 2),
-                               textcoords="offset points", color=theme.second, fontsize=8)  # fmt: skip
+                # Beside the panel: within it, the curve crosses these lines anywhere.
+                panel.annotate(f"$\\mu$ = {friction:g}", (1.0, friction), xycoords=("axes fraction", "data"),
+                               xytext=(3, 0), textcoords="offset points", color=theme.second, fontsize=8,
+                               va="center", annotation_clip=False)  # fmt: skip
                 if slip is not None:
                     panel.plot(slip, friction, "o", color=theme.first, markersize=6, zorder=4)
                     early = slip < 0.3 * scene.duration
@@ -107,6 +110,9 @@ def draw_plateaus(
         figure = new_figure(3.6, theme)
         left, right = figure.subplots(1, 2)
         _by_step(left, corners, theme)
+        numbers = sorted({float(x) for line in left.lines for x in line.get_xdata()})
+        left.set_xticks(numbers, [f"{number:g}" for number in numbers])
+        left.xaxis.set_minor_locator(NullLocator())
         _axes(left, theme, "an ellipse as a polygon (pymunk)", "corners", "largest angle error [rad]")
         _by_step(right, softness, theme)
         _axes(

@@ -163,8 +163,8 @@ def draw_contact(theme: Theme = LIGHT) -> Figure:
                 panel.annotate(
                     "", tip, point, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}, zorder=5
                 )
-                # Beside the arrow's tip, and above a ground that rises towards it, as a hole's does.
-                above = (0.09 + max(0.0, -a) * 0.53**2 / 2) * normal if vector is tangent else 0.0
+                # Beside the arrow's tip: above it, but below it in a hole, whose ground rises towards the tip.
+                above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=theme.ink, markersize=4, zorder=6)
             panel.annotate("C", point - 0.09 * normal, color=theme.ink, ha="center", va="center")

@@ -2,45 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from engines import Engine, mujoco, pymunk
+from engines import Engine, mujoco
 from engines.lagrange import Lagrange
-from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
 from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
-from reference.scene import Scene
-from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
-from reports.pages.observing import observe
 from reports.pages.page import Failure, Material, Observation, StabilityMap
-from reports.text.tables import number
+from reports.pages.rolling.methods import CONSTRAINTS, CONTACTS, cells
+from reports.pages.rolling.parting import CHATTERING, PARTINGS, after_parting, chatter, partings
 from reports.text.unmeasured import UNMEASURED
-
-CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_REFLECTED, mujoco.EXTENDED, EQUALITY)
-ROLLER = 0  # the only body's index
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
 SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
 SOFT_STEPS = {100: 1e-4, 10: 1e-3}
 CLEARANCES = (0.5, 0.1, 1e-2, 1e-3, 1e-4)
 MAP_STEPS = (1, 10, 100)
-
-
-def cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 def polygon_cells() -> tuple[tuple[int, Cell], ...]:
@@ -66,66 +50,6 @@ def softness_cells() -> tuple[tuple[float, Cell], ...]:
         for every, step in SOFT_STEPS.items()
         for constant in SOFTNESS
         if constant >= 2 * step * (1 - 1e-9)
-    )
-
-
-def hill_cells(engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """Whole motions on the hill, beyond where they may be compared."""
-    return tuple(Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100))
-
-
-STIFF = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
-PARTINGS = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
-CHATTERING = hill_cells((*CONTACTS, *STIFF))
-
-
-def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
-    """How far a body is from the ideal motion [m]: largest up to the last comparable sample, and at the end."""
-    truth = cell.scene.motion(found.t)
-    apart = np.linalg.norm((found.pose - truth.pose)[:, ROLLER, :2], axis=-1)
-    within = found.t <= cell.scene.comparable_until * (1 + 1e-12)
-    return float(apart[within].max()), float(apart[-1])
-
-
-def partings(material: Material) -> list[Observation]:
-    """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
-
-    def told(cell: Cell, run: Trajectory) -> str:
-        before, after = parting(cell, run)
-        until = cell.scene.comparable_until
-        return f"off by {number(before)} m up to {until:.3f} s, by {number(after)} m at {cell.scene.duration:g} s"
-
-    return observed(material, PARTINGS, told)
-
-
-def after_parting(material: Material) -> dict[str, Any]:
-    """`least`: how many times a contact's error at the end is its largest before they part, in the best of the runs."""
-    contacts = [cell for cell in PARTINGS if cell.engine in CONTACTS]
-    found = [parting(cell, run) for cell, run in material.motions(contacts).items()]
-    return {"least": np.min([after / before for before, after in found]) if found else UNMEASURED}
-
-
-def observed(material: Material, cells: Iterable[Cell], told: Callable[[Cell, Trajectory], str]) -> list[Observation]:
-    """A line for each cell whose motion was kept."""
-    found: list[Observation] = []
-    for cell in cells:
-        found += observe(material, cell, f"step {number(cell.step)} s", partial(told, cell))
-    return found
-
-
-def absent_contact(cell: Cell, found: Trajectory) -> float:
-    """The share of samples before the slip at which a contact carries nothing, though it must carry N (one roller)."""
-    # The first sample has no step before it.
-    within = (found.t <= cell.scene.comparable_until) & (found.t > 0)
-    mechanism = cell.scene.mechanism()
-    weight = mechanism.bodies[ROLLER].mass * float(np.hypot(*mechanism.gravity))
-    return float(np.mean(np.abs(found.reaction[within, 1]) < 1e-3 * weight))
-
-
-def chatter(material: Material) -> list[Observation]:
-    """How often the contact on the hill is absent while it should press."""
-    return observed(
-        material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
     )
 
 
@@ -171,14 +95,15 @@ FAILURES: tuple[Failure, ...] = (
             (
                 "an ellipse",
                 RollingEllipse(),
-                "By default MuJoCo's contact is a spring and a damper with a time constant of 0.02 s (solref). Rolling "
-                "moves the contact along the body. The rows of a contact have no term for that motion: the body lags "
-                "by a time constant times what is missing. This belongs to the model, so no step removes it.",
+                "By default MuJoCo's contact is a spring and a damper with a time constant of 0.02 s ([`solref`]"
+                "(https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters)). Rolling moves the "
+                "contact along the body. The rows of a contact have no term for that motion, and the body lags in "
+                "proportion to the time constant. This belongs to the model, so no step removes it.",
             ),
             (
                 "an eccentric disc",
                 RollingDisc(),
-                "The same kind of plateau, reached from above: Euler's own error falls, the rest stays.",
+                "The same kind of plateau. Euler's own error is larger at first and falls; the plateau remains.",
             ),
         )
     ),
@@ -187,12 +112,14 @@ FAILURES: tuple[Failure, ...] = (
         expected="A contact as stiff as the step allows should be as exact as the step.",
         cells=tuple(cell for _, cell in softness_cells()),
         remark=(
-            "At 20 ms the error is nearly the same at both steps: it comes from the time constant. At 6 ms the two "
-            "steps already differ, and at a few steps of time constant the step's own error is as large: at the "
-            "smaller step the shortest constant is not the best one. MuJoCo raises a constant shorter than two steps "
-            "to two (`refsafe`, on by default). The contact of 20 ms here is not the default one, although the time "
-            "constant is the same: it has Runge-Kutta's steps, the elliptic cone, a friction of 10 and the stiffest "
-            "impedance (default: Euler's steps, the pyramidal cone, 1, and 0.9 to 0.95), so its error is another."
+            "With a time constant of 20 ms the error is nearly the same at both steps: it comes from the constant. At "
+            "6 ms the two steps already differ. Where the constant is only a few steps, the step's own error is as "
+            "large, so the shortest constant is not the best one at the smaller step. MuJoCo raises a constant shorter "
+            "than two steps to two "
+            "([`refsafe`](https://mujoco.readthedocs.io/en/stable/XMLreference.html#option-flag), on by default). The "
+            "contact of 20 ms here has the time constant of the default one, and another error. It has RK4, the "
+            "elliptic cone, a friction of 10 and the stiffest impedance; the default has Euler, the pyramidal cone, a "
+            "friction of 1 and an impedance of 0.9 to 0.95."
         ),
     ),
     Failure(
@@ -201,10 +128,11 @@ FAILURES: tuple[Failure, ...] = (
         cells=tuple(cell for _, cell in polygon_cells()),
         words=finest_polygon,
         remark=(
-            "Pymunk has circles, segments and convex polygons, and no ellipse. A polygon rolls by falling from corner "
-            "to corner and loses energy in each blow: what is computed well is another body. With 32 and 128 corners "
-            "the two smaller steps give the same error, so the corners make it. With 512 the last step still lowers it"
-            "{% filter if_measured %} from {{ coarse | number }} to {{ fine | number }} rad{% endfilter %}."
+            "Pymunk has circles, segments and convex polygons "
+            "([pymunk.shapes](https://www.pymunk.org/en/latest/pymunk.html)), and no ellipse. A polygon falls from "
+            "corner to corner and loses energy at each impact: the engine computes another body. With 32 and 128 "
+            "corners the two smaller steps give the same error, so the corners make it. With 512 the last step still "
+            "lowers it{% filter if_measured %} from {{ coarse | number }} to {{ fine | number }} rad{% endfilter %}."
         ),
     ),
     *(
@@ -224,16 +152,16 @@ FAILURES: tuple[Failure, ...] = (
                 0.01,
                 None,
                 "The reflection, which is our code around pymunk, has the wrong rotation at each of these steps. Its "
-                "gap falls with the step all the same, and nothing warns: a closed gap proves nothing here. The others "
-                "lose the rotation at the largest step only, or not at all.",
+                "gap falls with the step all the same, and nothing warns: here a closed gap does not show that the "
+                "motion is right. The others lose the rotation at the largest step only, or not at all.",
             ),
             (
                 1e-3,
                 refused(DiscInHole(clearance=1e-10), "clearance 1e-10"),
-                "The curvatures nearly cancel in 1/(kappa_A + kappa_B): in a step the contact moves further than a "
-                "method can follow. At the largest step two methods open the contact; the others finish with the wrong "
-                "rotation. No engine warns. Rows written into MuJoCo by our code recover first with a smaller step; "
-                "the reflection does not.",
+                r"The curvatures nearly cancel in $1 / (\kappa_A + \kappa_B)$: in one step the contact moves further "
+                "than a method can follow. At the largest step two methods open the contact; the others finish with "
+                "the wrong rotation. No engine warns. Rows written into MuJoCo by our code recover first with a "
+                "smaller step; the reflection does not.",
             ),
         )
     ),
@@ -247,25 +175,24 @@ FAILURES: tuple[Failure, ...] = (
         observations=refused(SquareOnCatenaries(), "beyond the corner"),
         remark=(
             "Methods by constraint ask our code where the contact will be, and beyond the corner there is no answer. "
-            "In pymunk our code stops the run. In MuJoCo numbers become infinite or huge: it warns and starts the "
-            "motion anew, or our code refuses first. By contact nothing was built: neither engine has this "
+            "In pymunk our code stops the run. In MuJoCo numbers become infinite or huge: MuJoCo warns and starts the "
+            "motion anew, or our code refuses first. Nothing was built with contacts, because neither engine has this "
             "ground as a shape."
         ),
     ),
     Failure(
         title="Beyond the hop, and beyond the friction",
         expected=(
-            f"On the hill the ideal contact asks for more friction than 1 from "
-            f"{RollingOnCircle().comparable_until:.4f} s on, and at {RollingOnCircle().hop:.4f} s it would have to "
-            "pull. Ideal rolling goes on; a body with real contact slips and flies. From there on the comparison is "
-            "invalid, and it stops."
+            "On the hill the ideal contact asks for more friction than 1 from {{ '%.4f' | format(slips) }} s on. At "
+            "{{ '%.4f' | format(hops) }} s it would have to pull. Ideal rolling goes on; a real contact slips "
+            "and flies. From there on the comparison is invalid, and it stops."
         ),
         cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
         words=after_parting,
         remark=(
-            "Up to there the tuned contacts are off by an error that falls with the step; after it they are off by "
+            "Up to that time the tuned contacts are off by an error that falls with the step. After it they are off by "
             "{% filter if_measured %}{{ least | number }} times as much or {% endfilter %}more, at either step. The "
             "method by constraint follows the ideal motion to the end, with a force that no ground could give. Neither "
             "is wrong: they answer different questions."
@@ -278,8 +205,8 @@ FAILURES: tuple[Failure, ...] = (
         observations=chatter,
         remark=(
             "In each of these runs the contact carries nothing in a part of the samples, at the smaller step too. The "
-            "motion before the hop is right all the same, so the impulse is right on average; the force of a single "
-            "sample can't be trusted."
+            "motion before the hop is right all the same, so the impulse is right on average. But the force of a "
+            "single sample can't be trusted."
         ),
     ),
     Failure(
@@ -287,11 +214,12 @@ FAILURES: tuple[Failure, ...] = (
         expected="The disc stays on the ground. Steps this large are wrong, and a warning would help.",
         cells=TOO_LARGE,
         remark=(
-            "In one step a free body falls by g times the step squared (0.1 m at 0.1 s) before contact is looked at "
-            "again. At each of these steps the contact opens, or the shapes overlap{% filter if_measured %}, by {{ "
+            "In one step $h$ a free body falls by $g h^2$ (0.1 m at 0.1 s) before the engine looks for contact again. "
+            "At each of these steps the contact opens, or the shapes overlap{% filter if_measured %}, by {{ "
             "least | number }} m or more{% endfilter %}, and by more at larger steps. No engine warns. MuJoCo 4.0 "
-            "has speculative contacts against tunnelling (the flag `speculative`, see its release notes); they are "
-            "off by default and not used here."
+            "has speculative contacts against tunnelling (the flag `speculative` in its "
+            "[changelog](https://mujoco.readthedocs.io/en/stable/changelog.html)). They are off by default and not "
+            "used here."
         ),
         words=least_opening,
     ),
@@ -310,8 +238,8 @@ MAPS: tuple[StabilityMap, ...] = (
         ),
         remark=(
             "Along a diagonal the contact turns equally far in a step. Rows written into MuJoCo by our code follow "
-            "that rule: where they fail, a smaller step helps. Our reflection around pymunk has the rotation at a "
-            "clearance of 0.1 and more, and loses it at 0.01 and less, at each of these steps."
+            "that rule: where they fail, a smaller step helps. Our reflection around pymunk is right at a clearance of "
+            "0.1 and more. At 0.01 and less it loses the rotation, at each of these steps."
         ),
     ),
 )

@@ -21,7 +21,7 @@ CROWDED = 0.085  # of the panel's height: labels nearer than this are pushed apa
 
 
 def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
-    """Two panels side by side: CPU time of a step [us], and the largest angle error after the whole run [rad]."""
+    """Two panels side by side: CPU time of a step [µs], and the largest angle error after the whole run [rad]."""
     variants: dict[str, list[str]] = {}
     for series in found:
         variants.setdefault(series.engine, []).append(series.variant)
@@ -30,7 +30,7 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
         figure = new_figure(5.6, theme)
         cost, error = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.25, 1]})
         for panel, title, what in (
-            (cost, "Cost of a step, with its slope at the large end", "CPU time of a step [us]"),
+            (cost, "Cost of a step, with its slope at the large end", "CPU time of a step [µs]"),
             (error, "Error at a fixed step", "largest angle error [rad]"),
         ):
             panel.set_title(title, loc="left", fontweight="bold", color=theme.ink)

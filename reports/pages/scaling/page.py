@@ -59,8 +59,8 @@ LARGEST: dict[Engine, int] = {
     RUNGE_KUTTA: 300,
     BandedChain(): 1000,
 }
-# These two are run to the end up to 100 links only: seconds again.
-SHORT_OF_BREATH: tuple[Engine, ...] = (SWEPT, RUNGE_KUTTA)
+# These two are run to the end up to 100 links only, since more take seconds a step.
+LIMITED: tuple[Engine, ...] = (SWEPT, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE, SPARSE, BandedChain())
 
 # Equal links: a sweep leaves 1 - pi^2/(4 N^2) of the slowest mode, and the sweeps of a step shall leave LEFT of it.
@@ -68,20 +68,23 @@ SWEEPS_OVER_SQUARE = -4 * log(LEFT) / pi**2
 CAPPED = ceil(sqrt(MOST / SWEEPS_OVER_SQUARE))
 
 LAWS = {
-    "pymunk default": "10 sweeps over N joints in every step, whatever N is: O(N), and unconverged beyond some links",
+    "pymunk default": "10 sweeps over $N$ joints in every step: $O(N)$; too few above some number of links",
     "pymunk tuned": (
-        f"{number(SWEEPS_OVER_SQUARE)} N^2 sweeps over N joints: O(N^3); from {CAPPED} links on the sweeps are capped "
-        f"at {MOST}: O(N)"
+        rf"${number(SWEEPS_OVER_SQUARE)} \, N^2$ sweeps over $N$ joints: $O(N^3)$; from {CAPPED} links on there are "
+        f"{MOST} sweeps: $O(N)$"
     ),
     "pymunk extended": "the same, 23 steps for one",
-    "mujoco default": "reduced coordinates: a dense N x N mass matrix; O(N^2) to fill, O(N^3) to factorise",
+    "mujoco default": r"reduced coordinates, a dense $N \times N$ mass matrix: $O(N^2)$ to fill, $O(N^3)$ to factorise",
     "mujoco tuned": "the same four times a step",
-    f"mujoco {FREE.variant}": "3 N coordinates, 3 N rows, each of two bodies: banded, so sparse Newton is O(N)",
+    f"mujoco {FREE.variant}": "$3 N$ coordinates and $3 N$ rows, each of two bodies: banded, sparse Newton is $O(N)$",
     f"mujoco {SPARSE.variant}": "the same, four times a step, refined",
-    f"mujoco {SWEPT.variant}": "at most 100 sweeps over the dense (3 N)^2 matrix of the rows: O(N^2), and unconverged",
-    "lagrange euler projection": "exact multipliers, dense: J M^-1 J^T of 2 N rows is formed and factorised, O(N^3)",
+    f"mujoco {SWEPT.variant}": r"at most 100 sweeps over the dense $3 N \times 3 N$ matrix of the rows: $O(N^2)$",
+    "lagrange euler projection": (
+        "exact multipliers: $J M^{-1} J^T$ of $2 N$ rows is factorised in its narrow band, $O(N)$; without numba "
+        "it is dense, $O(N^3)$"
+    ),
     "lagrange rk4 projection": "the same four times a step",
-    "reference banded rk4": "the same multipliers, block-tridiagonal: O(N); below 100 links numpy's calls cost most",
+    "reference banded rk4": "the same multipliers, block-tridiagonal: $O(N)$; below 100 links numpy's calls cost most",
 }
 
 
@@ -92,7 +95,7 @@ def cells() -> tuple[Cell, ...]:
         for links in (*SMALL, *LARGE, *COSTLY):
             if links > largest:
                 continue
-            if links in COSTLY or (links > 100 and engine in SHORT_OF_BREATH):
+            if links in COSTLY or (links > 100 and engine in LIMITED):
                 steps = MORE if engine in CHEAP else FEW
                 scene = LongPendulum(links, duration=steps * STEP, horizon=steps * STEP)
                 found.append(Cell(scene, engine, steps, "large", 1))
@@ -139,7 +142,7 @@ def _told(value: float, outcome: str) -> str:
 
 
 def cost_table(found: tuple[Series, ...]) -> str:
-    """CPU time of a step [us] by method and links, with the fitted exponent."""
+    """CPU time of a step [µs] by method and links, with the fitted exponent."""
     sizes = sorted({point.size for series in found for point in series.points})
     body = []
     for series in found:
@@ -208,7 +211,7 @@ def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None
 PAGE = StudyPage(
     name=NAME,
     title="Cost and error as a chain grows",
-    lesson="One link to a thousand: coordinates, sweeps and exact multipliers, and what each costs at the large end.",
+    lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
     scenes=(),
     engines=(),
     companions=pendulum.SCENES,

@@ -3,37 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
 from engines import Engine
 from engines.registry import VARIANTS
-from reference.joints import Pin, Skate
-from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
-from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
-from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
-from reports.pages.observing import observe
-from reports.pages.page import Failure, Material, Observation, StabilityMap
-from reports.pages.skate.methods import CONSTRUCTIONS, limited, method
-from reports.text.tables import number
-from reports.text.unmeasured import UNMEASURED
+from reports.pages.page import Failure, StabilityMap
+from reports.pages.skate.counting import counting
+from reports.pages.skate.methods import ORDINARY, method
+from reports.pages.skate.slipping import LIMITED, PEAK, delays, slipping
+from reports.pages.skate.turning_round import GROWING, TURNING_ROUND, backwards
 
 Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
-
-# What a user would take, and the best of each kind.
-ORDINARY: tuple[Engine, ...] = tuple(
-    engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
-)
-# Between these rates [rad/s] a turning on the straight run grows as the linearised motion says: far above where it
-# starts, and its square is still below a thousandth of that of the largest rate.
-GROWING = (2e-3, 4e-2)
 
 
 def _cells(
@@ -51,136 +38,6 @@ def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
     return every[:1] if engine.variant == "extended" else every
 
 
-def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
-    """The slope of log |turning rate| over time [1/s] between the rates of GROWING; NaN when it never gets there."""
-    size = np.abs(rate)
-    late = int(np.argmax(size > GROWING[1])) if np.any(size > GROWING[1]) else 0
-    chosen = (np.arange(len(t)) < late) & (size > GROWING[0])
-    if chosen.sum() < 3:
-        return float("nan")
-    return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
-
-
-def turned_at(t: np.ndarray, rate: np.ndarray) -> float:
-    """When it turns fastest [s], which is when the exact sleigh slides neither way."""
-    return float(t[int(np.argmax(np.abs(rate)))])
-
-
-BACKWARDS = SleighBackwards()
-TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *CONSTRUCTIONS))
-
-
-def backwards(material: Material) -> list[Observation]:
-    """The growth of a small turning and the time of turning round, in each method."""
-    t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
-    truth = BACKWARDS.motion(t).twist[:, 0, 2]
-    found = [
-        Observation("linearised exact motion", "", f"grows by exp({BACKWARDS.growth_rate():.4g} t)"),
-        Observation("exact motion", "", _grown(t, truth)),
-    ]
-    for cell in TURNING_ROUND:
-        setting = f"step {number(cell.step)} s"
-        found += observe(material, cell, setting, lambda run: _grown(run.t, run.twist[:, 0, 2]))
-    return found
-
-
-def _grown(t: np.ndarray, rate: np.ndarray) -> str:
-    grows = growth_of(t, rate)
-    if np.isnan(grows):
-        return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"
-    return f"{grows:.4f} per second; fastest, {np.abs(rate).max():.3f} rad/s, at {turned_at(t, rate):.2f} s"
-
-
-def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:
-    """When the exact lateral force first exceeds a limit [N], to 1e-4 of the duration [s]; None if never."""
-    t = np.linspace(0, scene.duration, 10_001)
-    over = np.flatnonzero(np.abs(scene.lateral_force(t)) > limit)
-    return float(t[over[0]]) if over.size else None
-
-
-def _body(*joints: Pin | Skate) -> Mechanism:
-    return Mechanism((Body("body", 2.0, 0.3, (0.0, 0.0, 0.0)),), joints)
-
-
-def _skate(name: str, point: tuple[float, float], angle: float = 0.0) -> Skate:
-    return Skate(name, None, "body", point, angle)
-
-
-COUNTED: tuple[tuple[str, Mechanism], ...] = (
-    ("free body", _body()),
-    ("pinned body (18.62)", _body(Pin("pin", None, "body", (-0.5, 0.0), (-0.5, 0.0)))),
-    ("one skate (18.64)", _body(_skate("one", (-0.5, 0.0)))),
-    ("two skates on one axle", _body(_skate("left", (-0.5, 0.2)), _skate("right", (-0.5, -0.2)))),
-    ("two skates in one line", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0)))),
-    ("two skates, one steered", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0), 0.4))),
-    ("a pin and a skate off it", _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0)))),
-    (
-        "a pin and a skate square to it",
-        _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0), np.pi / 2)),
-    ),
-    ("three skates", HeldBySkates().mechanism()),
-)
-
-
-def counting(material: Material) -> list[Observation]:
-    """Freedoms by rank and by brackets, and integrability by Frobenius, of skates on one body."""
-    found = []
-    for name, mechanism in COUNTED:
-        configuration, velocity = mechanism.degrees_of_freedom()
-        reached = freedoms_by_brackets(mechanism)[-1] if velocity else 0
-        kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
-        said = f"({configuration}, {velocity}); {kind}: of {configuration} it can reach {reached}"
-        if velocity == 0:
-            said = f"({configuration}, {velocity}): nothing can move, wherever it stands"
-        found.append(Observation(name, f"{mechanism.row_count} row{'' if mechanism.row_count == 1 else 's'}", said))
-    return found
-
-
-def slipping(material: Material) -> list[Observation]:
-    """When the exact lateral force exceeds a friction's limit, and when engines with that limit slip."""
-    found = []
-    for limit, cells in LIMITED.items():
-        exact = first_beyond(BACKWARDS, limit)
-        when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
-        found.append(Observation("exact lateral force", f"{limit:g} N", when))
-        for cell in cells:
-            found += observe(material, cell, f"{limit:g} N", _slipped)
-    return found
-
-
-def _slipped(run: Trajectory) -> str:
-    when = slips_at(run)
-    if when is None:
-        return "holds"
-    return f"slips by {SLIPS:g} m/s at {when:.2f} s, at most {np.abs(slip_of(run)).max():.2g}"
-
-
-def slip_of(run: Trajectory) -> np.ndarray:
-    """The skate's sideways velocity (times,) [m/s]."""
-    return BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0]
-
-
-def slips_at(run: Trajectory) -> float | None:
-    """When it slips by more than SLIPS first [s]; None if it holds."""
-    over = np.flatnonzero(np.abs(slip_of(run)) > SLIPS)
-    return float(run.t[over[0]]) if over.size else None
-
-
-def delays(material: Material) -> dict[str, Any]:
-    """`least`, `most` [s]: how long after the exact force passes a limit an engine with that limit slips."""
-    found = []
-    for limit, cells in LIMITED.items():
-        exact = first_beyond(BACKWARDS, limit)
-        slipped = map(slips_at, material.motions(cells).values())
-        found += [when - exact for when in slipped if exact is not None and when is not None]
-    return {"least": min(found, default=UNMEASURED), "most": max(found, default=UNMEASURED)}
-
-
-PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 10_001))).max())
-# A friction's limit [N] -> runs with it.
-LIMITED = {limit: tuple(Cell(BACKWARDS, engine, 10) for engine in limited(limit)) for limit in (0.1, 0.3, 0.5, 0.7)}
-SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
-
 NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
 LONG = 1000.0  # s
 CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
@@ -196,31 +53,31 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="No slip at all, and a wholly wrong motion",
         expected=(
-            "The blade's force turns the body too. Taking away the velocity across the blade without the turning that "
-            "goes with it leaves no slip and a body of another inertia, or of none."
+            "The blade's force turns the body too. Whoever takes away the velocity across the blade, but not the "
+            "turning that goes with it, gets no slip, and the motion of another body."
         ),
         cells=_cells(ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)),
         columns=MOTION,
         remark=(
-            "No slip does not prove a right motion. Zeroing the centre's velocity is right only for a blade under the "
-            "centre of mass; zeroing the blade's point by shifting the whole velocity adds energy from nowhere. The "
-            "third method does the same with an impulse at the blade, and costs one line more."
+            "No slip does not prove a right motion. To set the centre's velocity across the blade to zero is right "
+            "only for a blade under the centre of mass. To shift the whole velocity until the blade's point has no "
+            "slip adds energy from nowhere. The third method does the same with an impulse at the blade, and costs one "
+            "line more."
         ),
     ),
     Failure(
         title="The sleigh run backwards",
         expected=(
             "With the centre of mass behind the skate a small turning grows as "
-            f"exp({SleighBackwards().growth_rate():g} t) until the sleigh has turned round. Measured: growth between "
-            f"{GROWING[0]:g} and {GROWING[1]:g} rad/s, and when it turns fastest."
+            rf"$e^{{{SleighBackwards().growth_rate():g}\,t}}$ until the sleigh has turned round. Measured are the "
+            f"growth between {GROWING[0]:g} and {GROWING[1]:g} rad/s, and the time at which it turns fastest."
         ),
         tasks=tuple(map(Motion, TURNING_ROUND)),
         observations=backwards,
         remark=(
-            "An engine whose row is a little late has a growth rate that is a little low, and turns round a little "
-            "late; MuJoCo's tendon at the predicted pose (`mujoco tuned`) is a little early instead. The naive "
-            "zeroing, which is `pymunk default` too, does not turn round at all: it makes a stable vehicle of an "
-            "unstable one, so that the simulation hides the instability."
+            "A row that is a little late makes the growth a little too slow, and the sleigh turns round a little too "
+            "late. MuJoCo's tendon at the predicted pose (`mujoco tuned`) is a little early instead. The naive "
+            "zeroing, which is `pymunk default` too, does not turn round at all: the simulation hides the instability."
         ),
     ),
     Failure(
@@ -231,8 +88,8 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "Rounding of 1e-17 rad/s grows to 1 rad/s in about "
             f"{np.log(1e17) / SleighBackwards().growth_rate():.0f} s. "
-            "A method that ends elsewhere is not wrong: the question has no stable answer. One that goes straight on "
-            "has no rounding in the row at this heading, or, as the naive zeroing, no instability."
+            "A method that ends elsewhere is not wrong: the question has no stable answer. A method goes straight on "
+            "if its row has no rounding at this heading or, as with the naive zeroing, if it has no instability."
         ),
     ),
     Failure(
@@ -243,12 +100,13 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(COASTING, LASTING, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
-            "Once straight a projection loses nothing any more: the heading keeps the error of the first seconds, and "
-            "the position's grows with it. A reflection fails altogether, with its energy exact to the end. Being "
-            "symmetric in time it has, for every motion that dies out, a slip that changes sign with every step and "
-            f"grows at the same rate: here {DYING:.2g} per second, so that rounding is a metre per second after "
-            f"{np.log(1e16) / DYING:.0f} s. It is a method for seconds (and for a circle), not for minutes of a motion "
-            "that settles; extrapolation does not cure it. A projection, or the damping of a written row, does."
+            "Once the sleigh slides straight, a projection loses nothing any more. Its heading keeps the error of the "
+            "first seconds, and the error of the position grows with time. The reflection fails altogether, although "
+            "its energy is exact to the end. It is symmetric in time: where a motion dies out, a slip that changes "
+            f"sign with every step grows at the same rate. Here the rate is {DYING:.2g} per second, so that rounding "
+            f"becomes a metre per second after {np.log(1e16) / DYING:.0f} s. Take it for seconds, or for a circle, but "
+            "not for minutes of a motion that settles. Extrapolation does not cure it; a projection, or the damping of "
+            "a written row, does."
         ),
     ),
     Failure(
@@ -260,9 +118,9 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(CIRCLING, LASTING, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
-            "The naive zeroing projects a velocity that has turned by w h onto the blade in every step and so loses "
-            "the part (w h)^2/2 of the speed; so does a row held at the end of a step. The energy of a circle shows "
-            "it, where that of a sleigh that straightens does not."
+            r"In a step $h$ the blade turns by $\omega h$. The naive zeroing projects the velocity onto the blade's "
+            r"new direction, and so loses the part $(\omega h)^2 / 2$ of the speed in every step. A row that is held "
+            "at the end of a step does the same. The energy shows it on a circle, but not on a sleigh that straightens."
         ),
     ),
     Failure(
@@ -277,7 +135,7 @@ FAILURES: tuple[Failure, ...] = (
         words=delays,
         remark=(
             "So the reaction in a run with an ideal skate tells whether a real blade would hold. An engine's friction "
-            "with that limit tells it too, if it does not creep by itself as much as it slips. Both "
+            "with that limit tells it too, unless the friction creeps by itself as much as it slips. Both "
             "engines here slip {% filter if_measured %}{{ least | number }} to {{ most | number }} s {% endfilter %}"
             "after the exact force passes the limit, since the slip has to grow before it is counted."
         ),
@@ -289,10 +147,13 @@ FAILURES: tuple[Failure, ...] = (
         columns=("position", "slip", "reaction"),
         remark=(
             "A soft row creeps: its force needs a slip to exist. MuJoCo's friction is soft too and creeps, as its "
-            "documentation says (Modeling, 'Slow slippage'). It is not seen in `mujoco default` because of this "
-            "blade's coefficients, 1e-5 along and 10 across, as in the maintainers' example for skating: MuJoCo scales "
-            "the softness of the row across by the square of their ratio, 1e-12. With equal coefficients it creeps. "
-            "The naive zeroing (`pymunk default`) is right here, where nothing turns."
+            "documentation says ([Modeling, 'Slow slippage'](https://mujoco.readthedocs.io/en/stable/modeling.html)). "
+            "In `mujoco default` it is not seen. The reason is this blade's friction, 1e-5 along and 10 across, as in "
+            "the maintainers' example for skating ([mujoco#67](https://github.com/google-deepmind/mujoco/issues/67)). "
+            "MuJoCo scales the softness of the row across by the square of their ratio, 1e-12 "
+            "([engine_core_constraint.c](https://github.com/google-deepmind/mujoco/blob/main/src/engine/"
+            "engine_core_constraint.c)). With equal coefficients it creeps. The naive zeroing (`pymunk default`) is "
+            "right here, where nothing turns."
         ),
     ),
     Failure(
@@ -304,16 +165,16 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Counting freedoms of skates on one body",
         expected=(
-            "By rank (configuration, velocity), and by brackets: whether the rows are integrable together, and how "
-            "many freedoms of configuration motions can then reach."
+            "Freedoms are counted twice. The rank of the rows gives those of configuration and of velocity. Brackets "
+            "say whether the rows are integrable together, and how many freedoms of configuration can then be reached."
         ),
         observations=counting,
         remark=(
-            "Two skates never fix a body: their axles meet in a point, or are parallel, and about that point it turns. "
-            "Two in one line can only go straight, and their rows are then integrable together, though neither is: "
-            "counting joints as 'holonomic' one by one says three configurations where one can be reached. A pin and a "
-            "skate off it, or three skates, leave no freedom of velocity at all: the body stands where it was put, "
-            "and it could have been put anywhere."
+            "Two skates never fix a body. It still turns about the point where their axles meet, or moves straight "
+            "where the axles are parallel. Two in one line can only go straight: their rows are integrable together, "
+            "though neither is alone. Whoever counts joints as 'holonomic' one by one finds three freedoms of "
+            "configuration where one can be reached. A pin and a skate off it, or three skates, leave no freedom of "
+            "velocity: the body stays where it was put, and it could have been put anywhere."
         ),
     ),
     Failure(
@@ -322,8 +183,8 @@ FAILURES: tuple[Failure, ...] = (
         cells=_cells(HeldBySkates(), ENGINES_ALONE, (1, 10)),
         columns=("position", "angle", "slip", "reaction"),
         remark=(
-            "Nothing constrains its place, only its velocity: every slip that a method leaves adds up, and no engine "
-            "can notice."
+            "The skates constrain its velocity and not its place. So every slip that a method leaves adds up, and no "
+            "engine can notice it."
         ),
     ),
 )
@@ -346,8 +207,8 @@ MAPS: tuple[StabilityMap, ...] = (
             for samples, every in MAP_STEPS
         ),
         remark=(
-            "Positive: ahead of the skate. For a method that holds the row the offset matters little; the naive "
-            "zeroing (`pymunk default`) is right where the centre of mass is on the skate, and nowhere else."
+            "A positive offset is ahead of the skate. For a method that holds the row the offset matters little. The "
+            "naive zeroing (`pymunk default`) is right only where the centre of mass is on the skate."
         ),
     ),
 )

@@ -28,3 +28,9 @@ def known(names: Iterable[str]) -> dict[str, Engine]:
 def limited(limit: float) -> tuple[Engine, ...]:
     """Skates that slip when they would have to give more than this side force [N]."""
     return limited_groove(limit), limited_tendon(limit)
+
+
+# What a user would take, and the best of each kind.
+ORDINARY: tuple[Engine, ...] = tuple(
+    engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
+)

@@ -209,7 +209,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="The skate",
-    lesson="It forbids velocities but no position: what stands for it in engines that have no such joint.",
+    lesson="A skate forbids velocities but no position. Engines have no such joint; here is what can stand for it.",
     scenes=SCENES,
     engines=(*VARIANTS, *CONSTRUCTIONS),
     failures=FAILURES,

@@ -28,13 +28,14 @@ def parking() -> Figure:
     moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
     panels.append(
         Panel(
-            "the commutator's way over both moves",
+            "the commutator's way, over the product of its moves",
             [
-                Path(np.column_stack([-np.log10(sizes), moved[:, 1]]), "sideways, towards 1", "third"),
-                Path(np.column_stack([-np.log10(sizes), moved[:, 0]]), "along, towards 0", "first", "--"),
+                Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third"),
+                Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--"),
             ],
             plane=False,
-            across="both moves are 10 to minus this [rad, m]",
+            across="size of both moves [rad, m]",
+            logarithmic_across=True,
         )
     )
     return paths(panels, columns=2, height=2.6)

@@ -102,9 +102,9 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="A reversing trailer jack-knifes",
         expected=(
-            f"Backing straight from a bend of {BACKING.bend:g} rad the bend grows as exp(v t / L), "
-            f"{abs(BACKING.speed) / BACKING.length:g} per second, and passes a right angle. Coasting, the car is slowed"
-            " down by what it gives to the trailer."
+            f"A car that backs straight from a bend of {BACKING.bend:g} rad: the bend grows as $e^{{v t / L}}$, at "
+            f"{abs(BACKING.speed) / BACKING.length:g} per second, and passes a right angle. A coasting car slows down "
+            "by what it gives to the trailer."
         ),
         cells=_cells(BACKING, ENGINES_ALONE, (1, 10)),
         columns=MOTION,
@@ -112,7 +112,7 @@ FAILURES: tuple[Failure, ...] = (
         observations=folding,
         words=lateness,
         remark=(
-            "The ideal wheels go on through the fold, real bodies would touch. The naive zeroing (`pymunk default`, "
+            "Ideal wheels go on through the fold; real bodies would touch. The naive zeroing (`pymunk default`, "
             "a user's trick and no part of pymunk) computes another vehicle: its trailer folds late{% filter "
             "if_measured %}, by {{ late[0] | number }} s at the larger step and {{ late[1] | number }} s at the "
             "smaller{% endfilter %}."
@@ -130,8 +130,8 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Both wheels of every axle: the car and its trailer",
         expected=(
-            "The two wheels of an axle stop the same motion, so the second changes nothing but the number of rows; how "
-            "the two share the force is not determined, and the reference gives each half."
+            "The two wheels of an axle stop the same motion, so the second one changes only the number of rows. How "
+            "the two share the force is not determined; the reference gives each half."
         ),
         cells=_cells(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "energy", "reaction"),

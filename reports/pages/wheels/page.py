@@ -66,7 +66,7 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Ideal wheels",
-    lesson="Cars, trailers and carts: pins and skates together, coasting in the ways that the wheels still allow.",
+    lesson="Cars, trailers and carts consist of pins and skates. Here they coast in the ways that their wheels allow.",
     scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,

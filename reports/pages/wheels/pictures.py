@@ -44,7 +44,7 @@ def _tow(title: str, radius: float, distance: float) -> Panel:
             ),
             Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
         ],
-        [Blades(drawbars, LENGTH, "grid", 1.6)],
+        [Blades(drawbars, LENGTH, "quiet", 0.9, "drawbar")],
     )
 
 
@@ -96,7 +96,7 @@ def reversing() -> Figure:
                     Path(convoy.pose[:, 0, :2], "car's rear axle", "quiet", "--", 1.2),
                     Path(convoy.pose[:, 1, :2], "trailer's axle", "second", "-", 1.8, dot=True),
                 ],
-                [Blades(bodies, 1.0, "grid", 4.0), Blades(trailer + half, 0.8, "first", 1.6)],
+                [Blades(bodies, 1.0, "grid", 4.0, "car"), Blades(trailer + half, 0.8, "first", 1.6, "drawbar")],
             )
         )
     return paths(panels, columns=2)

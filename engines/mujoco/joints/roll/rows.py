@@ -18,7 +18,7 @@ import mujoco
 from engines import Unsupported
 from engines.mujoco.construction import Binder, Building, Hooks
 from engines.mujoco.tree import Link
-from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.mujoco.written_rows import Row, State, WrittenJoint, equality_rows
 from engines.rolling_table import Rolled, rolled
 from reference.rolling.roll import Roll
 from reference.validation import Valid
@@ -78,9 +78,7 @@ def _own_rows(
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
         x, y, rotation = (address[column] for column in link.columns)
-        connect = int(mujoco.mjtEq.mjEQ_CONNECT)
-        rows = [sum(3 if kind == connect else 1 for kind in compiled.eq_type[: compiled.equality(n).id]) for n in names]
-        row_x, row_y = rows
+        rows = row_x, row_y = [equality_rows(compiled, compiled.equality(name).id) for name in names]
         turning_x, turning_y = (row * compiled.nv + rotation for row in rows)
         place_at = table.place
 

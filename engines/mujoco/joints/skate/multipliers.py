@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 def refuse_loops(building: Building, what: str) -> None:
     """Raise Unsupported where the rows are not the only ones that share the accelerations."""
-    if building.tree.loops or building.driven:
+    if building.tree.loops or building.tree.geared or building.driven:
         raise Unsupported(f"{what} takes no loops and no drives: their forces would have to be solved for together")
 
 
@@ -56,8 +56,8 @@ def add_forces(building: Building, joints: Sequence[WrittenJoint]) -> None:
     """The reaction at the start of every step, held over it as `qfrc_applied`."""
     refuse_loops(building, "a multiplier applied as a force")
 
-    def bind(_compiled: Any, address: Sequence[int]) -> Hooks:
-        rows = row_writer(building.tree, address, joints)
+    def bind(compiled: Any, address: Sequence[int]) -> Hooks:
+        rows = row_writer(building.tree, address, joints, compiled.nv)
 
         def apply(model: Any, data: Any) -> None:
             data.qfrc_applied[:] = 0
@@ -75,7 +75,7 @@ def add_passive_forces(building: Building, joints: Sequence[WrittenJoint]) -> No
     refuse_loops(building, "a multiplier applied as a force")
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
-        rows = row_writer(building.tree, address, joints)
+        rows = row_writer(building.tree, address, joints, compiled.nv)
         bias, without = np.empty(compiled.nv), np.empty((1, compiled.nv))
 
         def apply(model: Any, data: Any) -> None:

@@ -64,7 +64,7 @@ def add_leapfrog(building: Building, joints: Sequence[WrittenJoint]) -> None:
     half = building.dt / 2
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
-        rows = row_writer(building.tree, address, joints)
+        rows = row_writer(building.tree, address, joints, compiled.nv)
         rewrite = _rewriting(building, joints, compiled, address, 0.0)
 
         def ahead(_model: Any, data: Any) -> None:
@@ -112,14 +112,13 @@ def _add_equality(building: Building, number: int, damping: float) -> None:
 def _add_rewritten(building: Building, joints: Sequence[WrittenJoint], ahead: float = 0.0, **options: Any) -> None:
     tree = building.tree
     # The coefficients at the start set the scale of the compliance when the model is compiled.
-    start, _ = row_writer(tree, range(tree.coordinates), joints)(
-        0.0, [0.0] * tree.coordinates, [0.0] * tree.coordinates
-    )
+    width = tree.coordinates
+    start, _ = row_writer(tree, range(width), joints, width)(0.0, [0.0] * width, [0.0] * width)
     columns = [chain(tree, joint) for joint in joints]
     for number, own in enumerate(columns):
         tendon = building.spec.add_tendon(name=f"skate {number}", **options)
         for column in own:
-            tendon.wrap_joint(f"coordinate {column}", start[number * tree.coordinates + column])
+            tendon.wrap_joint(f"coordinate {column}", start[number * width + column])
 
     building.binders.append(
         lambda compiled, address: Hooks(before=(_rewriting(building, joints, compiled, address, ahead),))
@@ -137,7 +136,7 @@ def _rewriting(
     own = [number * compiled.nv + column for number, row in enumerate(columns) for column in row]
     first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
     place = slice(first, first + len(own))
-    rows, coefficients = row_writer(tree, address, joints), compiled.wrap_prm
+    rows, coefficients = row_writer(tree, address, joints, compiled.nv), compiled.wrap_prm
 
     def rewrite(_model: Any, data: Any) -> None:
         position, velocity = data.qpos.tolist(), data.qvel.tolist()

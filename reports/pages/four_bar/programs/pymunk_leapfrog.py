@@ -25,7 +25,7 @@ def run(dt):
     """Place and angle of the rocker after `duration` in steps of dt."""
     space = pymunk.Space()
     space.gravity = (0, -9.81)
-    space.iterations = 5
+    space.iterations = 8
     bodies = {None: space.static_body}
     for name, (mass, moment, place, angle, velocity, rate) in BODIES.items():
         body = bodies[name] = pymunk.Body(mass, moment)

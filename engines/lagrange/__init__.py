@@ -1,0 +1,26 @@
+"""Exact multipliers on the mechanism's own rows: the ideal constraint under ordinary numerics.
+
+Differentiating J v = rate gives J a = -(dJ/dt) v, and Newton's law M a = f + J^T reaction then fixes the reactions: an
+index-1 system that any integrator can take. It knows no scene, so it checks the scenes themselves; and on the charts it
+shows what integration alone does to an ideal constraint, without stabilisation, with Baumgarte's (1972), and with
+projection onto the joints after every step.
+
+Stepping is in machine code where the extra `fast` (numba) is installed, and in numpy where it is not; both give the
+same numbers up to rounding, and tests hold the one against the other. `batch` steps many mechanisms of one shape.
+"""
+
+from engines.lagrange.batch import Batch, Stack, batch, stacked
+from engines.lagrange.engine import METHODS, TRUTH, VARIANTS, Integrator, Lagrange, Stabilisation
+
+__all__ = [
+    "METHODS",
+    "TRUTH",
+    "VARIANTS",
+    "Batch",
+    "Integrator",
+    "Lagrange",
+    "Stabilisation",
+    "Stack",
+    "batch",
+    "stacked",
+]

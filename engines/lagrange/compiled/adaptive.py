@@ -1,0 +1,210 @@
+"""DOP853 with steps of its own choice, every step projected onto the joints, and dense output at samples.
+
+The control of the step is that of Hairer, Norsett and Wanner's program (part I, section II.6), as in scipy; so is their
+test for stiffness. Errors are measured in parts of the mechanism's own length and speed.
+"""
+
+from __future__ import annotations
+
+import math
+
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.steps import accelerated, combined, projected, staged
+from engines.lagrange.flat import (
+    ACCELERATION,
+    COLUMNS,
+    NEW_POSE,
+    NEW_TWIST,
+    POSE,
+    POSE_UNIT,
+    ROUNDED,
+    SMALLEST,
+    STAGE_POSE,
+    STAGE_TWIST,
+    STEPS,
+    STIFF,
+    STOPPED,
+    TOLD,
+    TWIST,
+    TWIST_UNIT,
+    VELOCITY,
+    WANTED_ROLL,
+)
+
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
+MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies
+ROUNDING = 2.2e-16
+STIFF_PRODUCT, STIFF_STEPS = 6.1, 15  # step times largest eigenvalue at the border of stability, so often met
+
+
+@inner
+def controlled(
+    whole, real, cells, stages, weights, nodes, third, fifth, dense, project, tolerance, spacing, begin, poses, twists
+):
+    """From the sample `begin` on, samples `spacing` apart into rows of poses and twists; gives the last one done."""
+    columns, pose, twist, new, fast = whole[COLUMNS], whole[POSE], whole[TWIST], whole[NEW_POSE], whole[NEW_TWIST]
+    velocity, acceleration, told = whole[VELOCITY], whole[ACCELERATION], whole[TOLD]
+    end = spacing * (len(poses) - 1)
+    for k in range(columns):
+        real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
+    t, sample, tries, rejected, stiff, step = spacing * begin, begin, 0, False, 0, -1.0
+    while sample < len(poses) - 1:
+        if step < 0:  # the first step, and its first stage
+            step = _first_step(whole, real, cells, t, tolerance, min(spacing * 10, end - t))
+        least = 16 * ROUNDING * max(abs(t), spacing)
+        tries += 1
+        if not step > least or tries > MOST_STEPS:
+            real[told + STOPPED] = t
+            return sample
+        # Steps about as long as samples are apart end there, longer ones where the run does; a crumb is shared out.
+        target = spacing * (sample + 1) if step < 2 * spacing else end
+        rest = target - t
+        dt = rest if 1.01 * step >= rest else (0.5 * rest if 2 * step > rest else step)
+        goal = target if dt == rest else t + dt
+        real[told + SMALLEST] = 1.0
+        for stage in range(1, 12):
+            staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+        for k in range(columns):
+            real[new + k], real[fast + k] = real[pose + k], real[twist + k]
+        combined(whole, real, weights, dt, new, fast)
+        error = dt * _error(whole, real, third, fifth, tolerance)
+        if real[told + WANTED_ROLL] >= 0:
+            return sample
+        if not error < 1:
+            step = dt * (max(LEAST_FACTOR, SAFETY * error**-0.125) if error < 1e300 else LEAST_FACTOR)
+            rejected = True
+            continue
+        factor = LARGEST_FACTOR if error == 0 else min(LARGEST_FACTOR, SAFETY * error**-0.125)
+        step = dt * (min(1.0, factor) if rejected else factor)
+        rejected = False
+        moved = 0.0
+        for k in range(columns):
+            moved = max(moved, abs(real[fast + k] - real[twist + k]) / real[whole[TWIST_UNIT] + k])
+        real[told + ROUNDED] += moved * ROUNDING / math.sqrt(max(real[told + SMALLEST], ROUNDING))
+        projected(whole, real, cells, new, fast, goal, project)
+        last, ahead = 12 * columns, 11 * columns
+        for k in range(columns):
+            real[velocity + last + k] = real[fast + k]
+        accelerated(whole, real, cells, new, fast, goal, acceleration + last)
+        if real[told + WANTED_ROLL] >= 0:
+            return sample
+        rates = states = 0.0
+        for k in range(columns):
+            unit = real[whole[POSE_UNIT] + k]
+            faster = real[whole[TWIST_UNIT] + k]
+            rates += _square((real[velocity + last + k] - real[velocity + ahead + k]) / unit)
+            rates += _square((real[acceleration + last + k] - real[acceleration + ahead + k]) / faster)
+            states += _square((real[new + k] - real[whole[STAGE_POSE] + k]) / unit)
+            states += _square((real[fast + k] - real[velocity + ahead + k]) / faster)
+        stiff = stiff + 1 if dt * dt * rates > STIFF_PRODUCT * STIFF_PRODUCT * states and states > 0 else 0
+        if stiff >= STIFF_STEPS and math.isnan(real[told + STIFF]):
+            real[told + STIFF] = t
+        real[told + STEPS] += 1
+        ready = False
+        while sample < len(poses) - 1 and goal >= spacing * (sample + 1):
+            if spacing * (sample + 1) == goal:
+                for k in range(columns):
+                    poses[sample + 1, k], twists[sample + 1, k] = real[new + k], real[fast + k]
+            else:
+                if not ready:
+                    for stage in range(13, 16):
+                        staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+                    ready = True
+                _between(whole, real, dense, dt, (spacing * (sample + 1) - t) / dt)
+                at, fast_at = whole[STAGE_POSE], whole[STAGE_TWIST]
+                projected(whole, real, cells, at, fast_at, spacing * (sample + 1), project)
+                for k in range(columns):
+                    poses[sample + 1, k], twists[sample + 1, k] = real[at + k], real[fast_at + k]
+            sample += 1
+            tries = 0
+            if real[told + WANTED_ROLL] >= 0:
+                return sample - 1
+            for k in range(columns):
+                if not math.isfinite(poses[sample, k]):
+                    return sample - 1
+        t = goal
+        for k in range(columns):
+            real[pose + k], real[twist + k] = real[new + k], real[fast + k]
+            real[velocity + k], real[acceleration + k] = real[velocity + last + k], real[acceleration + last + k]
+    return sample
+
+
+@inner
+def _square(value):
+    return value * value
+
+
+@inner
+def _size(whole, real, pose, twist, state, fast, tolerance):
+    """The mean square of a pair of vectors, in parts of the error allowed at a state."""
+    total = 0.0
+    for k in range(whole[COLUMNS] - 3):
+        unit = tolerance * (real[whole[POSE_UNIT] + k] + abs(real[state + k]))
+        faster = tolerance * (real[whole[TWIST_UNIT] + k] + abs(real[fast + k]))
+        total += _square(real[pose + k] / unit) + _square(real[twist + k] / faster)
+    return math.sqrt(total / (2 * (whole[COLUMNS] - 3)))
+
+
+@inner
+def _first_step(whole, real, cells, t, tolerance, longest):
+    """Hairer, Norsett and Wanner's guess, and the stage at the start."""
+    columns, pose, twist, new, fast = whole[COLUMNS], whole[POSE], whole[TWIST], whole[NEW_POSE], whole[NEW_TWIST]
+    velocity, acceleration = whole[VELOCITY], whole[ACCELERATION]
+    for k in range(columns):
+        real[velocity + k] = real[twist + k]
+    accelerated(whole, real, cells, pose, twist, t, acceleration)
+    states = _size(whole, real, pose, twist, pose, twist, tolerance)
+    rates = _size(whole, real, velocity, acceleration, pose, twist, tolerance)
+    guess = min(longest, 1e-6 * longest if states < 1e-5 or rates < 1e-5 else 0.01 * states / rates)
+    for k in range(columns):
+        real[new + k] = real[pose + k] + guess * real[velocity + k]
+        real[fast + k] = real[twist + k] + guess * real[acceleration + k]
+    accelerated(whole, real, cells, new, fast, t + guess, acceleration + columns)
+    for k in range(columns):
+        real[new + k] = (real[fast + k] - real[twist + k]) / guess
+        real[fast + k] = (real[acceleration + columns + k] - real[acceleration + k]) / guess
+    bend = _size(whole, real, new, fast, pose, twist, tolerance)
+    largest = max(rates, bend)
+    step = max(1e-6 * longest, 1e-3 * guess) if largest <= 1e-15 else (0.01 / largest) ** 0.125
+    return min(longest, 100 * guess, step)
+
+
+@inner
+def _error(whole, real, third, fifth, tolerance):
+    """The estimate of a step's error in parts of what is allowed, for a step of one second."""
+    columns, threes, fives = whole[COLUMNS], 0.0, 0.0
+    for part in range(2):
+        stage, old = (whole[VELOCITY], whole[POSE]) if part == 0 else (whole[ACCELERATION], whole[TWIST])
+        new, unit = (whole[NEW_POSE], whole[POSE_UNIT]) if part == 0 else (whole[NEW_TWIST], whole[TWIST_UNIT])
+        for k in range(columns - 3):
+            three = five = 0.0
+            for i in range(12):
+                three += third[i] * real[stage + i * columns + k]
+                five += fifth[i] * real[stage + i * columns + k]
+            scale = tolerance * (real[unit + k] + max(abs(real[old + k]), abs(real[new + k])))
+            threes += _square(three / scale)
+            fives += _square(five / scale)
+    both = fives + 0.01 * threes
+    return fives / math.sqrt(both * 2 * (columns - 3)) if both != 0 else 0.0
+
+
+@inner
+def _between(whole, real, dense, dt, part):
+    """Dense output at a part of the step, to where a stage's pose and twist stand."""
+    columns = whole[COLUMNS]
+    rest = 1 - part
+    for second in range(2):
+        stage, old = (whole[ACCELERATION], whole[TWIST]) if second else (whole[VELOCITY], whole[POSE])
+        new = whole[NEW_TWIST] if second else whole[NEW_POSE]
+        for k in range(columns):
+            change, start = real[new + k] - real[old + k], dt * real[stage + k]
+            end = dt * real[stage + 12 * columns + k]
+            high = 0.0
+            for power in range(3, -1, -1):
+                value = 0.0
+                for i in range(16):
+                    value += dense[power, i] * real[stage + i * columns + k]
+                high = (high + dt * value) * (part if power % 2 == 1 else rest)
+            # F[3] at power 0: factors alternate, 1 - part where scipy's index counted from the top is odd.
+            value = ((high + 2 * change - (end + start)) * part + start - change) * rest + change
+            real[(whole[STAGE_TWIST] if second else whole[STAGE_POSE]) + k] = real[old + k] + value * part

@@ -1,0 +1,64 @@
+"""The one function that Python calls, compiled when this module is imported, or read from the cache.
+
+All tasks are in one function, because what several compiled functions share is compiled anew for each of them.
+"""
+
+from __future__ import annotations
+
+from numba import njit, types
+
+from engines.lagrange.compiled.adaptive import controlled
+from engines.lagrange.compiled.steps import accelerated, marched
+from engines.lagrange.flat import ACCELERATION, COLUMNS, CONTROL, MARCH, POSE, REACTION, ROWS, TOLD, TWIST, WANTED_ROLL
+
+WHOLE, CELLS = types.int64[::1], types.complex128[:, ::1]
+LIST, TABLE = types.float64[::1], types.float64[:, ::1]
+SIGNATURE = types.int64(
+    *(types.int64, WHOLE, LIST, CELLS, TABLE, LIST, LIST, LIST, LIST, TABLE),
+    *(types.int64, types.float64, types.float64, types.int64, types.int64, TABLE, TABLE, TABLE),
+)
+
+
+def run(
+    task, whole, real, cells, stages, weights, nodes, third, fifth, dense,
+    project, tolerance, dt, every, begin, poses, twists, out,
+):  # fmt: skip
+    """MARCH: `steps.marched`. CONTROL: `adaptive.controlled`, `dt` between samples. REACT: fill `out` (samples, rows)
+    and `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
+    if task == MARCH:
+        return marched(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
+    if task == CONTROL:
+        return controlled(
+            whole,
+            real,
+            cells,
+            stages,
+            weights,
+            nodes,
+            third,
+            fifth,
+            dense,
+            project,
+            tolerance,
+            dt,
+            begin,
+            poses,
+            twists,
+        )
+    columns, rows, pose, twist, acceleration = (
+        whole[COLUMNS], whole[ROWS], whole[POSE], whole[TWIST], whole[ACCELERATION]
+    )  # fmt: skip
+    for sample in range(begin, len(poses)):
+        for k in range(columns):
+            real[pose + k], real[twist + k] = poses[sample, k], twists[sample, k]
+        accelerated(whole, real, cells, pose, twist, sample * dt, acceleration)
+        if real[whole[TOLD] + WANTED_ROLL] >= 0:
+            return sample
+        for row in range(rows):
+            out[sample, row] = real[whole[REACTION] + row]
+        for k in range(columns):
+            out[sample, rows + k] = real[acceleration + k]
+    return len(poses) - 1
+
+
+run = njit(SIGNATURE, cache=True, nogil=True, error_model="numpy")(run)

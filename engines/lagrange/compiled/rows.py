@@ -1,0 +1,161 @@
+"""Gaps, velocity rows J and bias terms -(dJ/dt) v of every joint, in one pass; the same rows as `reference.joints`.
+
+The bias is written out for each joint: what the derivative of n . (v_second - v_first) leaves when accelerations are
+taken away, with the normal n of a line, its direction t and its points.
+"""
+
+from __future__ import annotations
+
+import math
+
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.flat import (
+    BIAS,
+    COLUMNS,
+    DRIVE,
+    ENDS,
+    GAP,
+    JOINT,
+    JOINT_AT,
+    JOINTS,
+    PARAMETER_AT,
+    PARAMETERS,
+    PIN,
+    ROLL,
+    ROLL_AT,
+    ROLL_NUMBERS,
+    ROLL_RECORD,
+    SLOT,
+    TOLD,
+    TURNED,
+    WANTED_ANGLE,
+    WANTED_ROLL,
+)
+from engines.lagrange.rolls import CONSTANTS, ON_LINE, ON_ROUND
+
+
+@inner
+def rows(whole, real, cells, pose, twist, t):
+    """Fill ends, gaps and biases at the pose and the twist that stand at these places; no gap where nothing is held."""
+    turned, all_ends, gaps, biases = whole[TURNED], whole[ENDS], whole[GAP], whole[BIAS]
+    for body in range(0, whole[COLUMNS] - 3, 3):
+        angle = real[pose + body + 2]
+        real[turned + 2 * (body // 3)] = math.cos(angle)
+        real[turned + 2 * (body // 3) + 1] = math.sin(angle)
+    for joint in range(whole[JOINTS]):
+        record, number = whole[JOINT_AT] + JOINT * joint, whole[PARAMETER_AT] + PARAMETERS * joint
+        kind, first, second, row = whole[record], whole[record + 1], whole[record + 2], whole[record + 3]
+        e, gap, bias = all_ends + 6 * row, gaps + row, biases + row
+        omega, spin = real[twist + first + 2], real[twist + second + 2]
+        if kind == DRIVE:
+            real[e + 2], real[e + 5] = -1.0, 1.0
+            real[gap] = real[pose + second + 2] - real[pose + first + 2] - (real[number + 6] + real[number + 5] * t)
+            real[bias] = 0.0
+            continue
+        if kind == ROLL:
+            rolled(whole, real, cells, record, pose, twist)
+            continue
+        c, d = real[turned + 2 * (first // 3)], real[turned + 2 * (first // 3) + 1]
+        g, h = real[turned + 2 * (second // 3)], real[turned + 2 * (second // 3) + 1]
+        ax, ay = c * real[number] - d * real[number + 1], d * real[number] + c * real[number + 1]
+        bx, by = g * real[number + 2] - h * real[number + 3], h * real[number + 2] + g * real[number + 3]
+        arm_x = real[pose + second] + bx - real[pose + first]
+        arm_y = real[pose + second + 1] + by - real[pose + first + 1]
+        if kind == PIN:
+            real[e], real[e + 2], real[e + 3], real[e + 5] = -1.0, ay, 1.0, -by
+            real[e + 7], real[e + 8], real[e + 10], real[e + 11] = -1.0, -ax, 1.0, bx
+            real[gap], real[gap + 1] = arm_x - ax, arm_y - ay
+            real[bias] = spin * spin * bx - omega * omega * ax
+            real[bias + 1] = spin * spin * by - omega * omega * ay
+            continue
+        # A slot's line turns with the first body, a blade with the second: its direction (x, y), its normal (-y, x).
+        angle = real[number + 4] + (real[pose + first + 2] if kind == SLOT else real[pose + second + 2])
+        x, y = math.cos(angle), math.sin(angle)
+        fast_x = real[twist + second] - spin * by - real[twist + first]
+        fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1]
+        real[e], real[e + 1], real[e + 2] = y, -x, -x * arm_x - y * arm_y
+        real[e + 3], real[e + 4], real[e + 5] = -y, x, y * by + x * bx
+        along = x * fast_x + y * fast_y
+        over_material = x * (fast_x + omega * arm_y) + y * (fast_y - omega * arm_x)
+        inward = spin * spin * (x * by - y * bx)
+        if kind == SLOT:
+            real[gap] = x * (arm_y - ay) - y * (arm_x - ax)
+            real[bias] = inward + omega * (along + over_material)
+        else:
+            real[gap] = 0.0
+            real[bias] = inward + omega * along + spin * over_material
+
+
+@inner
+def rolled(whole, real, cells, record, pose, twist):
+    """The rows of a Roll, along e_t and then e_n = -i e_t; vectors are complex numbers, as in `rolling_table`.
+
+    With P(theta) the place of the second body in the frame R of the first, the pair is closed by r2 - r1 = R P.
+    """
+    first, second, row, which = whole[record + 1], whole[record + 2], whole[record + 3], whole[record + 4]
+    omega, spin = real[twist + first + 2], real[twist + second + 2]
+    theta = real[pose + second + 2] - real[pose + first + 2]
+    place, once, twice, tangent, turning = contact(whole, real, cells, which, theta)
+    angle = real[pose + first + 2]
+    frame = complex(math.cos(angle), math.sin(angle))
+    place, once, twice, tangent = frame * place, frame * once, frame * twice, frame * tangent
+    relative = spin - omega
+    x, y = real[pose + second] - real[pose + first], real[pose + second + 1] - real[pose + first + 1]
+    apart = complex(x, y) - place
+    x, y = real[twist + second] - real[twist + first], real[twist + second + 1] - real[twist + first + 1]
+    slip = complex(x, y) - 1j * omega * place - relative * once
+    forced = -omega * omega * place + 2j * omega * relative * once + relative * relative * twice
+    forced += 1j * (omega + relative * turning) * slip  # e_t turns too
+    at_first = once - 1j * place
+    for k in range(2):
+        e, gap, bias = whole[ENDS] + 6 * (row + k), whole[GAP] + row + k, whole[BIAS] + row + k
+        x, y = tangent.real, tangent.imag
+        real[e], real[e + 1], real[e + 2] = -x, -y, x * at_first.real + y * at_first.imag
+        real[e + 3], real[e + 4], real[e + 5] = x, y, -x * once.real - y * once.imag
+        real[gap] = x * apart.real + y * apart.imag
+        real[bias] = x * forced.real + y * forced.imag
+        tangent = -1j * tangent
+
+
+@inner
+def contact(whole, real, cells, which, theta):
+    """P, P', P'', the tangent e_t and its turning in a radian, in the first body's frame; NaN without a cell.
+
+    The constants of closed forms are told in `rolling_table`; in a table P'' is s' e_n - a, and the arm a is -i P'.
+    """
+    record, c = whole[ROLL_AT] + ROLL_RECORD * which, whole[ROLL_NUMBERS] + 2 * CONSTANTS * which
+    turn = complex(math.cos(theta), math.sin(theta))
+    if whole[record] == ON_LINE:
+        along, out = complex(real[c + 2], real[c + 3]), turn * complex(real[c + 4], real[c + 5])
+        place = complex(real[c], real[c + 1]) + along * (theta - real[c + 6]) - out
+        return place, along - 1j * out, out, along * (1 / abs(along)), 0.0
+    if whole[record] == ON_ROUND:
+        turning = real[c + 12]
+        angle = real[c + 10] + turning * (theta - real[c + 8])
+        tangent = complex(math.cos(angle), math.sin(angle))
+        radius, out = complex(real[c + 4], real[c + 5]) * tangent, turn * complex(real[c + 6], real[c + 7])
+        place = complex(real[c], real[c + 1]) + complex(real[c + 2], real[c + 3]) * tangent - out
+        return place, 1j * (radius - out), out - turning * radius, tangent, turning
+    position = theta / real[c]
+    index = math.floor(position) - whole[record + 1] if abs(position) < 1e15 else -1
+    if index < 0 or index >= whole[record + 2] or math.isnan(cells[whole[record + 3] + index, 0].real):
+        if not math.isnan(theta):
+            real[whole[TOLD] + WANTED_ROLL], real[whole[TOLD] + WANTED_ANGLE] = which, theta
+        lost = complex(math.nan, math.nan)
+        return lost, lost, lost, lost, math.nan
+    c = whole[record + 3] + index
+    u = theta - cells[c, 0].real
+    place = once = twice = thrice = 0j
+    for k in range(19, 13, -1):
+        place = place * u + cells[c, k]
+    for k in range(13, 8, -1):
+        once = once * u + cells[c, k]
+    for k in range(8, 2, -1):
+        twice = twice * u + cells[c, k]
+    for k in range(8, 3, -1):
+        thrice = thrice * u + (k - 3) * cells[c, k]
+    place, once = (place * u + cells[c, 2]) * u + cells[c, 1], (once * u + cells[c, 3]) * u + cells[c, 2]
+    normal = twice - 1j * once
+    length = abs(normal)
+    turning = (normal.conjugate() * (thrice - 1j * twice)).imag / (length * length)
+    return place, once, twice, normal * (1j / length), turning

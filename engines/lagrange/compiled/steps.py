@@ -1,0 +1,155 @@
+"""Accelerations, projections and steps of fixed size, for any mechanism and any explicit tableau."""
+
+from __future__ import annotations
+
+import math
+
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.rows import rows
+from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, solved
+from engines.lagrange.flat import (
+    ACCELERATION,
+    BIAS,
+    CHANGE,
+    COLUMNS,
+    DAMPING,
+    GAP,
+    GRAVITY,
+    HOLONOMIC_ROWS,
+    LACKING,
+    POSE,
+    POSE_UNIT,
+    RATE,
+    RIGHT,
+    ROWS,
+    SOFT,
+    STAGE_POSE,
+    STIFFNESS,
+    TOLD,
+    TWIST,
+    VELOCITY,
+    WANTED_ROLL,
+    WHICH,
+)
+
+# Newton's correction is squared by the next one: after one this small, in parts of the mechanism, the next is lost in
+# rounding.
+CLOSED = 1e-9
+
+
+@inner
+def free(whole, real, pose, twist, t, out):
+    """Accelerations of all forces but those of joints, to `out`: gravity. Springs and dampers belong here."""
+    for body in range(out, out + whole[COLUMNS] - 3, 3):
+        real[body], real[body + 1], real[body + 2] = real[whole[GRAVITY]], real[whole[GRAVITY] + 1], 0.0
+
+
+@inner
+def accelerated(whole, real, cells, pose, twist, t, out):
+    """Accelerations under all forces and the joints' reactions, to `out`; the rows and reactions there stay too."""
+    free(whole, real, pose, twist, t, out)
+    if whole[ROWS] == 0:
+        return
+    rows(whole, real, cells, pose, twist, t)
+    for row in range(whole[ROWS]):
+        value = real[whole[BIAS] + row] - along(whole, real, out, row)
+        if whole[SOFT] > 0:
+            slip = along(whole, real, twist, row) - real[whole[RATE] + row]
+            value -= real[whole[DAMPING] + row] * slip + real[whole[STIFFNESS] + row] * real[whole[GAP] + row]
+            value -= real[whole[LACKING] + row] * real[whole[BIAS] + row]
+        real[whole[RIGHT] + row] = value
+    whole[WHICH] = ALL
+    solved(whole, real)
+    for k in range(whole[COLUMNS]):
+        real[out + k] += real[whole[CHANGE] + k]
+
+
+@inner
+def projected(whole, real, cells, pose, twist, t, most):
+    """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most."""
+    if whole[ROWS] == 0:
+        return
+    holonomic = most if whole[HOLONOMIC_ROWS] > 0 else 0
+    which = HOLONOMIC if whole[HOLONOMIC_ROWS] < whole[ROWS] else ALL
+    for iteration in range(holonomic + 1):  # the last one for the twist
+        last, largest = iteration == holonomic, 0.0
+        rows(whole, real, cells, pose, twist, t)
+        for row in range(whole[ROWS]):
+            if last:
+                real[whole[RIGHT] + row] = along(whole, real, twist, row) - real[whole[RATE] + row]
+            else:
+                real[whole[RIGHT] + row] = real[whole[GAP] + row]
+        whole[WHICH] = ALL if last else which
+        solved(whole, real)
+        if last:
+            for k in range(whole[COLUMNS]):
+                real[twist + k] -= real[whole[CHANGE] + k]
+            return
+        for k in range(whole[COLUMNS]):
+            real[pose + k] -= real[whole[CHANGE] + k]
+            largest = max(largest, abs(real[whole[CHANGE] + k]) / real[whole[POSE_UNIT] + k])
+        if not largest > CLOSED:
+            holonomic = iteration + 1
+
+
+@inner
+def staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
+    """One stage of a tableau, from the state at these places: its velocity and its acceleration."""
+    columns = whole[COLUMNS]
+    velocity, acceleration = whole[VELOCITY] + stage * columns, whole[ACCELERATION] + stage * columns
+    for k in range(columns):
+        real[velocity + k], real[whole[STAGE_POSE] + k] = real[twist + k], real[pose + k]
+    for earlier in range(stage):
+        share = stages[stage, earlier] * dt
+        if share != 0:
+            for k in range(columns):
+                real[velocity + k] += share * real[whole[ACCELERATION] + earlier * columns + k]
+                real[whole[STAGE_POSE] + k] += share * real[whole[VELOCITY] + earlier * columns + k]
+    at = t + nodes[stage] * dt
+    accelerated(whole, real, cells, whole[STAGE_POSE], velocity, at, acceleration)
+
+
+@inner
+def combined(whole, real, weights, dt, pose, twist):
+    """Add to a state the weighted velocities and accelerations of the stages."""
+    columns = whole[COLUMNS]
+    for stage in range(len(weights)):
+        share = dt * weights[stage]
+        if share != 0:
+            for k in range(columns):
+                real[pose + k] += share * real[whole[VELOCITY] + stage * columns + k]
+                real[twist + k] += share * real[whole[ACCELERATION] + stage * columns + k]
+
+
+@inner
+def marched(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists):
+    """Steps of `dt` from the sample `begin` on, `every` of them a sample, into rows of poses and twists.
+
+    Without stages it is the semi-implicit Euler method. `project`: how often Newton's method may correct a step, 0 for
+    no projection. Gives the last sample that is done: all of them, that before a pose that is not finite, or that
+    before a contact that a table has no cell for (`WANTED_ROLL`).
+    """
+    columns, pose, twist, acceleration = whole[COLUMNS], whole[POSE], whole[TWIST], whole[ACCELERATION]
+    for k in range(columns):
+        real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
+    for sample in range(begin, len(poses) - 1):
+        for step in range(every):
+            t = (sample * every + step) * dt
+            if len(nodes) == 0:
+                accelerated(whole, real, cells, pose, twist, t, acceleration)
+                for k in range(columns):
+                    real[twist + k] += dt * real[acceleration + k]
+                    real[pose + k] += dt * real[twist + k]
+            else:
+                for stage in range(len(nodes)):
+                    staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+                combined(whole, real, weights, dt, pose, twist)
+            if project > 0:
+                projected(whole, real, cells, pose, twist, t + dt, project)
+            if real[whole[TOLD] + WANTED_ROLL] >= 0:
+                return sample
+        for k in range(columns):
+            if not math.isfinite(real[pose + k]):
+                return sample
+            poses[sample + 1, k], twists[sample + 1, k] = real[pose + k], real[twist + k]
+    return len(poses) - 1

@@ -1,0 +1,230 @@
+"""The row system J M^-1 J^T reaction = right, in its envelope: O(bodies) for a chain.
+
+The factor L D L^T needs no scaling, since scaling rows changes no digit of it; a pivot is compared with the row's own
+diagonal, and tells what part of the row the earlier ones leave. Where nothing is left the row follows from them, and
+its reaction is set to zero: what moves is the same. The product has the square of J's condition, so wherever a pivot is
+small, what the reactions miss of the right side is solved for once more, by J itself (corrected seminormal equations,
+Bjorck 1987).
+"""
+
+from __future__ import annotations
+
+import math
+
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.flat import (
+    CHANGE,
+    COLUMNS,
+    COMPLIANCE,
+    DEPENDENT,
+    ENDS,
+    FELT,
+    LEFT,
+    MATRIX,
+    MOBILITY,
+    PIVOT,
+    REACTION,
+    RIGHT,
+    ROW,
+    ROW_AT,
+    ROWS,
+    SMALLEST,
+    SOFT,
+    TERM,
+    TERM_AT,
+    TERMS,
+    TOLD,
+    WHICH,
+)
+
+# Pivots below which a row follows from others. Where rows are independent at the start: the rounding of the product,
+# times a thousand. Where some are not: their dependence is blurred by as much, squared, as joints are open in a step,
+# so this is RANK_TOLERANCE of `reference.row_system`.
+ROUNDING, BLURRED = 1e-13, 1e-9
+EASY = 1e-2  # above, rounding costs less than two digits, and nothing is corrected
+FEW_ROWS = 24  # the condition of a long chain shows in no pivot, so more rows than this are always corrected once
+MOST_CORRECTIONS = 4
+LEAST_FELT = 0.1  # see `softened`
+
+# Which rows are asked for; the others are kept apart, with a diagonal of one. It stands among the whole numbers, since
+# an argument that is a constant would have each function compiled once for every value.
+ALL, HOLONOMIC, RIGID = range(3)
+
+
+@inner
+def left_out(whole, real, row):
+    """Whether a row is not one of those that are asked for."""
+    which = whole[WHICH]
+    if which == HOLONOMIC:
+        return whole[whole[ROW_AT] + ROW * row + 2] == 0
+    return which == RIGID and real[whole[COMPLIANCE] + row] > 0
+
+
+@inner
+def assembled(whole, real):
+    """Fill the envelope with J M^-1 J^T."""
+    ends, mobility, matrix = whole[ENDS], whole[MOBILITY], whole[MATRIX]
+    for entry in range(matrix, whole[CHANGE]):
+        real[entry] = 0.0
+    for term in range(whole[TERM_AT], whole[TERM_AT] + TERM * whole[TERMS], TERM):
+        one, other, body = ends + whole[term + 1], ends + whole[term + 2], mobility + whole[term + 3]
+        real[matrix + whole[term]] += (
+            real[one] * real[body] * real[other]
+            + real[one + 1] * real[body + 1] * real[other + 1]
+            + real[one + 2] * real[body + 2] * real[other + 2]
+        )
+
+
+@inner
+def factorised(whole, real):
+    """Make the factor of what is assembled; the smallest pivot that is used, as a part of its row's diagonal."""
+    matrix, pivots, records = whole[MATRIX], whole[PIVOT], whole[ROW_AT]
+    limit = BLURRED if whole[DEPENDENT] > 0 else ROUNDING
+    smallest, record = 1.0, records
+    for row in range(whole[ROWS]):
+        first = whole[record + 3]
+        own = matrix + whole[record + 4] - first
+        if whole[WHICH] != ALL:
+            out = left_out(whole, real, row)
+            for column in range(first, row):
+                if out or left_out(whole, real, column):
+                    real[own + column] = 0.0
+            if out:
+                real[own + row] = 1.0
+        rest = diagonal = real[own + row]
+        for column in range(first, row):
+            begin = whole[records + ROW * column + 3]
+            other = matrix + whole[records + ROW * column + 4] - begin
+            value = real[own + column]
+            for k in range(max(first, begin), column):
+                value -= real[own + k] * real[other + k]
+            real[own + column] = value
+        for column in range(first, row):
+            value = real[own + column]
+            real[own + column] = value * real[pivots + column]
+            rest -= value * real[own + column]
+        if rest > limit * diagonal:
+            smallest = min(smallest, rest / diagonal)
+            real[pivots + row] = 1.0 / rest
+        else:
+            real[pivots + row] = 0.0 if rest <= limit * diagonal else math.nan
+        record += ROW
+    return smallest
+
+
+@inner
+def substituted(whole, real, right):
+    """Replace the vector at `right` by the solution of L D L^T x = right."""
+    rows, record, pivots = whole[ROWS], whole[ROW_AT], whole[PIVOT]
+    for row in range(rows):
+        own, value = whole[MATRIX] + whole[record + 4] - whole[record + 3], real[right + row]
+        for column in range(whole[record + 3], row):
+            value -= real[own + column] * real[right + column]
+        real[right + row] = value
+        record += ROW
+    for row in range(rows):
+        real[right + row] *= real[pivots + row]
+    for row in range(rows - 1, -1, -1):
+        record -= ROW
+        own, value = whole[MATRIX] + whole[record + 4] - whole[record + 3], real[right + row]
+        for column in range(whole[record + 3], row):
+            real[right + column] -= real[own + column] * value
+
+
+@inner
+def pushed(whole, real):
+    """Fill the change with M^-1 J^T reaction."""
+    change, end, record = whole[CHANGE], whole[ENDS], whole[ROW_AT]
+    for k in range(whole[COLUMNS]):
+        real[change + k] = 0.0
+    for row in range(whole[ROWS]):
+        value = real[whole[REACTION] + row]
+        for side in range(2):
+            body = change + whole[record + side]
+            real[body] += real[end] * value
+            real[body + 1] += real[end + 1] * value
+            real[body + 2] += real[end + 2] * value
+            end += 3
+        record += ROW
+    for k in range(whole[COLUMNS]):
+        real[change + k] *= real[whole[MOBILITY] + k]
+
+
+@inner
+def along(whole, real, vector, row):
+    """J of one row times the vector of columns that stands at `vector`."""
+    end, record = whole[ENDS] + 6 * row, whole[ROW_AT] + ROW * row
+    one, other = vector + whole[record], vector + whole[record + 1]
+    return (
+        real[end] * real[one]
+        + real[end + 1] * real[one + 1]
+        + real[end + 2] * real[one + 2]
+        + real[end + 3] * real[other]
+        + real[end + 4] * real[other + 1]
+        + real[end + 5] * real[other + 2]
+    )
+
+
+@inner
+def solved(whole, real):
+    """Fill the change with the least one, by mass, along which J changes by the right side, and its reactions."""
+    rows, reaction, left, told = whole[ROWS], whole[REACTION], whole[LEFT], whole[TOLD]
+    soft_rows = whole[SOFT] > 1 and whole[WHICH] == ALL
+    if soft_rows:
+        softened(whole, real)
+    else:
+        assembled(whole, real)
+    pivot = factorised(whole, real)
+    real[told + SMALLEST] = min(real[told + SMALLEST], pivot)
+    for row in range(rows):
+        real[reaction + row] = 0.0 if left_out(whole, real, row) else real[whole[RIGHT] + row]
+    substituted(whole, real, reaction)
+    pushed(whole, real)
+    if (pivot > EASY and rows <= FEW_ROWS) or soft_rows:
+        return  # reactions of soft rows miss the right side on purpose
+    before = math.inf
+    for _ in range(MOST_CORRECTIONS if pivot < EASY else 1):
+        largest = 0.0
+        for row in range(rows):
+            missing = real[whole[RIGHT] + row] - along(whole, real, whole[CHANGE], row)
+            real[left + row] = 0.0 if left_out(whole, real, row) else missing
+            largest = max(largest, real[left + row] * real[left + row] * real[whole[PIVOT] + row])
+        if not 0 < largest < 0.25 * before:
+            return
+        before = largest
+        substituted(whole, real, left)
+        for row in range(rows):
+            real[reaction + row] += real[left + row]
+        pushed(whole, real)
+
+
+@inner
+def softened(whole, real):
+    """Assemble, and add to the diagonal of each soft row its compliance, in parts of what the row feels.
+
+    That is its inverse inertia while the rigid rows hold: the diagonal of the Schur complement. Of a row that others
+    hold already LEAST_FELT is left, since engines take an estimate that knows no others.
+    """
+    rows, reaction, left = whole[ROWS], whole[REACTION], whole[LEFT]
+    assembled(whole, real)
+    whole[WHICH] = RIGID
+    factorised(whole, real)
+    for soft in range(rows):
+        if left_out(whole, real, soft):
+            for row in range(rows):
+                real[reaction + row] = 1.0 if row == soft else 0.0
+            pushed(whole, real)
+            felt = own = along(whole, real, whole[CHANGE], soft)
+            for row in range(rows):
+                rigid = not left_out(whole, real, row)
+                real[left + row] = along(whole, real, whole[CHANGE], row) if rigid else 0.0
+            substituted(whole, real, left)
+            for row in range(rows):
+                felt -= real[left + row] * along(whole, real, whole[CHANGE], row)
+            real[whole[FELT] + soft] = max(felt, LEAST_FELT * own)
+    whole[WHICH] = ALL
+    assembled(whole, real)
+    for row in range(rows):
+        record = whole[ROW_AT] + ROW * row
+        diagonal = whole[MATRIX] + whole[record + 4] + row - whole[record + 3]
+        real[diagonal] += real[whole[COMPLIANCE] + row] * real[whole[FELT] + row]

@@ -1,0 +1,181 @@
+"""A mechanism stepped by compiled code: the calls, the windows of tables, and what compiled code leaves to numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Softness
+from engines.lagrange.dynamics import PROJECTION_ITERATIONS
+from engines.lagrange.flat import (
+    ACCELERATION,
+    COLUMNS,
+    COMPLIANCE,
+    CONTROL,
+    DAMPING,
+    DEPENDENT,
+    LACKING,
+    MARCH,
+    REACT,
+    ROUNDED,
+    ROWS,
+    SOFT,
+    START_POSE,
+    START_TWIST,
+    STIFF,
+    STIFFNESS,
+    STOPPED,
+    TOLD,
+    WANTED_ANGLE,
+    WANTED_ROLL,
+    Flat,
+    flat,
+)
+from engines.lagrange.loading import compiled
+from engines.lagrange.rolls import NOT_TABULATED, Windows
+from engines.lagrange.tableaus import ADAPTIVE_DOP853, NONE, Tableau
+from reference.joints import Roll
+from reference.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+STEP_SHARE, LEAST_TOLERANCE = 0.1, 2e-15
+MOST_MOVES = 8  # of windows, for one sample
+
+
+@dataclass
+class Machine:
+    """A mechanism's arrays and the compiled function that steps them."""
+
+    mechanism: Mechanism
+    arrays: Flat
+    windows: Windows
+    run: Callable[..., int] = field(default_factory=compiled)
+
+    @classmethod
+    def of(cls, mechanism: Mechanism) -> Machine | None:
+        """None for a pair of curves that no table holds: only the reference's own contacts will do there."""
+        try:
+            arrays = flat(mechanism)
+        except (ValueError, ArithmeticError):  # curves that can't touch everywhere around the start
+            return None
+        rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
+        records = arrays.rolls
+        if np.any(records[:, 0] == NOT_TABULATED):
+            return None
+        return cls(mechanism, arrays, Windows(rolls, records))
+
+    def soften(self, softness: Softness, gives: NDArray[np.bool_]) -> None:
+        """Let the rows that `gives` (rows,) names give way by springs, dampers and a compliance."""
+        whole, real, place = self.arrays.whole, self.arrays.real, self.arrays.rows[gives]
+        whole[SOFT] = 2 if softness.compliance > 0 else 1
+        real[whole[STIFFNESS] + place], real[whole[DAMPING] + place] = softness.stiffness, softness.damping
+        real[whole[COMPLIANCE] + place], real[whole[LACKING] + place] = softness.compliance, not softness.complete
+
+    @property
+    def dependent(self) -> bool:
+        """Whether some rows follow from others at the start."""
+        return bool(self.arrays.whole[DEPENDENT])
+
+    @property
+    def left_to_numpy(self) -> bool:
+        """Whether the last call ended at a contact that no table holds."""
+        return self.told(WANTED_ROLL) >= 0
+
+    def warnings(self, tolerance: float) -> tuple[str, ...]:
+        """What the control of steps has to say after a run."""
+        found = []
+        if not np.isnan(self.told(STOPPED)):
+            found.append(
+                f"lagrange: the tolerance {tolerance:g} can't be held beyond {self.told(STOPPED):.6g} s: "
+                "steps become too small or too many; give a larger tolerance, or end the run there"
+            )
+        if not np.isnan(self.told(STIFF)):
+            found.append(f"lagrange: stiff from {self.told(STIFF):.6g} s on: stability and not accuracy sets the steps")
+        if self.told(ROUNDED) > 10 * tolerance:
+            found.append(
+                "lagrange: rows are so nearly dependent that rounding alone changes speeds by "
+                f"{self.told(ROUNDED):.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
+            )
+        return tuple(found)
+
+    def told(self, what: int) -> float:
+        """One of the numbers that compiled code leaves behind."""
+        return float(self.arrays.real[self.arrays.whole[TOLD] + what])
+
+    def empty(self, samples: int) -> tuple[Array, Array]:
+        """Poses and twists (samples + 1, columns), the first as at the start, the others NaN."""
+        whole, real, columns = self.arrays.whole, self.arrays.real, int(self.arrays.whole[COLUMNS])
+        poses, twists = np.full((2, samples + 1, columns), np.nan)
+        poses[0] = real[whole[START_POSE] : whole[START_POSE] + columns]
+        twists[0] = real[whole[START_TWIST] : whole[START_TWIST] + columns]
+        return poses, twists
+
+    def march(
+        self, tableau: Tableau, project: int, dt: float, every: int, begin: int, poses: Array, twists: Array
+    ) -> int:
+        """Steps of dt [s] from a sample on; the last sample that is done, before one that only numpy can do."""
+        return self._repeated(lambda at: self._call(MARCH, tableau, project, 0.0, dt, every, at, poses, twists), begin)
+
+    def control(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
+        """Steps of their own size between samples `spacing` [s] apart; as `march`.
+
+        A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
+        """
+        tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
+        return self._repeated(
+            lambda at: self._call(
+                CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists
+            ),
+            begin,
+        )
+
+    def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
+        """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt apart; NaN where not known."""
+        whole = self.arrays.whole
+        out = np.full((len(poses), whole[ROWS] + whole[COLUMNS]), np.nan)
+
+        def call(at: int) -> int:
+            return self._call(REACT, NONE, 0, 0.0, dt, 1, at, poses, twists, out)
+
+        if len(poses):
+            self._repeated(call, 0)
+        return out[:, self.arrays.rows], out[:, whole[ROWS] : -3].reshape(len(poses), -1, 3)
+
+    def _repeated(self, call: Callable[[int], int], begin: int) -> int:
+        """Call, and again after each move of a window, for as long as that helps."""
+        whole, real = self.arrays.whole, self.arrays.real
+        done, moves = begin, 0
+        while True:
+            real[whole[TOLD] + WANTED_ROLL] = -1.0
+            before, done = done, call(done)
+            moves = moves + 1 if done == before else 0
+            wanted = int(self.told(WANTED_ROLL))
+            # A body that turns through more than a window between two samples has lost its way.
+            if wanted < 0 or moves > MOST_MOVES or not self.windows.move(wanted, self.told(WANTED_ANGLE)):
+                return done
+
+    def _call(
+        self,
+        task: int,
+        tableau: Any,
+        project: int,
+        tolerance: float,
+        dt: float,
+        every: int,
+        begin: int,
+        poses: Array,
+        twists: Array,
+        out: Array | None = None,
+    ) -> int:
+        estimates, whole, real = ADAPTIVE_DOP853, self.arrays.whole, self.arrays.real
+        # Nothing of a run that was lost: NaN times the ground's mobility, zero, would stay in its acceleration.
+        real[whole[ACCELERATION] : whole[TOLD]] = 0.0
+        return self.run(
+            *(task, whole, real, self.windows.cells),
+            *(tableau.stages, tableau.weights, tableau.nodes, estimates.third, estimates.fifth, estimates.dense),
+            *(project, tolerance, dt, every, begin, poses, twists, poses if out is None else out),
+        )

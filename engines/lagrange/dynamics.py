@@ -1,0 +1,132 @@
+"""Exact multipliers in numpy: what runs without numba, and what the compiled code is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.linalg import get_lapack_funcs
+
+from engines.lagrange.tableaus import Tableau
+from reference.mechanism import Mechanism
+from reference.row_system import rank, solve_symmetric
+
+Array = NDArray[np.float64]
+
+PROJECTION_ITERATIONS = 8
+# Newton's method is quadratic: after a correction this small, in parts of the mechanism's length, the next would be
+# lost in rounding.
+CLOSED = 1e-9
+
+(_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
+
+
+class Dynamics:
+    """Accelerations and projections of one mechanism, arranged for speed: one call is one evaluation of the rows."""
+
+    def __init__(self, mechanism: Mechanism, baumgarte: float) -> None:
+        self.mechanism = mechanism
+        self.baumgarte = baumgarte  # 1/s; 0 for none
+        self.weight = 1 / mechanism.inertias.reshape(-1)
+        self.free_fall = mechanism.free_fall.reshape(-1)
+        self.holonomic = mechanism.holonomic
+        self.unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+        # Redundant rows (two wheels on one axle) make the row system singular; then the smallest reactions are taken.
+        rows = mechanism.rows(mechanism.pose)
+        self.redundant = rows.size > 0 and rank(rows, mechanism.length_scale) < rows.shape[0]
+
+    def _solve(self, rows: Array, right: Array) -> Array:
+        matrix = (rows * self.weight) @ rows.T
+        if not self.redundant:
+            _, solution, failed = _solve_positive(matrix, right, lower=True)
+            if not failed:
+                return solution
+        if not np.all(np.isfinite(matrix)):
+            return np.full_like(right, np.nan)
+        return solve_symmetric(matrix, right)
+
+    def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
+        """Accelerations (bodies, 3) under gravity and the joints' reactions."""
+        if not self.mechanism.row_count:
+            return self.mechanism.free_fall
+        if not np.all(np.isfinite(pose)):  # curves have no contact there
+            return np.full_like(pose, np.nan)
+        rows, reaction = self.reaction(pose, twist, t)
+        return (self.free_fall + self.weight * (rows.T @ reaction)).reshape(-1, 3)
+
+    def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
+        """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
+        mechanism = self.mechanism
+        rows = mechanism.rows(pose)
+        right = mechanism.bias(pose, twist) - rows @ self.free_fall
+        if self.baumgarte:
+            slip = rows @ twist.reshape(-1) - mechanism.rate
+            gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
+            right -= self.baumgarte * (2 * slip + self.baumgarte * gap)
+        return rows, self._solve(rows, right)
+
+    def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
+        """The nearest pose (Newton) and twist, in the metric of the mass matrix, that satisfy the joints."""
+        mechanism = self.mechanism
+        if not mechanism.row_count or not np.all(np.isfinite(pose)):
+            return pose, twist
+        if np.any(self.holonomic):
+            for _ in range(PROJECTION_ITERATIONS):
+                gap = mechanism.gap(pose, t)[self.holonomic]
+                rows = mechanism.rows(pose)[self.holonomic]
+                correction = self.weight * (rows.T @ self._solve(rows, gap))
+                pose = pose - correction.reshape(-1, 3)
+                if not np.max(np.abs(correction) / self.unit) > CLOSED:
+                    break
+        rows = mechanism.rows(pose)
+        slip = rows @ twist.reshape(-1) - mechanism.rate
+        return pose, twist - (self.weight * (rows.T @ self._solve(rows, slip))).reshape(-1, 3)
+
+
+Step = Callable[[Array, Array, float, float], tuple[Array, Array]]
+
+
+def semi_implicit_euler(dynamics: Dynamics) -> Step:
+    """Kick, then drift."""
+
+    def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
+        twist = twist + dt * dynamics.acceleration(pose, twist, t)
+        return pose + dt * twist, twist
+
+    return step
+
+
+def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
+    """One step of an explicit method."""
+    stages, weights, nodes = tableau
+
+    def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
+        velocity = np.empty((len(weights), *pose.shape))
+        acceleration = np.empty_like(velocity)
+        for i, node in enumerate(nodes):
+            velocity[i] = twist + dt * np.tensordot(stages[i, :i], acceleration[:i], 1)
+            stage_pose = pose + dt * np.tensordot(stages[i, :i], velocity[:i], 1)
+            acceleration[i] = dynamics.acceleration(stage_pose, velocity[i], t + node * dt)
+        return pose + dt * np.tensordot(weights, velocity, 1), twist + dt * np.tensordot(weights, acceleration, 1)
+
+    return step
+
+
+def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
+    """One interval between samples by DOP853 with steps of its own choice."""
+    allowed = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
+
+    def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
+        def rates(at: float, state: Array) -> Array:
+            own_pose, own_twist = state.reshape(2, -1, 3)
+            return np.concatenate([state[own_pose.size :], dynamics.acceleration(own_pose, own_twist, at).reshape(-1)])
+
+        start = np.concatenate([pose.reshape(-1), twist.reshape(-1)])
+        end: Any = solve_ivp(rates, (t, t + dt), start, "DOP853", t_eval=[t + dt], rtol=tolerance, atol=allowed)
+        state = end.y[:, -1] if end.success else np.full_like(start, np.nan)
+        return state.reshape(2, -1, 3)[0], state.reshape(2, -1, 3)[1]
+
+    return step

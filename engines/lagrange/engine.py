@@ -1,0 +1,239 @@
+"""Exact multipliers as an engine: its settings, its promises, and a run in compiled code or in numpy."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
+from engines.lagrange.compiled_run import Machine
+from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, adaptive, runge_kutta, semi_implicit_euler
+from engines.lagrange.loading import installed
+from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
+from engines.motions import is_prescribed, over_three
+from reference.joints import Joint
+from reference.kinds import Rule
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
+
+Array = NDArray[np.float64]
+Integrator = Literal["euler", "rk4", "dop853"]
+Stabilisation = Literal["none", "baumgarte", "projection"]
+Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 to below 1")]
+
+ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
+# Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
+BAUMGARTE_STEPS = 5.0
+# About the CPU time of a step of three bodies [s], from how often the rows are evaluated: compiled, and in numpy.
+STEP_COSTS: dict[bool, dict[Integrator, float]] = {
+    True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
+    False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
+}
+
+TABLEAUS = {"euler": NONE, "rk4": RK4, "dop853": FIXED_DOP853}
+
+
+@dataclass(frozen=True)
+class Lagrange(Valid):
+    """Ideal constraints by exact multipliers; raises ValueError for settings that don't exist.
+
+    integrator: "euler" (semi-implicit, order 1), "rk4" (order 4), "dop853" (order 8), all with the given fixed step;
+    stabilisation: "none" (the joints drift apart), "baumgarte" (a spring and damper tied to the step) or "projection".
+    tolerance: for "dop853" alone, relative and absolute: the steps are then adapted between samples and dt only says
+    where the samples stand.
+    compiled: in machine code where numba is installed; False: in numpy, which gives the same numbers up to rounding.
+    """
+
+    integrator: Integrator = "dop853"
+    stabilisation: Stabilisation = "projection"
+    tolerance: Tolerance | None = None
+    compiled: bool = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.tolerance is not None and (self.integrator != "dop853" or self.stabilisation == "baumgarte"):
+            raise InvalidMechanism(
+                "lagrange: a tolerance goes with dop853, without baumgarte: only those adapt their steps"
+            )
+
+    @property
+    def name(self) -> str:
+        return "lagrange"
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("numpy", "scipy", "numba") if self.in_machine_code else ("numpy", "scipy")
+
+    @property
+    def in_machine_code(self) -> bool:
+        """Whether runs are compiled."""
+        return self.compiled and installed()
+
+    @property
+    def family(self) -> str:
+        return "lagrange"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """The integrator's; a projection leaves no gap, and all of the motion is its own where nothing is free.
+
+        Baumgarte's spring is tied to the step, and turns a gap into an acceleration divided by the step squared: that
+        costs two orders, and the reactions all.
+        """
+        if self.tolerance is not None:
+            return Unpromised("its steps are its own: the error is that of its tolerance, whatever the step asked for")
+        order = ORDERS[self.integrator]
+        match self.stabilisation:
+            case "projection":
+                return Promise(EXACT) if is_prescribed(mechanism) else Promise(order, gap=EXACT, slip=EXACT)
+            case "baumgarte" if order == 1:
+                prescribed = Promise(2, rate=1, slip=1, energy=1, reaction=1)
+                return prescribed if is_prescribed(mechanism) else Promise(1, gap=2)
+            case "baumgarte" if order == 4:
+                return Promise(2, rate=1, slip=1, energy=1, reaction=0)
+            case "baumgarte":
+                return Promise(order - 2)
+        return Promise(order)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s], from how often the rows are evaluated; more without numba."""
+        return STEP_COSTS[self.in_machine_code][self.integrator] * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """This engine is nothing but the ideal constraint."""
+        return "engine"
+
+    @property
+    def variant(self) -> str:
+        adaptive, slow = " adaptive" * (self.tolerance is not None), " in numpy" * (not self.compiled)
+        return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """Baumgarte's springs, which close what the integrator opens; nothing else gives way here."""
+        if self.stabilisation != "baumgarte":
+            return None
+        rate = 1 / (BAUMGARTE_STEPS * dt)
+        return Softness(rate**2, 2 * rate, 0.0, (True,) * mechanism.row_count)
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> _LagrangeRun:
+        """A run with steps of dt [s]; raises ValueError for a step that is not a finite time above zero."""
+        return _LagrangeRun(self, mechanism, dt)
+
+
+class _LagrangeRun:
+    def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
+        self._engine, self._mechanism, self._dt, self._over = engine, mechanism, dt, False
+        self._baumgarte = 1 / (BAUMGARTE_STEPS * dt) if engine.stabilisation == "baumgarte" else 0.0
+        self._machine = Machine.of(mechanism) if engine.in_machine_code else None
+        if self._machine is not None and self._baumgarte:
+            # A spring and a damper in every row, at the border of overshooting.
+            soft = Softness(self._baumgarte**2, 2 * self._baumgarte, 0.0, (True,) * mechanism.row_count)
+            self._machine.soften(soft, np.ones(mechanism.row_count, dtype=bool))
+        self._dynamics = Dynamics(mechanism, self._baumgarte) if self._machine is None else None
+        count = len(mechanism.bodies)
+        self.size = Size(count, 3 * count, mechanism.row_count, mechanism.row_count)
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """The mechanism in numpy, made where compiled code has no say."""
+        if self._dynamics is None:
+            self._dynamics = Dynamics(self._mechanism, self._baumgarte)
+        return self._dynamics
+
+    def _step(self) -> Step:
+        if self._engine.tolerance is not None:
+            return adaptive(self.dynamics, self._engine.tolerance)
+        if self._engine.integrator == "euler":
+            return semi_implicit_euler(self.dynamics)
+        return runge_kutta(self.dynamics, TABLEAUS[self._engine.integrator])
+
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
+        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        self._mechanism.require_room(samples)
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+        shape = (samples + 1, *self._mechanism.pose.shape)
+        t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
+        started = time.process_time()
+        with np.errstate(all="ignore"):  # a diverging run is a result, told by its numbers
+            if self._machine is None:
+                poses, twists = np.full((2, *shape), np.nan)
+                poses[0], twists[0] = self._mechanism.pose, self._mechanism.twist
+                self._in_numpy(poses, twists, 0, every)
+                stepping, warnings = time.process_time() - started, ()
+            else:
+                columns, fast = self._machine.empty(samples)
+                done = self._in_machine_code(self._machine, columns, fast, every)
+                poses, twists = (part[:, :-3].reshape(shape) for part in (columns, fast))
+                if self._machine.left_to_numpy:
+                    self._in_numpy(poses, twists, done, every)
+                stepping = time.process_time() - started
+                warnings = self._machine.warnings(self._engine.tolerance) if self._engine.tolerance is not None else ()
+            return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping, warnings)
+
+    def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
+        """Fill samples; gives the last that is done."""
+        if self._engine.tolerance is not None:
+            return machine.control(self._engine.tolerance, self._dt * every, 0, poses, twists)
+        project = PROJECTION_ITERATIONS if self._engine.stabilisation == "projection" else 0
+        return machine.march(TABLEAUS[self._engine.integrator], project, self._dt, every, 0, poses, twists)
+
+    def _in_numpy(self, poses: Array, twists: Array, begin: int, every: int) -> None:
+        """Fill samples from one on that is there."""
+        step, pose, twist = self._step(), poses[begin], twists[begin]
+        steps, dt = (1, self._dt * every) if self._engine.tolerance is not None else (every, self._dt)
+        for sample in range(begin, len(poses) - 1):
+            for i in range(steps):
+                t = (sample * steps + i) * dt
+                pose, twist = step(pose, twist, t, dt)
+                if self._engine.stabilisation == "projection":
+                    pose, twist = self.dynamics.project(pose, twist, t + dt)
+            if not np.all(np.isfinite(pose)):
+                return
+            poses[sample + 1], twists[sample + 1] = pose, twist
+
+    def _reactions(self, t: Array, poses: Array, twists: Array) -> Array:
+        """Of every sample (samples, rows); where rows are dependent, the smallest, as `Mechanism.reaction` has them."""
+        mechanism = self._mechanism
+        reactions = np.full((len(t), mechanism.row_count), np.nan)
+        alive = np.all(np.isfinite(poses) & np.isfinite(twists), axis=(1, 2))
+        if not mechanism.row_count or not np.any(alive):
+            return reactions
+        if self._machine is not None:
+            last = len(t) - int(np.argmax(alive[::-1]))
+            parts = (np.zeros((last, 3 * len(mechanism.bodies) + 3)) for _ in range(2))
+            columns, fast = parts
+            columns[:, :-3], fast[:, :-3] = poses[:last].reshape(last, -1), twists[:last].reshape(last, -1)
+            reactions[:last], accelerations = self._machine.reactions(float(t[1]), columns, fast)
+            if not self._machine.left_to_numpy:
+                if self._machine.dependent:
+                    reactions[:last] = mechanism.reaction(poses[:last], accelerations)
+                return reactions
+        states = zip(t[alive], poses[alive], twists[alive], strict=True)
+        if self.dynamics.redundant:
+            accelerations = np.array([self.dynamics.acceleration(pose, twist, at) for at, pose, twist in states])
+            reactions[alive] = mechanism.reaction(poses[alive], accelerations)
+        else:
+            reactions[alive] = [self.dynamics.reaction(pose, twist, at)[1] for at, pose, twist in states]
+        return reactions
+
+
+METHODS = tuple(
+    Lagrange(integrator, stabilisation)
+    for integrator in get_args(Integrator)
+    for stabilisation in get_args(Stabilisation)
+)
+# For every scene: orders 1, 4 and 8.
+VARIANTS = (Lagrange("euler", "projection"), Lagrange("rk4", "projection"), Lagrange("dop853", "projection"))
+TRUTH = Lagrange("dop853", "projection", tolerance=1e-13)
+"""The tightest that double precision carries: what scenes are checked against."""

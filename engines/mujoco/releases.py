@@ -1,0 +1,56 @@
+"""Releases of MuJoCo: which are known to move wrongly without a warning, and what older ones name otherwise.
+
+They run like all others, so that they can be compared; every motion of one that is known to be wrong says so.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+MARK = "known to be wrong"  # what rows and pages know such a release by
+# The flag that solves all rows as one. Before 3.3.1 there was none, and islands had to be asked for.
+NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))
+
+
+def known_wrong(version: str) -> str:
+    """Why the motions of a release can't be trusted, one sentence; empty for all others.
+
+    Before 3.7: the changelog of 3.7.0. 4.0.0: the changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767;
+    `engines.mujoco.factorisation` measures it.
+    """
+    numbers = tuple(int(part) for part in re.findall(r"\d+", version)[:3])
+    if numbers < (3, 7):
+        return (
+            f"MuJoCo {version} is {MARK}: it leaves the velocity term out of its loop constraints, which "
+            "3.7 and later have"
+        )
+    if numbers == (4, 0, 0):
+        return (
+            f"MuJoCo {version} is {MARK}: it factorises the Hessian of its Newton solver wrongly where the Jacobian of "
+            "the constraints is sparse, for some trees that branch, which 4.0.1 mended"
+        )
+    return ""
+
+
+def full_inertia(compiled: Any, data: Any) -> NDArray[np.float64]:
+    """The mass matrix (nv, nv) in the state of `data`; older releases ask for the sparse one by itself."""
+    dense = np.zeros((compiled.nv, compiled.nv))
+    try:
+        mujoco.mj_fullM(compiled, data, dense)
+    except TypeError:
+        mujoco.mj_fullM(compiled, dense, data.qM)
+    return dense
+
+
+def marks() -> list[str]:
+    """What every motion of the release that is imported has to say of it, as warnings of ours."""
+    told = known_wrong(mujoco.__version__)
+    return [f"ours: {told}"] if told else []

@@ -1,0 +1,213 @@
+"""A model written as MJCF text, for releases before 3.2.7, whose MjSpec is missing or has other names.
+
+It has the members of `mujoco.MjSpec` that the files beside it use, and no others. Numbers are written with all their
+digits; options are set in the compiled model, where their names are the same.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+from xml.etree import ElementTree as xml
+
+import mujoco
+import numpy as np
+
+# Attributes of MJCF by those of MjSpec, where they differ; None: it says nothing that the text needs.
+NAMES: dict[str, str | None] = {
+    "explicitinertial": None,
+    "objtype": None,
+    "type": None,
+    "trntype": None,
+    "target": None,
+    "solref_friction": "solreffriction",
+    "solimp_friction": "solimpfriction",
+    "geomname1": "geom1",
+    "geomname2": "geom2",
+}
+OWN = ("data", "_wraps", "_inside")  # what is written otherwise
+INERTIAL = {"ipos": "pos", "mass": "mass", "inertia": "diaginertia"}
+
+
+def new_specification() -> Any:
+    """An empty mujoco.MjSpec, or what stands for one in a release without it."""
+    found = mujoco.MjSpec() if hasattr(mujoco, "MjSpec") else None
+    return found if hasattr(found, "compiler") else Written()
+
+
+class Element:
+    """Anything that has attributes: those given, and those that are set afterwards."""
+
+    def __init__(self, **given: Any) -> None:
+        self.data = np.array([0.0, 1.0, *[0.0] * 9])  # of an equality: its polynomial, or its anchor
+        vars(self).update(given)
+
+    def attributes(self) -> dict[str, str]:
+        """Those that MJCF writes, as text."""
+        named = {NAMES.get(name, name): value for name, value in vars(self).items() if name not in OWN}
+        return {name: _text(value) for name, value in named.items() if name is not None and not _empty(value)}
+
+
+class Tendon(Element):
+    """A fixed tendon: a sum of joints' coordinates."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self._wraps: list[tuple[str, float]] = []
+
+    def wrap_joint(self, joint: str, coefficient: float) -> None:
+        self._wraps.append((joint, coefficient))
+
+    def write(self, parent: xml.Element) -> None:
+        added = xml.SubElement(parent, "fixed", self.attributes())
+        for joint, coefficient in self._wraps:
+            xml.SubElement(added, "joint", {"joint": joint, "coef": _text(coefficient)})
+
+
+class Actuator(Element):
+    """A velocity servo."""
+
+    def set_to_velocity(self, gain: float) -> None:
+        self.kv = gain
+
+    def write(self, parent: xml.Element) -> None:
+        kind = "site" if self.trntype == mujoco.mjtTrn.mjTRN_SITE else "joint"
+        xml.SubElement(parent, "velocity", {kind: self.target, **self.attributes()})
+
+
+class Body(Element):
+    """A body with its joints, geoms, sites and bodies."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self._inside: list[tuple[str, Any]] = []
+
+    def _add(self, kind: str, element: Any) -> Any:
+        self._inside.append((kind, element))
+        return element
+
+    def add_body(self, **given: Any) -> Body:
+        return self._add("body", Body(**given))
+
+    def add_joint(self, **given: Any) -> Element:
+        return self._add("joint", Element(**given))
+
+    def add_geom(self, **given: Any) -> Element:
+        return self._add("geom", Element(**given))
+
+    def add_site(self, **given: Any) -> Element:
+        return self._add("site", Element(**given))
+
+    def all(self, kind: str) -> list[Any]:
+        """The elements of a kind in this body and in those inside."""
+        own = [element for each, element in self._inside if each == kind]
+        return own + [found for each, body in self._inside if each == "body" for found in body.all(kind)]
+
+    def write(self, parent: xml.Element) -> None:
+        """This body's attributes and what is in it."""
+        for kind, element in self._inside:
+            if kind == "body":
+                inertial = {name: _text(getattr(element, own)) for own, name in INERTIAL.items()}
+                added = xml.SubElement(parent, "body", element.place())
+                xml.SubElement(added, "inertial", inertial)
+                element.write(added)
+            else:
+                word = {} if kind == "site" else {"type": _type(kind, element.type)}
+                xml.SubElement(parent, kind, {**element.attributes(), **word})
+
+    def place(self) -> dict[str, str]:
+        """The body's name and pose in its parent."""
+        return {name: _text(value) for name, value in vars(self).items() if name in ("name", "pos", "quat")}
+
+
+class Written:
+    """What stands for a mujoco.MjSpec."""
+
+    def __init__(self) -> None:
+        self.compiler = SimpleNamespace(degree=False)
+        self.option = SimpleNamespace(disableflags=0, integrator=None, jacobian=None)
+        self.worldbody = Body(name="world")
+        self._parts: dict[str, list[Any]] = {"equality": [], "tendon": [], "actuator": [], "contact": []}
+
+    def _add(self, section: str, element: Any) -> Any:
+        self._parts[section].append(element)
+        return element
+
+    def add_equality(self, **given: Any) -> Element:
+        return self._add("equality", Element(**given))
+
+    def add_tendon(self, **given: Any) -> Tendon:
+        return self._add("tendon", Tendon(**given))
+
+    def add_actuator(self, **given: Any) -> Actuator:
+        return self._add("actuator", Actuator(**given))
+
+    def add_pair(self, **given: Any) -> Element:
+        return self._add("contact", Element(**given))
+
+    def body(self, name: str) -> Body:
+        return next(body for body in self.worldbody.all("body") if body.name == name)
+
+    def joint(self, name: str) -> Element:
+        return next(joint for joint in self.worldbody.all("joint") if joint.name == name)
+
+    def text(self) -> str:
+        """The model as MJCF."""
+        root = xml.Element("mujoco")
+        xml.SubElement(root, "compiler", {"angle": "radian", "autolimits": "true"})
+        self.worldbody.write(xml.SubElement(root, "worldbody"))
+        for section, elements in self._parts.items():
+            parent = xml.SubElement(root, section)
+            for element in elements:
+                if section == "equality":
+                    xml.SubElement(parent, *_equality(element))
+                elif section == "contact":
+                    xml.SubElement(parent, "pair", element.attributes())
+                else:
+                    element.write(parent)
+        return xml.tostring(root, encoding="unicode")
+
+    def compile(self) -> Any:
+        """The mujoco.MjModel. Raises ValueError where MuJoCo refuses it."""
+        compiled = mujoco.MjModel.from_xml_string(self.text())
+        for name, value in vars(self.option).items():
+            if value is not None:
+                setattr(compiled.opt, name, value)
+        return compiled
+
+
+def _equality(element: Element) -> tuple[str, dict[str, str]]:
+    """(its tag, its attributes): MJCF names what is equal by its kind."""
+    told = element.attributes()
+    first, second = told.pop("name1"), told.pop("name2", None)
+    match element.type:
+        case mujoco.mjtEq.mjEQ_CONNECT:
+            return "connect", told | {"body1": first, "body2": second or "world", "anchor": _text(element.data[:3])}
+        case mujoco.mjtEq.mjEQ_JOINT:
+            kind = "joint"
+        case _:
+            kind = "tendon"
+    others = {f"{kind}2": second} if second else {}
+    return kind, told | {f"{kind}1": first, "polycoef": _text(element.data[:5])} | others
+
+
+def _type(kind: str, value: Any) -> str:
+    """'hinge' of mjJNT_HINGE, 'plane' of mjGEOM_PLANE."""
+    kinds = mujoco.mjtJoint if kind == "joint" else mujoco.mjtGeom
+    return kinds(value).name.split("_")[1].lower()
+
+
+def _empty(value: Any) -> bool:
+    return value is None or (isinstance(value, str) and not value)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Sequence | np.ndarray):
+        return " ".join(_text(each) for each in value)
+    return repr(int(value)) if isinstance(value, int | np.integer) else repr(float(value))

@@ -1,0 +1,59 @@
+"""The poses that a motion is expected to pass: sweeps are counted for the worst of them, not for the start alone.
+
+They are those of a rough run of the engine itself, with soft joints and long steps, whose errors don't matter here: a
+mechanism that comes near a singular position is swept as that position needs it. Sixteen poses are looked at, as one of
+them costs as much as some hundred steps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+
+from engines import Unsupported
+from engines.pymunk.contraction import DENSE, contraction, contraction_at
+from engines.pymunk.joints.roll import SHIPPED_CONTACT
+from engines.pymunk.model import Settings, build_model
+from engines.pymunk.running import record
+from reference.mechanism import Mechanism
+from reference.validation import NonNegative, validated
+
+POSES, FEW_POSES = 16, 2  # for up to DENSE rows, and beyond
+ROUGH = 20  # steps in one radian of the fastest motion that is promised
+MOST_STEPS = 4096
+# Of a gap that is left after a step, with ten sweeps: no mechanism was found that explodes with it.
+SOFT = Settings(
+    iterations=10, error_bias=0.9, unit=1.0, skate="groove", roll="pivot", slot="exact", contact=SHIPPED_CONTACT
+)
+TORN = 0.05  # of the mechanism's length: from there on it is another mechanism
+
+_latest: list[tuple[Mechanism, float, float]] = []  # an extrapolation asks for the same several times in a row
+
+
+@validated
+def worst_contraction(mechanism: Mechanism, duration: NonNegative) -> float:
+    """The largest `contraction` over the start and what a rough run passes within `duration` [s]."""
+    if not (_latest and _latest[0][0] is mechanism and _latest[0][1] == duration):
+        passed = _poses(mechanism, duration)
+        found = max([contraction(mechanism), *(contraction_at(mechanism, pose) for pose in passed)])
+        _latest[:] = [(mechanism, duration, found)]
+    return _latest[0][2]
+
+
+def _poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
+    if duration == 0 or not mechanism.joints:
+        return []
+    count = POSES if mechanism.row_count <= DENSE else FEW_POSES
+    every = max(1, ceil(min(duration / mechanism.time_scale * ROUGH, MOST_STEPS) / count))
+    dt = duration / (every * count)
+    try:
+        with np.errstate(all="ignore"):
+            model = build_model(mechanism, replace(SOFT, unit=dt))
+            poses = record(model, dt, count, every, raw=True).pose[1:]
+            gap = mechanism.gap(poses, dt * every * np.arange(1, count + 1))
+    except (Unsupported, ValueError, ArithmeticError):  # it went where a joint is not defined
+        return []
+    sound = np.isfinite(poses).all(axis=(1, 2)) & ~(np.abs(gap) > TORN * mechanism.length_scale).any(axis=1)
+    return list(poses[sound])

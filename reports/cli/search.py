@@ -1,0 +1,177 @@
+"""`crosscheck search`: random mechanisms in engines, held against the law, other descriptions and the judge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.cli.interruption import kept
+from reports.cli.options import FOLDER, SEARCH, STORE, EngineName, Folder, VariantName, with_folder
+from reports.grid.ending import BadInput
+
+if TYPE_CHECKING:
+    from reports.cli.terminal import Terminal
+    from reports.grid.store import Store
+    from reports.grid.tasks import Answer
+    from reports.search.chunk import Asked, Chunk
+    from reports.search.subjects import Subject
+
+LIMIT = 120.0  # CPU seconds of one piece
+WAVE = 4  # pieces for each worker between two looks at the clock
+ALL_ORACLES = "instant,relations,motions"
+
+
+def search(
+    engine: EngineName = None,
+    variant: VariantName = None,
+    cases: Annotated[int, typer.Option(min=1, help="Cases for each engine.")] = 200,
+    seconds: Annotated[float | None, typer.Option(help="Begin nothing after this time; what is done is kept.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Another seed gives other mechanisms.")] = 1,
+    kinds: Annotated[
+        str | None, typer.Option(help="Of joints: pin,slot,skate,roll,drive; of MuJoCo alone: connect,weld,gear,...")
+    ] = None,
+    decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
+    oracles: Annotated[str, typer.Option(help=f"What is asked: {ALL_ORACLES}.")] = ALL_ORACLES,
+    release: Annotated[
+        str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")] = None,
+    results: Folder = FOLDER,
+) -> None:
+    """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
+    from reports.cli.terminal import Terminal
+    from reports.grid.store import Store
+    from reports.search.chunk import as_words, asked, chunks
+    from reports.search.subjects import ORACLES
+
+    if seconds is not None and not 0 < seconds < float("inf"):
+        raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
+    subjects = chosen(engine, variant) if release is None else [of_release(release, engine, variant)]
+    known = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
+    wanted = listed("--kinds", kinds, known) if kinds is not None else known
+    subjects = [one for one in subjects if {*wanted} & {*one.kinds}]
+    pieces = chunks(subjects, seed, cases, wanted, decades, listed("--oracles", oracles, ORACLES))
+    folder = results / SEARCH
+    terminal = Terminal(150)
+    with Store(folder / STORE) as store:
+        store.remember(as_words(piece) for piece in pieces)
+        run_pieces(terminal, store, pieces, seconds, workers)
+        told = list(asked(stored(store, pieces)))
+        print_summary(terminal, told)
+        shrink_and_write(terminal, store, told, folder, workers)
+    terminal.say(f"{len(told)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
+
+
+def listed(option: str, words: str, known: Sequence[str]) -> tuple[str, ...]:
+    """Words with commas between them, each of them known. Raises BadInput."""
+    out = tuple(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
+    if not out or not {*out} <= {*known}:
+        raise BadInput(f"{option} is {words!r}; it must be one or some of {', '.join(known)}, with commas between them")
+    return out
+
+
+def chosen(engine: str | None, variant: str | None) -> list[Subject]:
+    """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
+    from engines.loading import is_reference
+    from engines.registry import ENGINES, VARIANTS, load
+    from reports.cli.selection import choose_engines
+    from reports.search.subjects import Adapted, Alone
+
+    if variant == "alone" and engine in (None, "mujoco"):
+        return [Alone()]
+    if engine is not None and is_reference(engine):
+        try:
+            return [Adapted(one) for one in choose_engines(None, variant, load(engine))]
+        except ValueError as error:
+            raise BadInput(str(error)) from None
+    engines = choose_engines(engine, variant, VARIANTS if variant is None else ENGINES)
+    alone: list[Subject] = [Alone()] if variant is None and engine in (None, "mujoco") else []
+    return [*(Adapted(one) for one in engines), *alone]
+
+
+def of_release(release: str, engine: str | None, variant: str | None) -> Subject:
+    """MuJoCo alone in another release. Raises BadInput where it can't be had, or something else is asked for too."""
+    from reports.search.release import DISTRIBUTIONS
+    from reports.search.subjects import Alone
+    from reports.versions.installed import installed
+
+    if engine not in (None, "mujoco") or variant not in (None, "alone"):
+        raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
+    installed(DISTRIBUTIONS, release)
+    return Alone(release)
+
+
+def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
+    """The answers to these pieces, and to those of their cases that had to be asked one by one."""
+    from reports.search.chunk import lost
+
+    whole = store.answers(pieces)
+    answers = {piece: whole[piece] for piece in pieces if piece in whole}
+    singles = lost(answers)
+    single = store.answers(singles)
+    return answers | {piece: single[piece] for piece in singles if piece in single}
+
+
+def run_pieces(
+    terminal: Terminal, store: Store, pieces: Sequence[Chunk], seconds: float | None, workers: int | None
+) -> None:
+    """Run what is not stored, in waves, until the time is over; a case that ends its process is found and kept."""
+    from reports.cli.terminal import progress
+    from reports.grid.pool import worker_count
+    from reports.grid.running import missing, run_into
+    from reports.search.chunk import lost
+
+    crew = workers or worker_count(timed=False)
+    begin = monotonic()
+    waiting = list(missing(pieces, store, LIMIT))
+    with kept() as check:
+        try:
+            with progress(terminal, len(waiting), check) as (done, watch):
+                while waiting and (seconds is None or monotonic() - begin < seconds):
+                    wave, waiting = waiting[: WAVE * crew], waiting[WAVE * crew :]
+                    run_into(store, wave, limit=LIMIT, workers=crew, done=done, watch=watch)
+                    singles = missing(lost(stored(store, wave)), store, LIMIT)
+                    run_into(store, singles, limit=LIMIT, workers=crew, watch=watch)
+            check()
+        except KeyboardInterrupt:
+            left = len(missing(pieces, store, LIMIT))
+            terminal.say(f"Stopped: {len(pieces) - left} of {len(pieces)} pieces are stored; the next search goes on.")
+            raise
+
+
+def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
+    """A line for each check of each subject: how many cases, the errors' distribution, how many are faults."""
+    from reports.cli.terminal import print_table
+    from reports.search.summary import HEADER, summary
+
+    print_table(terminal, "Errors, each relative to the largest of what it is an error of", HEADER, summary(told), 2)
+
+
+def shrink_and_write(
+    terminal: Terminal, store: Store, told: Sequence[Asked], folder: Path, workers: int | None
+) -> None:
+    """Make some findings of each check smaller, and write them as recipes and scripts."""
+    from reports.cli.terminal import progress
+    from reports.grid.files import write_whole
+    from reports.grid.pool import worker_count
+    from reports.grid.running import missing, run_into
+    from reports.search.shrunk import Shrink, files_of, line_of, worst_of
+
+    tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
+    if not tasks:
+        terminal.say("Nothing was found.")
+        return
+    with kept() as check:
+        with progress(terminal, len(missing(tasks, store, LIMIT)), check) as (done, watch):
+            run_into(store, tasks, limit=LIMIT, workers=workers or worker_count(timed=False), done=done, watch=watch)
+        check()
+    texts = {}
+    answers = store.answers(tasks)
+    for task in tasks:
+        terminal.say(f"{task.label}: {line_of(answers[task])}")
+        texts |= {folder / name: text for name, text in files_of(task, answers[task]).items()}
+    write_whole(texts, "the findings that were there stay as they were")

@@ -1,0 +1,1 @@
+"""Faults of released engines, each with a script that shows it and the wrong formula that reproduces it."""

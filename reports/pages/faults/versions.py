@@ -1,0 +1,107 @@
+"""What the scripts find with released versions: read from a file, which this module writes when it is run.
+
+python -m reports.pages.faults.versions    # installs each version in the user's cache, runs every script, writes
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.pages.faults.scripts import FOLDER
+
+RECORDED = Path(__file__).parent / "versions.csv"
+FIELDS = ("script", "package", "version", "expected", "found")
+MUJOCO = ("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality")
+PYMUNK = ("pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy")
+# (distribution, version, scripts): the ends of what is offered, and both sides of every change.
+RELEASES = (
+    *(("mujoco", version, MUJOCO) for version in ("3.0.0", "3.6.0", "3.7.0", "3.17.0")),
+    *(("mujoco-core", version, MUJOCO) for version in ("4.0.0", "4.0.1")),
+    *(("pymunk", version, PYMUNK) for version in ("6.4.0", "7.0.0", "7.3.1")),
+)
+# Printed by a process of its own behind a script's last line.
+TOLD = '\nprint("told", repr(float(expected)), repr(float(found)))\n'
+
+
+@dataclass(frozen=True)
+class Found:
+    """What one script expects and finds with one version."""
+
+    script: str
+    package: str
+    version: str
+    expected: float
+    found: float
+
+    @property
+    def right(self) -> bool:
+        """Within what MuJoCo's softness costs at the stiffest setting, 1e-4."""
+        return abs(self.found - self.expected) <= 2e-4 * max(1.0, abs(self.expected))
+
+
+def recorded() -> tuple[Found, ...]:
+    """What the file says."""
+    with RECORDED.open(encoding="utf-8", newline="") as file:
+        return tuple(
+            Found(row["script"], row["package"], row["version"], float(row["expected"]), float(row["found"]))
+            for row in csv.DictReader(file)
+        )
+
+
+def _place(package: str, version: str) -> Path:
+    base = os.environ.get("PLANAR_CROSSCHECK_CACHE") or Path.home() / ".cache" / "planar-crosscheck"
+    python = f"{sys.implementation.cache_tag}-{sysconfig.get_platform()}"
+    return Path(base) / "versions" / python / f"{package}-{version}" / "site-packages"
+
+
+def _installed(package: str, version: str) -> Path:
+    """The version's own folder, filled by pip at the first time. Raises SystemExit, in one line, if pip can't."""
+    folder = _place(package, version)
+    if not folder.is_dir():
+        aside = folder.with_name("part")
+        command = ["pip", "install", "--quiet", "--no-deps", "--only-binary", ":all:", "--target", str(aside)]
+        run = subprocess.run(
+            [sys.executable, "-m", *command, f"{package}=={version}"], capture_output=True, text=True, check=False
+        )
+        if run.returncode:
+            raise SystemExit(f"{package} {version} can't be installed: {run.stderr.strip().splitlines()[-1]}")
+        aside.rename(folder)
+    return folder
+
+
+def found_with(package: str, version: str, scripts: Iterable[str]) -> list[Found]:
+    """Each script in a process of its own that imports this version. Raises SystemExit if the script fails."""
+    folder = _installed(package, version)
+    # Older MuJoCo would import its windows together with itself.
+    environment = {**os.environ, "PYTHONPATH": str(folder), "MUJOCO_GL": "disable", "PYTHONDONTWRITEBYTECODE": "1"}
+    out = []
+    for name in scripts:
+        text = (FOLDER / f"{name}.py").read_text(encoding="utf-8") + TOLD
+        run = subprocess.run(
+            [sys.executable, "-c", text], capture_output=True, text=True, env=environment, cwd=folder, check=False
+        )
+        words = run.stdout.split()[-3:]
+        if run.returncode or words[:1] != ["told"]:
+            raise SystemExit(f"{name} with {package} {version}: {(run.stderr or run.stdout).strip().splitlines()[-1]}")
+        out.append(Found(name, package, version, float(words[1]), float(words[2])))
+    return out
+
+
+def main() -> None:
+    """Write the file anew; nothing is written unless every version could be run."""
+    rows = [found for release in RELEASES for found in found_with(*release)]
+    with RECORDED.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(FIELDS)
+        writer.writerows((row.script, row.package, row.version, repr(row.expected), repr(row.found)) for row in rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""What changed in engines from release to release."""

@@ -1,0 +1,135 @@
+"""A search in pieces: some cases of one subject each, run in a supervised process and kept like any other answer.
+
+A piece whose process ends, or whose time is used up, is asked again case by case, so that the case which does it is
+known and the others are not lost.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engines import Engine
+from reports.grid.outcomes import Outcome
+from reports.grid.tasks import Answer, Task, Values
+from reports.search.subjects import Adapted, Subject, Told
+
+SIZE = 10  # cases in a piece: a second or some
+
+
+@dataclass(frozen=True)
+class Chunk(Task):
+    """Cases `first` to `first + count - 1` of a seed."""
+
+    subject: Subject
+    seed: int
+    first: int
+    count: int
+    kinds: tuple[str, ...]
+    decades: int = 0
+    oracles: tuple[str, ...] = ("instant",)
+
+    @property
+    def cost(self) -> float:
+        return 0.3 * self.count
+
+    @property
+    def label(self) -> str:
+        return f"{self.subject.name}, case {self.first}"
+
+    @property
+    def engine(self) -> Engine | None:
+        return self.subject.engine if isinstance(self.subject, Adapted) else None
+
+    def run(self) -> Values:
+        told = []
+        for number in range(self.first, self.first + self.count):
+            case: Any = self.subject.draw(self.seed, number, self.kinds, self.decades)
+            told.append((number, case.kinds, self.subject.ask(case, number, self.oracles)))
+        checks = sorted({check for _, _, one in told for check in one.errors})
+        errors = np.full((len(told), len(checks), 2), np.nan)
+        for row, (_, _, one) in enumerate(told):
+            for check, pair in one.errors.items():
+                errors[row, checks.index(check)] = pair
+        words = [[list(kinds), list(one.not_asked), one.words] for _, kinds, one in told]
+        return {"checks": json.dumps(checks), "errors": errors, "words": json.dumps(words)}
+
+    @property
+    def single(self) -> tuple[Chunk, ...]:
+        """Its cases, each a piece of its own."""
+        numbers = range(self.first, self.first + self.count)
+        return tuple(
+            Chunk(self.subject, self.seed, number, 1, self.kinds, self.decades, self.oracles) for number in numbers
+        )
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A case, and what was found of it."""
+
+    chunk: Chunk
+    number: int
+    kinds: tuple[str, ...]
+    told: Told
+
+
+def asked(answers: Mapping[Chunk, Answer]) -> Iterator[Asked]:
+    """The cases of these pieces. One whose process ended is a fault without a number."""
+    for chunk, answer in answers.items():
+        if not answer.finished:
+            if chunk.count == 1:
+                fault = answer.outcome in (Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED)
+                errors = {str(answer.outcome): (np.inf, 0.0)} if fault else {}
+                yield Asked(chunk, chunk.first, chunk.kinds, Told(errors, words=answer.sentence))
+            continue
+        checks, pairs = json.loads(str(answer.values["checks"])), answer.array("errors")
+        words = json.loads(str(answer.values["words"]))
+        for row, (kinds, left, said) in enumerate(words):
+            errors = {
+                check: (float(pairs[row, column, 0]), float(pairs[row, column, 1]))
+                for column, check in enumerate(checks)
+                if not np.isnan(pairs[row, column, 1])
+            }
+            yield Asked(chunk, chunk.first + row, tuple(kinds), Told(errors, tuple(left), said))
+
+
+def chunks(
+    subjects: Sequence[Subject],
+    seed: int,
+    cases: int,
+    kinds: Sequence[str],
+    decades: int,
+    oracles: tuple[str, ...],
+    begin: int = 0,
+) -> list[Chunk]:
+    """The pieces of the cases `begin` to `cases - 1`, those of all subjects in turn; all kinds of a subject if none."""
+    out = []
+    for first in range(begin, cases, SIZE):
+        count = min(SIZE, cases - first)
+        for subject in subjects:
+            own = tuple(kind for kind in subject.kinds if kind in kinds) or subject.kinds
+            out.append(Chunk(subject, seed, first, count, own, decades, oracles))
+    return out
+
+
+def lost(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
+    """The cases, one by one, of pieces whose process ended or whose time was used up."""
+    ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
+    return [single for chunk in ended for single in chunk.single]
+
+
+def as_words(chunk: Chunk) -> str:
+    """What finds a piece again: its numbers, and the subject's name."""
+    numbers = [chunk.seed, chunk.first, chunk.count, list(chunk.kinds), chunk.decades, list(chunk.oracles)]
+    return json.dumps([chunk.subject.name, *numbers])
+
+
+def from_words(words: str, subjects: Sequence[Subject]) -> Chunk | None:
+    """The piece that `as_words` told; None where its subject is not among these."""
+    name, seed, first, count, kinds, decades, oracles = json.loads(words)
+    subject = next((one for one in subjects if one.name == name), None)
+    return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None

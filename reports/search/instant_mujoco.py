@@ -1,0 +1,167 @@
+"""MuJoCo's accelerations and forces at one instant against the law that its own model declares.
+
+The judge has the mechanism's own rows J and their change, and of MuJoCo only what it says of its constraints: how stiff
+a row is (`efc_KBIP`), how far it gives way (`efc_R`), and the armature of driven coordinates. MuJoCo's own Jacobian is
+held against ours on the way: each of its rows has to be one of them, seen in the coordinates of its tree.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Softness
+from engines.mujoco import MuJoCo
+from engines.mujoco.joints.skate import STEPWISE
+from engines.mujoco.model import Model
+from reference.joints import Skate
+from reference.mechanism import Mechanism
+from reports.search.law import Fault, NotAsked, constrained, difference, driving_force, force_difference
+
+Array = NDArray[np.float64]
+
+STEP = 0.01  # of the mechanism's own time scale
+STEPS = 5  # after which the second instant lies: at the first one every coordinate of the tree is zero
+# Of a row's length: what the sums of a chain of ten bodies leave.
+SAME_ROW = 1e-9
+# Rounding, and what it becomes where a model is hardened: the primal solver adds J^T J / R to the inertia.
+LAW, ROUNDED = 1e-9, 1e-14
+
+
+def bound(engine: MuJoCo) -> float:
+    """The error, relative to the largest acceleration or force, above which something is wrong."""
+    return max(LAW, ROUNDED / engine.stiffness.softening)
+
+
+def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
+    """By what accelerations and reactions miss the law, relative to the largest of each, at the start and a bit later.
+
+    Raises NotAsked where the engine declares no law at an instant, Fault for a row that is lacking, and Unsupported.
+    """
+    dt = STEP * mechanism.time_scale
+    if engine.drive != "inertia" and any(joint.labels == ("torque",) for joint in mechanism.joints):
+        raise NotAsked(f"a drive by {engine.drive!r} obeys no law of an instant")
+    if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
+        raise NotAsked("a blade whose row is that of another pose obeys no law of an instant")
+    run = engine.build(mechanism, dt)
+    softness = engine.softness(mechanism, dt)
+    if softness is not None and not softness.complete:
+        raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
+    model = run.model
+    if model.halves:
+        raise NotAsked("a body that is cut into halves is another mechanism at one instant")
+    start = model.start()
+    told = run(1, STEPS)
+    if told.reset_at is not None or not np.isfinite(told.pose).all():
+        raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
+    if any("the solver missed" in warning for warning in told.warnings):
+        raise NotAsked("it says itself that its solver ended too early")
+    out = {"acceleration": 0.0, "reaction": 0.0}
+    with model.hooked():
+        for sample, data in enumerate((start, run.data)):
+            mujoco.mj_forward(model.compiled, data)
+            for name, value in _at(mechanism, model, data, softness, told.reaction[sample]).items():
+                out[name] = max(out[name], value)
+    return out
+
+
+def _at(mechanism: Mechanism, model: Model, data: Any, softness: Softness | None, reaction: Array) -> dict[str, float]:
+    """The errors of the state in `data`, to which `reaction` (rows,) was told."""
+    tree, address = model.tree, model.address
+    own = (values[address][None] for values in (data.qpos, data.qvel, data.qacc))
+    (pose,), (twist,), (change,) = tree.motion(*own)
+    rows = mechanism.rows(pose)
+    give, aimed = _declared(mechanism, model, data, rows, softness, pose, twist)
+    right = mechanism.bias(pose, twist) + aimed
+    law = constrained(rows, right, mechanism.inertias, mechanism.free_fall, give)
+    force = driving_force(mechanism, twist)
+    swing = np.abs(twist[:, 2]).max()
+    # What a motion needs is compared with gravity, and with what the rotations themselves ask for.
+    others = (mechanism.free_fall, swing * twist)
+    return {
+        "acceleration": difference(mechanism, change, law.motion, others),
+        "reaction": force_difference(mechanism, reaction, law.force, (force,)),
+    }
+
+
+def _declared(
+    mechanism: Mechanism, model: Model, data: Any, rows: Array, softness: Softness | None, pose: Array, twist: Array
+) -> tuple[Array, Array]:
+    """How the rows give way (rows, rows), and what they aim at beside their velocity term, both as MuJoCo declares."""
+    compiled = model.compiled
+    give, aimed = np.zeros((len(rows), len(rows))), np.zeros(len(rows))
+    in_tree = rows @ _directions(model, data)
+    gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
+    length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    # What the coordinates of the tree can't move at all is held by them.
+    loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length
+    lines = _jacobian(compiled, data)
+    seen, beside = model.address, [column for column in range(compiled.nv) if column not in model.address]
+    waiting = [number for number, line in enumerate(lines) if np.linalg.norm(line) > SAME_ROW]  # one lies across
+    begin = 0
+    for joint in mechanism.joints:
+        own = slice(begin, begin + joint.size)
+        begin = own.stop
+        if not loose[own].any():
+            continue
+        turned = np.flatnonzero(in_tree[own.start]) if mechanism.turning[own].all() else np.zeros(0, dtype=int)
+        if len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
+            # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
+            give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
+            continue
+        found = [number for number in waiting if _within(lines[number][seen], in_tree[own][:, seen])][: joint.size]
+        if len(found) < joint.size:
+            raise Fault(f"MuJoCo has {len(found)} constraints for {joint.name!r}, not {joint.size}")
+        waiting = [number for number in waiting if number not in found]
+        # MuJoCo's rows are these times ours.
+        factors = np.linalg.lstsq(in_tree[own][:, seen].T, lines[found][:, seen].T, rcond=None)[0].T
+        # A clock beside the tree, by which a drive is geared, gives way by the inverse of its own inertia.
+        clock = np.sum(lines[found][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
+        give[own, own] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[found] + clock) / model.unit)))
+        if softness is not None and _is_written(compiled, data.efc_id[found[0]]):
+            stiffness, damping = softness.stiffness, softness.damping  # a row that callbacks write
+        else:
+            stiffness, damping, impedance, _ = data.efc_KBIP[found[0]]
+            stiffness = stiffness * impedance
+        aimed[own] = -stiffness * gap[own] - damping * slip[own]
+    if waiting:
+        raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
+    return give, aimed
+
+
+def _is_written(compiled: Any, equality: int) -> bool:
+    """Whether callbacks write the row of an equality, and not MuJoCo."""
+    if compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON:
+        return compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row")
+    return bool(compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT)
+
+
+def _within(line: Array, rows: Array) -> bool:
+    """Whether a row is a sum of these."""
+    left = line - rows.T @ np.linalg.lstsq(rows.T, line, rcond=None)[0]
+    return float(np.linalg.norm(left)) <= SAME_ROW * float(np.linalg.norm(line))
+
+
+def _directions(model: Model, data: Any) -> Array:
+    """The twists (3 bodies, nv) that the coordinates' unit velocities are, in the pose of `data`."""
+    count = model.tree.coordinates
+    where = np.broadcast_to(data.qpos[model.address], (count, count))
+    _, twists, _ = model.tree.motion(where, np.eye(count), np.zeros((count, count)))
+    out = np.zeros((3 * len(model.mechanism.bodies), model.compiled.nv))
+    out[:, model.address] = twists.reshape(count, -1).T
+    return out
+
+
+def _jacobian(compiled: Any, data: Any) -> Array:
+    """MuJoCo's rows (rows, nv)."""
+    if not mujoco.mj_isSparse(compiled):
+        return data.efc_J.reshape(data.nefc, compiled.nv)
+    dense = np.zeros((data.nefc, compiled.nv))
+    mujoco.mju_sparse2dense(dense, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
+    return dense

@@ -1,0 +1,82 @@
+"""pymunk's velocities after a step against the law of its impulses: the nearest ones that the joints allow.
+
+The engine moves before it solves, so the rows are those of the pose after the step's drift; and a joint closes a part
+of its gap in a step, so that its points move towards each other. Sweeps are let converge: this is about what the joints
+are, not about how many sweeps a user takes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.pymunk import Pymunk
+from engines.pymunk.contraction import contraction
+from engines.pymunk.model import Model
+from engines.pymunk.running import Recording, record
+from reference.joints import Pin, Roll, Skate, Slot
+from reference.mechanism import Mechanism
+from reports.search.law import Fault, NotAsked, constrained, difference
+
+Array = NDArray[np.float64]
+
+STEP = 0.01  # of the mechanism's own time scale
+STEPS = 4
+LAW = 1e-9
+CONVERGED = 1e-13  # of the slowest mode, after the sweeps of one step
+MOST_SWEEPS = 20_000
+
+
+def bound(engine: Pymunk) -> float:
+    """The error, relative to the largest velocity, above which something is wrong; rounding makes a thousandth."""
+    return LAW
+
+
+def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
+    """By what velocities miss the law in the first steps, relative to the largest velocity.
+
+    Raises NotAsked where joints have no law of a step, or sweeps don't converge; Fault where the motion is lost.
+    """
+    rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
+    skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
+    if (rolling and engine.roll != "pivot") or (skating and engine.skate != "groove"):
+        raise NotAsked("contacts, and blades that are no joint, obey no law of a step")
+    if engine.slot == "groove" and any(isinstance(joint, Slot) for joint in mechanism.joints):
+        raise NotAsked("grooves off the centre of mass are known to push wrongly")
+    dt = STEP * mechanism.time_scale
+    rho = contraction(mechanism)
+    sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
+    if sweeps > MOST_SWEEPS:
+        raise NotAsked(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
+    model = engine.swept_model(mechanism, dt, replace(engine.sweeping(mechanism, 0.0), iterations=sweeps))
+    told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
+    if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
+        raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+    worst = 0.0
+    for step in range(1, STEPS + 1):
+        law, free = _law(model, mechanism, told, step, dt)
+        worst = max(worst, difference(mechanism, told.after[step], law, (free,)))
+    return {"velocity": worst}
+
+
+def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
+    """Velocities (bodies, 3) after the first step, as the joints ask for."""
+    model = engine.model(mechanism, dt)
+    return _law(model, mechanism, record(model, dt, 1, 1, raw=engine.leapfrog), 1, dt)[0]
+
+
+def _law(model: Model, mechanism: Mechanism, told: Recording, step: int, dt: float) -> tuple[Array, Array]:
+    """Velocities (bodies, 3) after a step: those that the joints allow, and those without joints."""
+    closed = np.zeros(mechanism.row_count)
+    closing = [isinstance(joint, Pin | Slot | Roll) for joint in mechanism.joints for _ in range(joint.size)]
+    held = np.array(closing, dtype=bool)
+    bias = next((constraint.error_bias for constraint in model.space.constraints), 0.0)
+    closed[held] = 1 - bias ** (dt / model.unit)
+    pose = told.pose[step]
+    gap = np.nan_to_num(mechanism.gap(pose, step * dt))
+    free = told.before[step - 1] + dt * mechanism.free_fall
+    law = constrained(mechanism.rows(pose), mechanism.rate - closed * gap / dt, mechanism.inertias, free)
+    return law.motion, free

@@ -1,0 +1,159 @@
+"""Random planar mechanisms, each from a seed and a number: for tests and searches anywhere in the suite.
+
+    from reports.search.mechanisms import mechanism, recipe
+    for number in range(2000):
+        drawn = mechanism(seed=1, number=number)                          # all kinds of joints
+        pins = mechanism(1, number, kinds=("pin",))                       # trees and loops of pins alone
+        wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
+
+A case depends on its own seed, number, kinds and decades alone, not on those drawn before: numpy's PCG64 gives its
+whole numbers, which are the same on every machine, and `recipe` tells them (velocities are computed from them by linear
+algebra, so they may differ by a rounding).
+
+What comes out: 1 to 6 bodies; most hang on an earlier body or on the ground by a joint of the kinds asked for, and up
+to three further joints close loops. Bodies, blades, slots and contacts stand at odd angles and off the centres of mass.
+Half of the mechanisms are pulled by gravity, three quarters move; never is there neither. The joints' rows are
+independent (`recipe.LEAST_RANK`), and something is free to move or a drive turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
+
+from reference.kinds import from_to
+from reference.mechanism import Mechanism
+from reference.validation import LARGEST_COUNT, InvalidMechanism, validated
+from reports.search.recipe import KINDS, Held, Link, Part, Recipe, Rim, Standing, build
+
+ALL = KINDS
+MOST_BODIES, MOST_LOOPS = 6, 3
+MOST_DECADES = 6
+# The first rim and the second of a roll: which pairs of shapes can roll whatever their sizes are.
+PAIRS = (
+    ("line", "circle"),
+    ("line", "ellipse"),
+    ("circle", "circle"),
+    ("circle", "ellipse"),
+    ("ellipse", "circle"),
+    ("ellipse", "ellipse"),
+    ("ring", "circle"),
+)
+
+Seed = Annotated[int, from_to(0, LARGEST_COUNT)]
+Decades = Annotated[int, from_to(0, MOST_DECADES)]
+Kinds = Sequence[str]
+
+
+@validated
+def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Decades = 0) -> Mechanism:
+    """The mechanism of `recipe` with the same arguments."""
+    return build(recipe(seed, number, kinds, decades))
+
+
+@validated
+def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Decades = 0) -> Recipe:
+    """Case `number` of a seed, of joints of these `kinds` alone (of `KINDS`; in whatever order).
+
+    Masses are from 0.1 to 10 kg, lengths from 0.1 m to some metres, rates some rad/s. With `decades`, masses and sizes
+    of the bodies differ by that many decades more, upwards and downwards, and so do the units of length, mass and time.
+    Raises InvalidMechanism for kinds that don't exist, or none.
+    """
+    if not kinds or not {*kinds} <= {*KINDS}:
+        raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(KINDS)}")
+    draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
+    while True:
+        drawn = draw.recipe()
+        if drawn is not None:
+            return drawn
+
+
+class _Draw:
+    """The random numbers of one case, and what is made of them."""
+
+    def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
+        self._random, self._decades = random, decades
+        self._kinds = tuple(kind for kind in KINDS if kind in kinds)  # their order is no choice
+
+    def whole(self, low: int, high: int) -> int:
+        """Both included."""
+        return int(self._random.integers(low, high + 1))
+
+    def two(self, most: int) -> tuple[int, int]:
+        return self.whole(-most, most), self.whole(-most, most)
+
+    def chance(self, one_in: int) -> bool:
+        return self.whole(1, one_in) == 1
+
+    def recipe(self) -> Recipe | None:
+        """None where the joints leave nothing to move."""
+        count = self.whole(1, MOST_BODIES)
+        moving = not self.chance(4)
+        pull = self.two(10) if not moving or self.chance(2) else (0, 0)
+        wide = 3 * self._decades
+        parts = tuple(
+            Part(
+                parent=self.whole(0, index),
+                offset=self.two(8),
+                angle=self.whole(-10, 10),
+                size=self.whole(-1 - wide, 1 + wide),
+                mass=self.whole(-3 - wide, 3 + wide),
+                gyration=self.whole(-3, 0),
+                velocity=(*self.two(4), self.whole(-6, 6)) if moving else (0, 0, 0),
+            )
+            for index in range(count)
+        )
+        decades = (self._unit(), self._unit(), self._unit())
+        links = [self._link(part.parent, index, parts) for index, part in enumerate(parts, start=1)]
+        for _ in range(self.whole(0, MOST_LOOPS)):
+            links.append(self._link(*self._pair(count), parts))
+        standing = Standing(Recipe(parts, (), pull, decades))
+        kept, held = self._independent(standing, links)
+        moved = kept and (any(pull) or standing.allowed(held).any())
+        return Recipe(parts, kept, pull, decades) if moved else None
+
+    def _independent(self, standing: Standing, links: Sequence[Link]) -> tuple[tuple[Link, ...], Sequence[Held]]:
+        """The links and their joints but for those that hold what others hold already, or the last freedom."""
+        held: list[Held] = []
+        kept: list[Link] = []
+        freedom = 3 * len(standing.bodies)
+        for link in links:
+            try:
+                more = [*held, standing.held(link, len(held) + 1)]
+            except InvalidMechanism:  # curves that don't fit
+                continue
+            left = freedom - len(more[-1].rows)
+            driven = any(each.kind == "drive" for each in (*kept, link))
+            if left >= (0 if driven else 1) and standing.independent(more):
+                held, freedom = more, left
+                kept.append(link)
+        return tuple(kept), held
+
+    def _unit(self) -> int:
+        return self.whole(-self._decades, self._decades)
+
+    def _pair(self, count: int) -> tuple[int, int]:
+        first, second = self.whole(0, count), self.whole(1, count)
+        return (first, second) if first != second else (0, second)
+
+    def _link(self, first: int, second: int, parts: Sequence[Part]) -> Link:
+        # Pins twice as often: they make the trees in which the others are interesting.
+        choice = (*self._kinds, "pin") if "pin" in self._kinds else self._kinds
+        kind = choice[self.whole(0, len(choice) - 1)]
+        at, turn = self.two(6), self.whole(-10, 10)
+        if self.chance(6):
+            at = (0, 0)  # the centre of mass is a place of its own in many an adapter
+        more, rims = 0, ()
+        if kind == "drive":
+            more = self.whole(-6, 6)
+        elif kind == "slot":
+            more = self.whole(-8, 8)
+        elif kind == "roll":
+            pair = PAIRS[self.whole(0, len(PAIRS) - 1)]
+            rims = tuple(Rim(shape, self.whole(-3, 0), self.whole(-2, 2), self.whole(-10, 10)) for shape in pair)
+            if pair[0] == "ring":
+                rims = (Rim("ring", rims[1].size + self.whole(1, 3)), rims[1])
+            rims = tuple(rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in rims)
+        return Link(kind, first, second, at, turn, more, rims)

@@ -1,0 +1,106 @@
+"""A short motion and its reactions against the judge, at two steps, with the order that the engine promises."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine, Promise, Unpromised
+from engines.lagrange import TRUTH
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
+
+Array = NDArray[np.float64]
+
+SPAN = 0.4  # of the mechanism's own time scale: nothing has had time to become chaotic
+SAMPLES, COARSE = 4, 10  # and steps between samples
+# Above what the promised order lets expect of the coarser step: the next power of the step, and samples (as in
+# engines.conformance.moving).
+ROOM = 2.5
+# Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
+LEAST = {"motion": 1e-8, "reactions": 1e-5}
+LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
+ESTIMATED = 10.0  # times its own estimate an error may be
+HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
+
+
+def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    """(error at the finer step, what it may be) of "motion", "reactions" and, of an engine that gives one, "estimate".
+
+    Raises NotAsked where nothing is promised or joints give way for good; Fault where a motion is lost in silence.
+    """
+    dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
+    coarse = _run(engine, mechanism, dt, COARSE)
+    promise = engine.order(mechanism)
+    if isinstance(promise, Unpromised):
+        raise NotAsked(f"no order is promised: {promise.reason}")
+    if _gives_way(engine, mechanism, dt):
+        raise NotAsked("joints give way as the engine says, by the same at every step")
+    truth = TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
+    if not np.isfinite(truth.pose).all():
+        raise NotAsked("the judge itself finds no motion")
+    fine = _run(engine, mechanism, dt / 2, 2 * COARSE)
+    if coarse.warnings or fine.warnings:
+        raise NotAsked("it says itself that something is wrong")
+    found = [_apart(mechanism, run, truth) for run in (coarse, fine)]
+    if _misses(promise, found):  # a coarser error may be small by chance: it must not fall between the next two either
+        found = [found[1], _apart(mechanism, _run(engine, mechanism, dt / 4, 4 * COARSE), truth)]
+    out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
+    if fine.estimate is not None:
+        size = np.array([1.0, 1.0, mechanism.length_scale])
+        told = float(np.abs(fine.estimate * size).max()) / _size(mechanism, truth)
+        out["estimate"] = (_apart(mechanism, fine, truth)["motion"], min(ESTIMATED * told + LEAST["motion"], LOST))
+    return out
+
+
+def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Trajectory:
+    run = engine.build(mechanism, dt)(SAMPLES, every)
+    if not np.isfinite(run.pose).all() and not run.warnings and run.reset_at is None:
+        raise Fault(f"at a step of {dt:.3g} s it lost the motion, and says nothing")
+    return run
+
+
+def _size(mechanism: Mechanism, truth: Trajectory) -> float:
+    """How far anything moves [m]."""
+    moved = np.abs((truth.pose - mechanism.pose) * np.array([1.0, 1.0, mechanism.length_scale])).max()
+    return max(float(moved), 1e-300)
+
+
+def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, float]:
+    moved = [
+        difference(mechanism, pose, right, (truth.pose[-1] - mechanism.pose,))
+        for pose, right in _moves(mechanism, run, truth)
+    ]
+    force = max(driving_force(mechanism, twist) for twist in truth.twist)
+    size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    largest = max(force, float(np.abs(truth.reaction * size).max(initial=0.0)))
+    pulled = [
+        force_difference(mechanism, own, right, (largest,))
+        for own, right in zip(run.reaction[1:], truth.reaction[1:], strict=True)
+    ]
+    return {"motion": max(moved), "reactions": max(pulled)}
+
+
+def _moves(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> list[tuple[Array, Array]]:
+    return [
+        (own - mechanism.pose, right - mechanism.pose) for own, right in zip(run.pose[1:], truth.pose[1:], strict=True)
+    ]
+
+
+def _may_be(promise: Promise, name: str, coarser: float) -> float:
+    order = promise.of("angle" if name == "motion" else "reaction")
+    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name]), LOST)
+
+
+def _misses(promise: Promise, found: list[dict[str, float]]) -> bool:
+    return any(found[1][name] > _may_be(promise, name, found[0][name]) for name in found[1])
+
+
+def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
+    """Whether joints give way visibly, and at half the step nearly as much."""
+    coarse, fine = (engine.softness(mechanism, step) for step in (dt, dt / 2))
+    if coarse is None or fine is None:
+        return False
+    ways = [soft.compliance / soft.stiffness / mechanism.time_scale**2 for soft in (coarse, fine)]
+    return ways[1] > HARD and 2 * ways[1] > ways[0]

@@ -1,0 +1,93 @@
+"""A motion does not depend on how its mechanism is described: turned, shifted, mirrored, renamed, in other units.
+
+The changes are those of the conformance kit, on mechanisms that nobody chose. One change a case, by the case's number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine
+from engines.conformance.changes import Change, Isometry, joints_swapped, relabelled
+from reference.joints import Roll
+from reference.mechanism import Mechanism
+from reports.search.law import Fault, NotAsked, difference
+from reports.search.recipe import Recipe, build
+
+Array = NDArray[np.float64]
+STEP = 0.01  # of the mechanism's own time scale
+STEPS = 5
+# Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
+# constraints gives away half of the digits.
+SAME = 1e-7
+
+CHANGES: dict[str, Change] = {
+    "turned": Isometry(turn=0.7),
+    "shifted": Isometry(shift=(3.7, -2.9)),
+    "mirrored": Isometry(mirrored=True),
+    "renamed": relabelled,
+    "swapped": joints_swapped,
+}
+# Decades of length and mass: in another unit the same mechanism has other numbers.
+UNITS = {"in other lengths": (-3, 0, 0), "in other masses": (0, 2, 0)}
+NAMES = (*CHANGES, *UNITS)
+
+
+def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
+    """By what the poses and velocities differ, relative to the motion; raises NotAsked, Fault and Unsupported."""
+    mechanism = build(recipe)
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and _touches(engine):
+        raise NotAsked("whether two shapes that just touch do touch depends on rounding")
+    name = NAMES[number % len(NAMES)]
+    if name in UNITS:
+        if _has_lengths(engine):
+            raise NotAsked("settings as shipped have lengths in them")
+        return {name: _in_units(engine, recipe, mechanism, UNITS[name])}
+    try:
+        changed, back = CHANGES[name](mechanism)
+    except ValueError as reason:
+        raise NotAsked(str(reason)) from None
+    pose, twist, _ = back(_run(engine, changed))
+    return {name: _apart(mechanism, engine, pose[-1], twist[-1])}
+
+
+def _run(engine: Engine, mechanism: Mechanism):
+    return engine.build(mechanism, STEP * mechanism.time_scale)(1, STEPS)
+
+
+def _apart(mechanism: Mechanism, engine: Engine, pose: Array, twist: Array) -> float:
+    own = _run(engine, mechanism)
+    moved, turned = own.pose[-1] - mechanism.pose, pose - mechanism.pose
+    if not np.isfinite(own.pose[-1]).all():
+        raise Fault(f"it was lost within {STEPS} steps: {'; '.join(own.warnings)}")
+    # A shift costs digits of a place: they are those of its distance.
+    far = (mechanism.twist * STEPS * STEP * mechanism.time_scale, 1e-6 * mechanism.pose)
+    return max(
+        difference(mechanism, turned, moved, far), difference(mechanism, twist, own.twist[-1], (mechanism.twist,))
+    )
+
+
+def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tuple[int, int, int]) -> float:
+    units = tuple(own + more for own, more in zip(recipe.decades, decades, strict=True))
+    other = build(replace(recipe, decades=units))  # type: ignore[arg-type]
+    length, time = 10.0 ** decades[0], 10.0 ** decades[2]
+    if abs(other.length_scale / (length * mechanism.length_scale) - 1) > SAME:
+        raise NotAsked("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
+    run = _run(engine, other)
+    pose = run.pose[-1] / np.array([length, length, 1.0])
+    twist = run.twist[-1] / np.array([length / time, length / time, 1 / time])
+    return _apart(mechanism, engine, pose, twist)
+
+
+def _touches(engine: Engine) -> bool:
+    """Whether rolls may be held by contacts."""
+    rolls = getattr(engine, "rolls", None)
+    return getattr(engine, "roll", "") == "contact" or (rolls is not None and type(rolls).__name__ == "RollContact")
+
+
+def _has_lengths(engine: Engine) -> bool:
+    """Whether its settings are those shipped: an impedance that grows over a millimetre, a slop of a decimetre."""
+    return engine.variant == "default"

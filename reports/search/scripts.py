@@ -1,0 +1,128 @@
+"""A case as a script in the engine's own language, with the numbers that it should print: ready for its authors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from engines.pymunk import Pymunk
+from reports.search import instant_pymunk, raw
+from reports.search.recipe import Recipe, build
+from reports.search.release import release
+from reports.search.subjects import Adapted, Alone, Subject
+
+
+def script(subject: Subject, case: Any, check: str) -> str:
+    """The script; empty where a fault can't be shown without our adapter."""
+    if isinstance(subject, Alone):
+        return of_mujoco_alone(case, subject.release)
+    if isinstance(subject, Adapted) and check == "velocity":
+        return of_pymunk(subject.engine, case)
+    return ""
+
+
+def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
+    """One call of mj_forward, and the accelerations that the constraints ask for; `other`: another release."""
+    judge = raw.judged(model)
+    if other:
+        expected = np.array(release(other).asked(model)["expected"])
+    else:
+        _, expected = raw.found_and_expected(model, judge)
+    names = [f"b{body} {what}" for body, what in raw.coordinates(model)]
+    return f'''"""MuJoCo's accelerations in a state that satisfies every constraint.
+
+Expected: M a = f + J^T F and J a + R F = -J' v, where R is MuJoCo's own (efc_R) and J' v the term of the velocities.
+The numbers of `expected` are those of an independent calculation.
+"""
+
+import mujoco
+import numpy as np
+
+MODEL = """
+{raw.xml(model)}
+"""
+
+model = mujoco.MjModel.from_xml_string(MODEL)
+data = mujoco.MjData(model)
+data.qvel[:] = {_numbers(judge.rates)}
+mujoco.mj_forward(model, data)
+expected = np.array({_numbers(expected)})
+print("MuJoCo", mujoco.__version__, "joints", {names!r})
+print("found   ", data.qacc)
+print("expected", expected)
+print("largest difference", np.abs(data.qacc - expected).max())
+'''
+
+
+def of_pymunk(engine: Any, recipe: Recipe) -> str:
+    """The objects before one step, the step, and the velocities that its joints ask for; empty for other methods."""
+    mechanism = build(recipe)
+    while not isinstance(engine, Pymunk):
+        engine = engine.chosen(mechanism) if hasattr(engine, "chosen") else getattr(engine, "engine", None)
+        if engine is None:
+            return ""
+    dt = instant_pymunk.STEP * mechanism.time_scale
+    model, sweeps = engine.model(mechanism, dt), instant_pymunk.MOST_SWEEPS
+    for aim in model.aims:
+        aim(dt / model.unit)
+    lines = []
+    for number, body in enumerate(model.bodies):
+        kind = {0: "", 1: "body_type=pymunk.Body.KINEMATIC", 2: "body_type=pymunk.Body.STATIC"}[body.body_type]
+        kind = kind or f"{body.mass!r}, {_number(body.moment)}"
+        lines.append(f"b{number} = pymunk.Body({kind})")
+        lines.append(f"b{number}.position, b{number}.angle = {tuple(body.position)!r}, {body.angle!r}")
+        lines.append(
+            f"b{number}.velocity, b{number}.angular_velocity = {tuple(body.velocity)!r}, {body.angular_velocity!r}"
+        )
+        lines.append(f"space.add(b{number})")
+    names = {model.space.static_body: "space.static_body", **{body: f"b{i}" for i, body in enumerate(model.bodies)}}
+    for number, joint in enumerate(model.space.constraints):
+        own = f"{names[joint.a]}, {names[joint.b]}"
+        match type(joint).__name__:
+            case "PivotJoint":
+                made = f"PivotJoint({own}, {tuple(joint.anchor_a)!r}, {tuple(joint.anchor_b)!r})"
+            case "PinJoint":
+                made = f"PinJoint({own}, {tuple(joint.anchor_a)!r}, {tuple(joint.anchor_b)!r})"
+            case "GrooveJoint":
+                ends = f"{tuple(joint.groove_a)!r}, {tuple(joint.groove_b)!r}"
+                made = f"GrooveJoint({own}, {ends}, {tuple(joint.anchor_b)!r})"
+            case "SimpleMotor":
+                made = f"SimpleMotor({own}, {joint.rate!r})"
+            case _:
+                return ""
+        lines.append(f"j{number} = pymunk.{made}")
+        lines.append(f"j{number}.error_bias = {joint.error_bias!r}")
+        if type(joint).__name__ == "PinJoint":
+            lines.append(f"j{number}.distance = {joint.distance!r}")
+        lines.append(f"space.add(j{number})")
+    expected = instant_pymunk.first_law(engine, mechanism, dt) * model.unit
+    body = "\n".join(lines)
+    bodies = ", ".join(f"b{number}" for number in range(len(model.bodies)))
+    return f'''"""pymunk's velocities after one step.
+
+Expected are the nearest ones, in the metric of the masses, that the joints allow in the pose after the step's drift.
+"""
+
+import numpy as np
+import pymunk
+
+space = pymunk.Space()
+space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}
+{body}
+space.step({dt / model.unit!r})
+found = np.array([(*body.velocity, body.angular_velocity) for body in ({bodies},)])
+expected = np.array({np.round(expected, 12).tolist()!r})
+print("pymunk", pymunk.version)
+print("found   ", found.tolist())
+print("expected", expected.tolist())
+print("largest difference", np.abs(found - expected).max())
+'''
+
+
+def _number(value: float) -> str:
+    return repr(value) if np.isfinite(value) else 'float("inf")'
+
+
+def _numbers(values: Any) -> str:
+    return "[" + ", ".join(f"{value:.12g}" for value in values) + "]"

@@ -1,0 +1,133 @@
+"""A case made smaller as long as it still does what is asked: fewer bodies, fewer joints, smaller whole numbers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from reports.search import raw
+from reports.search.recipe import Recipe
+
+Case = TypeVar("Case")
+
+
+def shrunk(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
+    """The smallest case found within so many seconds of CPU time; `still` says whether a smaller one is as wrong."""
+    end = time.process_time() + seconds
+    tried: set[Case] = {case}
+    going = True
+    while going and time.process_time() < end:
+        going = False
+        for smaller in (*_with_less(case), *_with_smaller_numbers(case)):
+            if smaller in tried:
+                continue
+            tried.add(smaller)
+            if still(smaller):
+                case, going = smaller, True
+                break
+            if time.process_time() > end:
+                break
+    return case
+
+
+def _with_less(case: Any) -> Iterator[Any]:
+    """Without a body, or without a joint; bodies first, since joints go with them."""
+    if isinstance(case, Recipe):
+        for body in range(len(case.parts), 0, -1):
+            if len(case.parts) > 1:
+                yield _without_part(case, body)
+        for link in range(len(case.links)):
+            yield replace(case, links=case.links[:link] + case.links[link + 1 :])
+    else:
+        for body in range(len(case.links), 0, -1):
+            if len(case.links) > 1:
+                yield _without_link(case, body)
+        for equality in range(len(case.equalities)):
+            yield replace(case, equalities=case.equalities[:equality] + case.equalities[equality + 1 :])
+        yield from _with_fewer_coordinates(case)
+
+
+def _after(removed: int, parent: int, body: int) -> int:
+    """A body's number when one is gone; its parent stands for the one that is gone."""
+    return parent if body == removed else body - (body > removed)
+
+
+def _without_part(case: Recipe, removed: int) -> Recipe:
+    parent = case.parts[removed - 1].parent
+    parts = [
+        replace(part, parent=_after(removed, parent, part.parent))
+        for body, part in enumerate(case.parts, 1)
+        if body != removed
+    ]
+    links = [
+        replace(link, first=_after(removed, 0, link.first), second=_after(removed, 0, link.second))
+        for link in case.links
+        if removed not in (link.first, link.second)
+    ]
+    return replace(case, parts=tuple(parts), links=tuple(links))
+
+
+def _without_link(case: raw.Model, removed: int) -> raw.Model:
+    parent = case.links[removed - 1].parent
+    links = [
+        replace(link, parent=_after(removed, parent, link.parent))
+        for body, link in enumerate(case.links, 1)
+        if body != removed
+    ]
+    return _of_links(case, links, removed)
+
+
+def _of_links(case: raw.Model, links: Sequence[raw.Link], removed: int = 0) -> raw.Model:
+    """The model with other links, one of them perhaps gone, and those of its equalities that still have both ends."""
+    before = raw.coordinates(case)
+    after = raw.coordinates(replace(case, links=tuple(links), equalities=()))
+    places = {each: number for number, each in enumerate(after)}
+
+    def end(each: raw.Equality, which: int) -> int | None:
+        if each.kind in ("connect", "weld"):
+            return None if removed and which == removed else _after(removed, 0, which) if removed else which
+        if which >= len(before) or before[which][0] == removed:
+            return None
+        body, what = before[which]
+        return places.get((_after(removed, 0, body) if removed else body, what))
+
+    equalities = []
+    for each in case.equalities:
+        first, second = end(each, each.first), end(each, each.second)
+        if first is not None and second is not None:
+            equalities.append(replace(each, first=first, second=second))
+    return replace(case, links=tuple(links), equalities=tuple(equalities))
+
+
+def _with_fewer_coordinates(case: raw.Model) -> Iterator[raw.Model]:
+    for place, link in enumerate(case.links):
+        for fewer in (replace(link, slides=max(link.slides - 1, 0)), replace(link, turns=False)):
+            if fewer != link and (fewer.slides or fewer.turns):
+                yield _of_links(case, [*case.links[:place], fewer, *case.links[place + 1 :]])
+
+
+# Which bodies are joined is no number that is small or large.
+NAMES = {"parent", "first", "second", "kind", "shape", "slides", "turns"}
+
+
+def _with_smaller_numbers(value: Any) -> Iterator[Any]:
+    """The same with one number, or all of a tuple, nearer to zero."""
+    if is_dataclass(value) and not isinstance(value, type):
+        for field in fields(value):
+            if field.name not in NAMES:
+                for smaller in _with_smaller_numbers(getattr(value, field.name)):
+                    yield replace(value, **{field.name: smaller})
+    elif isinstance(value, tuple):
+        if value and all(type(one) is int for one in value) and any(value) and len(value) > 1:
+            yield tuple(0 for _ in value)
+        for place, one in enumerate(value):
+            for smaller in _with_smaller_numbers(one):
+                yield (*value[:place], smaller, *value[place + 1 :])
+    elif isinstance(value, bool):
+        if value:
+            yield False
+    elif isinstance(value, int) and value:
+        step = 1 if value > 0 else -1
+        yield from dict.fromkeys([0, step, int(value / 2), value - step])

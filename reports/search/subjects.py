@@ -1,0 +1,155 @@
+"""What is searched: an engine through its adapter, or MuJoCo alone, with what is asked of a case and how it is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engines import Engine, Unsupported
+from engines.extrapolated import Extrapolated
+from engines.mujoco import MuJoCo
+from engines.pymunk import Pymunk
+from reference.mechanism import Mechanism
+from reports.search import instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_draw, relations
+from reports.search.law import Fault, NotAsked
+from reports.search.recipe import KINDS, Recipe, as_text, build, from_text
+from reports.search.release import release
+
+ORACLES = ("instant", "relations", "motions")
+LAW = 1e-9  # of MuJoCo alone: rounding makes a thousandth of it
+
+
+@dataclass(frozen=True)
+class Told:
+    """What was found of one case: (error, what it may be) by check, and why other checks were not asked."""
+
+    errors: dict[str, tuple[float, float]]
+    not_asked: tuple[str, ...] = ()
+    words: str = ""  # of a fault that has no number
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """The checks that fail, the worst first."""
+        over = {
+            name: error / bound if bound > 0 else np.inf
+            for name, (error, bound) in self.errors.items()
+            if not error <= bound
+        }
+        return tuple(sorted(over, key=lambda name: -over[name]))
+
+
+@dataclass(frozen=True)
+class Adapted:
+    """An engine, on recipes of joints."""
+
+    engine: Engine
+
+    @property
+    def name(self) -> str:
+        return f"{self.engine.name} {self.engine.variant}"
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        return KINDS
+
+    def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
+        return mechanisms.recipe(seed, number, kinds, decades)
+
+    def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Told:
+        """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
+        mechanism = build(case)
+        asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
+            "instant": lambda: _instant(_at_an_instant(self.engine, mechanism), mechanism),
+            "relations": lambda: {
+                name: (error, relations.SAME) for name, error in relations.errors(self.engine, case, number).items()
+            },
+            "motions": lambda: motions.errors(self.engine, mechanism),
+        }
+        return _asked({name: asked[name] for name in ORACLES if name in oracles})
+
+    def text(self, case: Recipe) -> str:
+        return as_text(case)
+
+    def read(self, text: str) -> Recipe:
+        return from_text(text)
+
+
+@dataclass(frozen=True)
+class Alone:
+    """MuJoCo on models of its own format: no adapter takes part. See `raw`.
+
+    `release`: another one than is installed, as "3.6.0"; see `reports.search.release`.
+    """
+
+    release: str = ""
+
+    @property
+    def name(self) -> str:
+        return f"mujoco alone {self.release}".strip()
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        return raw.KINDS
+
+    def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> raw.Model:
+        return raw_draw.model(seed, number, kinds)
+
+    def ask(self, case: raw.Model, number: int, oracles: Sequence[str]) -> Told:
+        def instant() -> dict[str, tuple[float, float]]:
+            told = {"errors": raw.errors(case)} if not self.release else release(self.release).asked(case)
+            if "raised" in told:
+                raise Fault(told["raised"])
+            return {name: (error, LAW) for name, error in told["errors"].items()}
+
+        raw.judged(case)  # a case that is none is no fault
+        return _asked({"instant": instant} if "instant" in oracles else {})
+
+    def text(self, case: raw.Model) -> str:
+        return raw.as_text(case)
+
+    def read(self, text: str) -> raw.Model:
+        return raw.from_text(text)
+
+
+Subject = Adapted | Alone
+
+
+def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> Told:
+    errors: dict[str, tuple[float, float]] = {}
+    left, words = [], []
+    with np.errstate(all="ignore"):
+        for name, oracle in oracles.items():
+            try:
+                errors.update(oracle())
+            except NotAsked as reason:
+                left.append(f"{name}: {reason}")
+            except Unsupported as reason:
+                return Told(errors, (f"unsupported: {reason}",), "; ".join(words))
+            except Fault as reason:
+                errors[name] = (np.inf, 0.0)
+                words.append(str(reason))
+            except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
+                errors["raised"] = (np.inf, 0.0)
+                words.append(f"{type(error).__name__}: {error}"[:300])
+    return Told(errors, tuple(left), "; ".join(words))
+
+
+def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk:
+    """The engine that is stepped in the end: inside of those that choose and combine. Raises NotAsked."""
+    while not isinstance(engine, MuJoCo | Pymunk):
+        if hasattr(engine, "chosen"):
+            engine = engine.chosen(mechanism)
+        elif isinstance(engine, Extrapolated):
+            engine = engine.engine
+        else:
+            raise NotAsked("it declares no law of an instant")
+    return engine
+
+
+def _instant(engine: MuJoCo | Pymunk, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    law = instant_mujoco if isinstance(engine, MuJoCo) else instant_pymunk
+    bound = law.bound(engine)  # type: ignore[arg-type]
+    return {name: (error, bound) for name, error in law.errors(engine, mechanism).items()}  # type: ignore[arg-type]

@@ -1,0 +1,135 @@
+"""One version's column: a process of its own with the version first on its path, and what it said of every cell."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from engines import Engine
+from reports.grid.cells import Cell, estimated_cost
+from reports.grid.fingerprint import ROOT
+from reports.grid.measure import Measurement, blank
+from reports.grid.outcomes import Outcome, describe_exit
+from reports.versions.installed import environment
+from reports.versions.request import Finished, Request, Running, TreesRow, Trouble
+
+MARK = "known to be wrong"  # the word of adapters for such a release, in the sentence of every row
+# Exceptions of Python for a name that is not there: what our adapter calls is newer than the version.
+LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
+LONGEST = 300  # letters of last words
+
+Watch = Callable[[Sequence[str]], None]
+
+
+@dataclass(frozen=True)
+class Column:
+    """All rows of one version; `trouble`: why there are none of its own, a sentence."""
+
+    version: str
+    rows: tuple[Measurement, ...]
+    trees: tuple[TreesRow, ...] = ()
+    trouble: str = ""
+
+    @property
+    def mark(self) -> str:
+        """Why this version's numbers are known to be wrong, in the words of its rows; empty if they aren't."""
+        told = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
+        return next(told, "").removeprefix("ours: ")
+
+
+def column(version: str, request: Request, engines: Sequence[Engine], watch: Watch = lambda labels: None) -> Column:
+    """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it.
+
+    engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
+    second, and may raise: then the process is ended; the rows so far are in the store.
+    """
+    rows: list[Measurement] = []
+    trees: list[TreesRow] = []
+    trouble: Trouble | None = None
+    for message in _messages(request):
+        match message:
+            case Measurement():
+                rows.append(_told(message, version))
+            case TreesRow():
+                trees.append(message)
+            case Trouble():
+                trouble = message
+            case Running(labels):
+                watch(labels)
+    if trouble is None:
+        return Column(version, tuple(rows), tuple(trees))
+    there = {(row.scene, row.variant, row.every) for row in rows}
+    outcome = Outcome.UNSUPPORTED if trouble.lacks else Outcome.ABORTED
+    for every in request.every:
+        cells = (Cell(scene, engine, every) for scene in request.scenes for engine in engines)
+        rows += [
+            blank(cell, outcome, trouble.sentence)
+            for cell in cells
+            if (cell.scene.name, cell.engine.variant, every) not in there and estimated_cost(cell) <= request.most
+        ]
+    return Column(version, tuple(rows), tuple(trees), trouble.sentence)
+
+
+def _told(row: Measurement, version: str) -> Measurement:
+    """The row; an outcome of its own for what the version has not got."""
+    if row.outcome == Outcome.FAILED and row.sentence.startswith(LACKING):
+        sentence = f"{row.engine} {version} lacks what our adapter calls: {row.sentence.partition(': ')[2]}"
+        return replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence)
+    return row
+
+
+def _messages(request: Request) -> Iterator[Any]:
+    """What the process says; a Trouble at the end if it ended too early."""
+    with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
+        # In a folder of its own: what an engine leaves behind goes with it, and what lies there hides no module.
+        words = Path(folder) / "said.txt"
+        with words.open("wb") as errors:
+            process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "reports.versions.child"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                cwd=folder,
+                env=environment(request.place, (ROOT,)),
+            )
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            try:
+                for part in (tuple(path for path in sys.path if path), request):
+                    pickle.dump(part, process.stdin)
+                process.stdin.flush()
+                message: Any = None
+                while not isinstance(message, Finished | Trouble):
+                    message = pickle.load(process.stdout)
+                    yield message
+            except (EOFError, OSError, pickle.UnpicklingError):
+                code = process.wait()
+                yield Trouble(_last_words(words, code), lacks=False)
+        finally:
+            process.kill()
+            process.stdin.close()
+            process.stdout.close()
+            process.wait()
+
+
+def _last_words(path: Path, code: int) -> str:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return ": ".join(filter(None, (describe_exit(code), lines[-1][:LONGEST] if lines else "")))
+
+
+def modules_in(folder: Path) -> tuple[str, ...]:
+    """The top-level packages and modules that lie in a folder."""
+    names = {
+        path.name.split(".")[0]
+        for path in folder.iterdir()
+        if (path.is_dir() and (path / "__init__.py").is_file()) or path.suffix in (".py", ".so", ".pyd")
+    }
+    return tuple(sorted(name for name in names if name.isidentifier()))

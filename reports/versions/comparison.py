@@ -1,0 +1,101 @@
+"""Two columns against each other: what became worse, by the rule of the gate's baseline, and what became better."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from reports.gate.baseline import Identity, Old, identity
+from reports.gate.change import drift
+from reports.grid.convergence import Sweep, sweeps
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
+from reports.grid.quantities import QUANTITIES
+
+SLOPE = 0.5  # orders that differ by more are told: two local slopes of one method do by less
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One quantity of a row, or its outcome, that is more than three times as large in one of the two."""
+
+    before: Measurement
+    after: Measurement
+    quantity: str
+    worse: bool
+
+    def told(self, row: Measurement) -> float | str:
+        """What the row says of the quantity; its outcome where that is what differs."""
+        return row.outcome if self.quantity == "outcome" else getattr(row, self.quantity)
+
+
+@dataclass(frozen=True)
+class Turn:
+    """The order of the angle's error of a method in a scene, where it is another."""
+
+    scene: str
+    method: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """`pairs`: how many rows both have; `cost`: the median of the ratios of CPU times (NaN without one)."""
+
+    pairs: int
+    differences: tuple[Difference, ...]
+    turns: tuple[Turn, ...]
+    cost: float
+
+    @property
+    def worse(self) -> tuple[Difference, ...]:
+        return tuple(each for each in self.differences if each.worse)
+
+
+def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> Comparison:
+    """Rows of the same cells against each other; a cell that only one has is left out."""
+    old, new = _by_cell(before), _by_cell(after)
+    pairs = [(old[key], new[key]) for key in old if key in new]
+    differences = [found for pair in pairs for found in _differences(*pair)]
+    ratios = [b.cpu / a.cpu for a, b in pairs if _timed(a) and _timed(b)]
+    cost = median(ratios) if ratios else math.nan
+    turns = _turns([a for a, _ in pairs], [b for _, b in pairs])
+    return Comparison(len(pairs), tuple(differences), turns, cost)
+
+
+def _by_cell(rows: Iterable[Measurement]) -> dict[Identity, Measurement]:
+    return {identity(row): row for row in rows}
+
+
+def _timed(row: Measurement) -> bool:
+    return Outcome(row.outcome).comparable and row.cpu > 0
+
+
+def _differences(before: Measurement, after: Measurement) -> list[Difference]:
+    lost, won = drift(after, _old(before)), drift(before, _old(after))
+    worse = [Difference(before, after, check.quantity, True) for check in lost if not check.passed]
+    better = [Difference(before, after, check.quantity, False) for check in won if not check.passed]
+    if before.outcome != after.outcome and not worse and not better:
+        # Neither can be compared: another way to fail is told, and is not worse.
+        return [Difference(before, after, "outcome", False)]
+    return worse + better
+
+
+def _old(row: Measurement) -> Old:
+    return Old(Outcome(row.outcome), {each.name: getattr(row, each.name) for each in QUANTITIES})
+
+
+def _turns(before: Sequence[Measurement], after: Sequence[Measurement]) -> tuple[Turn, ...]:
+    old, new = _orders(before), _orders(after)
+    return tuple(
+        Turn(*key, old[key].order, new[key].order)
+        for key in old
+        if key in new and abs(old[key].order - new[key].order) > SLOPE
+    )
+
+
+def _orders(rows: Sequence[Measurement]) -> dict[tuple[str, str], Sweep]:
+    return {(each.scene, each.method): each for each in sweeps(rows) if each.quantity.name == "angle"}

@@ -1,0 +1,113 @@
+"""Random trees of pins that branch and close across: what an engine's accelerations miss of ideal ones, at one instant.
+
+No integration has a part in it, so that a fault of a release stands alone; and nobody chose these mechanisms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine
+from reference.mechanism import Mechanism
+from reference.row_system import solve_symmetric
+from reference.validation import Count, InvalidMechanism
+from reports.grid.tasks import Task, Values
+from reports.search.recipe import Link, Part, Recipe, build
+
+Array = NDArray[np.float64]
+
+# Of the mechanism's time scale: what a step costs is then about this share of the accelerations.
+STEP = 1e-5
+# The first step of engines that solve for velocities doesn't feel yet how joints turn; the second does.
+STEPS = 2
+# (bodies, loops, how many): small enough to be found again by hand; of these one in ten shows the fault that
+# MuJoCo 4.0.0 has with sparse Jacobians.
+SIZES = ((12, 4, 40),)
+
+
+@dataclass(frozen=True)
+class Trees(Task):
+    """The `count` first random trees of so many bodies and loops in an engine: how wrong each is, as in `miss`."""
+
+    method: Engine
+    bodies: Count = 8
+    loops: Count = 2
+    count: Count = 50
+
+    seed: ClassVar[int] = 12
+
+    @property
+    def cost(self) -> float:
+        return 1e-3 * self.count * self.bodies
+
+    @property
+    def label(self) -> str:
+        return f"{self.count} trees of {self.bodies} bodies / {self.method.name} {self.method.variant}"
+
+    @property
+    def engine(self) -> Engine:
+        return self.method
+
+    def run(self) -> Values:
+        return {"miss": np.array([miss(self.method, drawn) for drawn in trees(self.bodies, self.loops, self.count)])}
+
+
+@lru_cache(maxsize=4)
+def trees(bodies: int, loops: int, count: int, seed: int = Trees.seed) -> tuple[Mechanism, ...]:
+    """Random trees, each body on an earlier one or on the ground, with this many pins more that close loops.
+
+    Lengths are about a metre, masses 0.1 to 10 kg; all move and fall. Those whose rows nearly depend are drawn anew.
+    """
+    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, bodies, loops])))
+    found: list[Mechanism] = []
+    while len(found) < count:
+        try:
+            found.append(build(_recipe(random, bodies, loops)))
+        except InvalidMechanism:
+            continue
+    return tuple(found)
+
+
+def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
+    def whole(most: int, count: int) -> tuple[int, ...]:
+        return tuple(int(each) for each in random.integers(-most, most + 1, count))
+
+    parts: list[Part] = []
+    links: list[Link] = []
+    for index in range(1, bodies + 1):
+        parent = int(random.integers(min(1, index - 1), index))
+        x, y, angle, mass = (*whole(8, 2), *whole(10, 1), *whole(3, 1))
+        parts.append(Part(parent, (x, y), angle, mass=mass, gyration=-1, velocity=(*whole(4, 2), *whole(6, 1))))  # type: ignore[arg-type]
+        links.append(Link("pin", parent, index, whole(6, 2)))  # type: ignore[arg-type]
+    for _ in range(loops):
+        first, second = sorted(int(each) for each in random.choice(np.arange(1, bodies + 1), 2, replace=False))
+        links.append(Link("pin", first, second, whole(6, 2)))  # type: ignore[arg-type]
+    return Recipe(tuple(parts), tuple(links), (0, -10))
+
+
+def acceleration(mechanism: Mechanism, pose: Array, twist: Array) -> Array:
+    """The ideal accelerations (bodies, 3) [m/s^2, rad/s^2]: M a = f + J^T r, J a = -(dJ/dt) v."""
+    rows, weight = mechanism.rows(pose), 1 / mechanism.inertias.reshape(-1)
+    free_fall = mechanism.free_fall.reshape(-1)
+    force = solve_symmetric((rows * weight) @ rows.T, mechanism.bias(pose, twist) - rows @ free_fall)
+    return (free_fall + weight * (rows.T @ force)).reshape(-1, 3)
+
+
+def miss(engine: Engine, mechanism: Mechanism) -> float:
+    """The largest difference of the accelerations over the second step, relative to the largest ideal one.
+
+    Angular ones count by the mechanism's length. NaN where the engine gives no finite motion.
+    """
+    dt = STEP * mechanism.time_scale
+    motion = engine.build(mechanism, dt)(STEPS, 1)
+    ideal = acceleration(mechanism, motion.pose[-1], motion.twist[-1])
+    found = (motion.twist[-1] - motion.twist[-2]) / dt
+    scale = np.array([1.0, 1.0, mechanism.length_scale])
+    if not np.all(np.isfinite(found)) or not np.all(np.isfinite(ideal)):
+        return float("nan")
+    return float(np.abs((found - ideal) * scale).max() / np.abs(ideal * scale).max())

@@ -1,0 +1,62 @@
+"""The grid as a suite of pytest: what is selected, the table, options that can not be meant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.test_gate import row
+from tests.test_gate_baseline import written
+
+SUITE = """
+import pytest
+from reports.gate.verdicts import Case
+from engines import Promise
+from tests.toys import Disc, Toy
+
+CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in CASES])
+def test_case(verdicts, case):
+    assert case in verdicts
+    print("ran", sorted(each.method for each in verdicts))
+"""
+
+
+@pytest.fixture
+def suite(pytester):
+    """A grid of three toys in a folder of its own."""
+    root = Path(__file__).parents[1]
+    pytester.makeini(f"[pytest]\npythonpath = {root}\n")
+    pytester.makeconftest('pytest_plugins = ["reports.gate.pytest_plugin"]')
+    pytester.makepyfile(SUITE)
+    written(pytester.path / "errors.csv", row())
+    return pytester
+
+
+def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
+    found = suite.runpytest_subprocess(
+        "-s", "--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md"
+    )
+    found.assert_outcomes(passed=1, deselected=2)
+    found.stdout.fnmatch_lines(
+        ["*ran [[]'toy two'[]]*", "*crosscheck*", "scene *bound*", "disc *toy two*", "written to *"]
+    )
+    assert "| disc | toy two |" in (suite.path / "out.md").read_text()
+    assert "toy one" not in (suite.path / "out.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
+        (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
+        (["--scene", "moon"], "no case of --scene"),
+    ],
+)
+def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):
+    found = suite.runpytest_subprocess("--baseline", "errors.csv", *arguments)
+    assert found.ret == pytest.ExitCode.USAGE_ERROR
+    assert told in found.stderr.str()
+    assert "Traceback" not in found.stderr.str()

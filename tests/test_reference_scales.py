@@ -1,0 +1,124 @@
+"""Every scene in other units: a mechanism of nanometres or of gigametres moves as the same in metres does.
+
+A change of unit by a power of two changes no digit of a product, a sum or a root. What differs after it is a number in
+the code that has a unit and should have none.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from reference.joints import Drive
+from reference.rolling.scenes import RollingDisc
+from reference.scene import Scene
+from reference.scenes import SCENES
+from tests.samples import SCENES_OF_LIMITS
+
+# Exponents of length, time and mass of each field's unit; what is not here has none.
+LENGTH, TIME, MASS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+RATE, SPEED, PULL, INERTIA = (0, -1, 0), (1, -1, 0), (1, -2, 0), (2, 0, 1)
+_METRES = (
+    "crank coupler rocker ground rod offset length hitch wheelbase track centres centre front width trail points point "
+    "pin along_x along_y radius eccentricity cosines sines gyration ring hill major hole side ground_arc stance hip_x "
+    "hip_y height caster_centre lever distance"
+)
+UNITS = {
+    **dict.fromkeys(_METRES.split(), LENGTH),
+    **dict.fromkeys(("duration", "horizon"), TIME),
+    **dict.fromkeys(("rate", "turning_rate", "start_rate"), RATE),
+    **dict.fromkeys(("mass", "masses", "crank_mass", "rod_mass", "slider_mass", "caster_mass", "lever_mass"), MASS),
+    **dict.fromkeys(("inertia", "inertias", "slider_inertia", "caster_inertia"), INERTIA),
+    **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1)},
+}
+OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
+POSES = ("start", "pose")  # x, y, angle, where they are three numbers
+SCALES = {"nano": 2.0**-30, "giga": 2.0**30}
+KINDS = {"length": LENGTH, "time": TIME, "mass": MASS, "length and time": (1, 1, 0)}
+
+
+def scaled(value, factor):
+    if isinstance(value, tuple):
+        return tuple(scaled(part, factor) for part in value)
+    return value * factor
+
+
+def in_other_units(scene: Scene, unit: tuple[float, float, float]) -> Scene:
+    """The same scene, in units of length, time and mass that are these parts of a metre, a second, a kilogram."""
+    changes = {}
+    for field in fields(scene):  # pyright: ignore[reportArgumentType] (each scene's class is a dataclass)
+        value = getattr(scene, field.name)
+        if field.name in POSES and isinstance(value, tuple):
+            changes[field.name] = (value[0] * unit[0], value[1] * unit[0], value[2])
+            continue
+        exponents = OTHER.get((scene.name, field.name), UNITS.get(field.name, (0, 0, 0)))
+        if any(exponents):
+            factor = math.prod(one**exponent for one, exponent in zip(unit, exponents, strict=True))
+            changes[field.name] = scaled(value, factor)
+    return replace(scene, **changes)  # pyright: ignore[reportArgumentType]
+
+
+def off(found, expected):
+    size = np.nanmax(np.abs(expected), initial=0.0)
+    return float(np.nanmax(np.abs(found - expected), initial=0.0) / size) if size else float(np.nanmax(np.abs(found)))
+
+
+def difference(scene: Scene, kind: str, scale: float) -> float:
+    """The largest of poses, twists and reactions, of the motion in metres and seconds (or of 1)."""
+    length, time, mass = (scale**exponent for exponent in KINDS[kind])
+    unit = (length, time, mass)
+    other = in_other_units(scene, unit)
+    until = min(scene.duration, scene.horizon, scene.comparable_until, getattr(scene, "corner", math.inf) / 2)
+    times = until * np.array([0.0, 0.13, 0.5, 1.0])
+    usual, found = scene.motion(times), other.motion(times * unit[1])
+    place, turn = np.array([unit[0], unit[0], 1.0]), unit[1]
+    assert np.array_equal(np.isnan(usual.reaction), np.isnan(found.reaction))
+    parts = [
+        off(found.pose[..., :2] / place[:2], usual.pose[..., :2]),
+        off(found.pose[..., 2], usual.pose[..., 2]),
+        off(found.twist[..., :2] / place[:2] * turn, usual.twist[..., :2]),
+        off(found.twist[..., 2] * turn, usual.twist[..., 2]),
+    ]
+    force = unit[2] * unit[0] / turn**2
+    turned = np.concatenate([[isinstance(joint, Drive)] * joint.size for joint in scene.mechanism().joints])
+    for rows, size in ((~turned, force), (turned, force * unit[0])):
+        if np.any(np.isfinite(usual.reaction[:, rows])):
+            parts.append(off(found.reaction[:, rows] / size, usual.reaction[:, rows]))
+    return max(parts)
+
+
+# All but the crank that can't turn as far as it is driven: it has no motion to compare.
+ALL = tuple(scene for scene in (*SCENES, *SCENES_OF_LIMITS) if scene.name != "overdriven_four_bar")
+
+
+# Whose truth takes a second and more, or a fifth of it in each of eight units.
+COSTLY = (
+    *("free_four_bar", "spinning_four_bar", "cart", "free_slider_crank", "slider_at_dead_centre", "pendulum_2"),
+    *("pendulum_10", "pendulum_100", "pendulum_n", "rolling_cam", "rolling_in_ring", "rolling_ellipse"),
+    *("rolling_disc", "rolling_incline", "person_swaying", "person_one_foot", "person_two_feet", "n_four_bar_40"),
+)
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scene", [each for each in ALL if each.name not in COSTLY], ids=lambda scene: scene.name)
+def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
+    # In closed form, or integrated in nearly the same steps: what is left is rounding.
+    assert difference(scene, kind, SCALES[scale]) < 1e-12
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scene", [each for each in ALL if each.name in COSTLY], ids=lambda scene: scene.name)
+def test_a_costly_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
+    # Chaotic ones magnify a rounding up to their horizon, where a difference has grown tenfold and more.
+    assert difference(scene, kind, SCALES[scale]) < 1e-9
+
+
+def test_a_number_left_in_its_old_unit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(UNITS, "gravity", LENGTH)
+    assert difference(RollingDisc(), "time", SCALES["giga"]) > 1e-3

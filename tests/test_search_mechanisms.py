@@ -1,0 +1,129 @@
+"""Random mechanisms: the same from the same numbers, right at the start, as wide as they say."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engines.lagrange import TRUTH
+from reference.validation import InvalidMechanism
+from reports.search.mechanisms import ALL, mechanism, recipe
+from reports.search.recipe import LEAST_RANK, Link, Part, Recipe, Rim, as_text, build, from_text, ladder
+
+CASES = range(40)
+
+
+def test_a_case_depends_on_its_own_numbers_alone():
+    assert recipe(3, 41) == recipe(3, 41)
+    assert len({as_text(recipe(seed, number)) for seed in (3, 4) for number in CASES}) == 2 * len(CASES)
+    assert recipe(3, 41, ("slot", "pin")) == recipe(3, 41, ("pin", "slot"))
+
+
+def test_the_numbers_of_a_case_are_those_of_every_machine():
+    """Written down once: another generator, or another order of drawing, would change every published number."""
+    assert as_text(recipe(1, 13, ("pin", "skate"))) == PUBLISHED
+
+
+PUBLISHED = (
+    '{"gravity": [9, 10], "links": [{"at": [4, -1], "first": 0, "kind": "pin", "second": 1, "turn": 3}, {'
+    '"at": [3, -1], "first": 0, "kind": "skate", "second": 2, "turn": 8}], "parts": [{"angle": -10, "gyra'
+    'tion": -1, "mass": -1, "offset": [-7, -6], "size": 1, "velocity": [2, -2, -6]}, {"angle": -9, "gyrat'
+    'ion": -2, "mass": -3, "offset": [-3, -3], "velocity": [0, 3, 1]}]}'
+)
+
+
+@pytest.mark.parametrize("decades", [0, 2])
+def test_every_start_fulfils_its_joints_and_none_hold_the_same(decades):
+    for number in CASES:
+        drawn = mechanism(5, number, decades=decades)  # a start off its joints is refused by Mechanism itself
+        rows = drawn.rows(drawn.pose) / np.tile([1, 1, drawn.length_scale], len(drawn.bodies))
+        sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
+        assert sizes[-1] >= 0.999 * LEAST_RANK * sizes[0]  # the last digits of the threshold
+        assert drawn.twist.any() or np.hypot(*drawn.gravity) > 0
+
+
+@pytest.mark.parametrize("kind", ALL)
+def test_kinds_are_those_asked_for(kind):
+    assert {link.kind for number in CASES for link in recipe(5, number, (kind,)).links} == {kind}
+
+
+def test_all_that_is_promised_comes_up():
+    """In 400 cases of each spread: trees, loops, rest, motion, drives in a loop, skates and slots on moving bodies."""
+    seen: Counter[str] = Counter()
+    for number in range(400):
+        drawn = recipe(6, number)
+        seen["at rest"] += not any(any(part.velocity) for part in drawn.parts)
+        seen["without gravity"] += not any(drawn.gravity)
+        seen["loop"] += len({frozenset((link.first, link.second)) for link in drawn.links}) > len(drawn.parts)
+        for link in drawn.links:
+            seen[link.kind] += 1
+            seen[f"{link.kind} on a moving body"] += link.first > 0
+            seen[f"{link.kind} at the centre of mass"] += link.at == (0, 0)
+            if link.rims:
+                seen[" on ".join(rim.shape for rim in link.rims[::-1])] += 1
+    assert min(seen.values()) >= 10, seen
+    assert len(seen) == 3 + 3 * len(ALL) + 7, seen
+    masses = [
+        10 ** np.ptp([np.log10(float(ladder(part.mass))) for part in recipe(6, n, decades=3).parts]) for n in CASES
+    ]
+    assert max(masses) > 1e6
+
+
+def test_a_recipe_survives_being_written():
+    for number in CASES:
+        drawn = recipe(7, number, decades=1)
+        assert from_text(as_text(drawn)) == drawn
+
+
+def test_units_are_units():
+    """The same mechanism in millimetres, tonnes and minutes-like units: rows, masses and rates scale, nothing else."""
+    for number in CASES:
+        drawn = recipe(8, number)
+        plain, scaled = build(drawn), build(replace(drawn, decades=(-3, 2, 1)))
+        assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
+        # Velocities are solved for: rounding times the condition of the rows, of the largest.
+        speed = np.abs(plain.twist[:, 2]).max() + np.abs(plain.twist[:, :2]).max() + 1
+        assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
+        assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
+        if plain.length_scale != 1:  # a metre stands for none at all
+            assert scaled.time_scale == pytest.approx(10 * plain.time_scale, rel=1e-9)
+
+
+def test_the_judge_runs_them():
+    """Joints stay closed and nothing is lost, so that a gap in an engine is the engine's."""
+    for number in range(6):
+        drawn = mechanism(9, number)
+        run = TRUTH.build(drawn, 1e-3)(1, 20)
+        assert np.isfinite(run.pose).all()
+        gap = np.nan_to_num(drawn.gap(run.pose, run.t))
+        assert np.abs(gap).max() < 1e-11 * max(1.0, drawn.length_scale)  # projected to the rounding of the rows
+
+
+@pytest.mark.parametrize(
+    ("told", "why"),
+    [
+        (Recipe((Part(parent=1),), ()), "parent"),
+        (Recipe((Part(),), (Link("pin", 1, 1),)), "differ"),
+        (Recipe((Part(),), (Link("pin", 0, 2),)), "second from 1"),
+        (Recipe((Part(),), (Link("weld", 0, 1),)), "one of pin"),
+        (Recipe((Part(),), (Link("roll", 0, 1),)), "two rims"),
+        (Recipe((Part(),), (Link("roll", 0, 1, rims=(Rim("square"), Rim())),)), "one of line"),
+        (Recipe((Part(),), (Link("pin", 0, 1), Link("pin", 0, 1))), "dependent"),
+        (Recipe((Part(),), (Link("roll", 0, 1, rims=(Rim("line"), Rim("line"))),)), "curvatures"),
+    ],
+)
+def test_a_recipe_that_is_none_is_refused(told, why):
+    with pytest.raises(InvalidMechanism, match=why):
+        build(told)
+
+
+def test_kinds_that_are_none_are_refused():
+    with pytest.raises(InvalidMechanism, match="weld"):
+        recipe(0, 0, ("pin", "weld"))
+    with pytest.raises(InvalidMechanism, match="one or some of"):
+        recipe(0, 0, ())
+    with pytest.raises(ValueError, match="no recipe"):
+        from_text('{"parts": [{"colour": 1}], "links": []}')

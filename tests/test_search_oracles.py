@@ -1,0 +1,208 @@
+"""What the search asks: right adapters pass, and every mistake that is put into one is found."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engines import Promise, Run
+from engines.lagrange import Lagrange
+from engines.mujoco import DEFAULT, EXTENDED, MuJoCo
+from engines.mujoco.joints import slot as mujoco_slot
+from engines.mujoco.running import MuJoCoRun
+from engines.pymunk import LEAPFROG, Pymunk
+from engines.pymunk import model as pymunk_model
+from engines.pymunk.model import Model
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reports.search import raw, raw_draw
+from reports.search.mechanisms import ALL
+from reports.search.relations import NAMES
+from reports.search.scripts import script
+from reports.search.shrinking import shrunk
+from reports.search.subjects import Adapted, Alone, Told
+
+SEED = 1
+
+
+def told(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> list[Told]:
+    subject = Adapted(engine)
+    return [subject.ask(subject.draw(SEED, number, kinds, 0), number, (oracle,)) for number in range(cases)]
+
+
+def faults(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> set[str]:
+    """The checks that fail in any of these cases."""
+    return {check for one in told(engine, kinds, cases, oracle) for check in one.faults}
+
+
+# -------------------------------------------------------------------------------------------------- what is right
+
+
+@pytest.mark.parametrize(
+    ("engine", "kinds"),
+    [(DEFAULT, ("pin",)), (EXTENDED, ("pin", "slot", "skate")), (LEAPFROG, ("pin", "slot", "skate", "drive"))],
+    ids=lambda value: getattr(value, "variant", None),
+)
+def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, ...]) -> None:
+    found = told(engine, kinds, 8)
+    assert sum(bool(one.errors) for one in found) >= 5, "nearly nothing was asked"
+    assert {check for one in found for check in one.faults} == set()
+
+
+def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
+    for number in range(25):
+        assert raw.errors(raw_draw.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
+
+
+# ------------------------------------------------------------------------------------- mistakes put into adapters
+
+
+@dataclass(frozen=True)
+class HeavierToTurn(MuJoCo):
+    """An inertia off by 1e-4."""
+
+    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
+        return super().build(_turning_harder(mechanism), dt)
+
+
+@dataclass(frozen=True)
+class HeavierToTurnThere(Pymunk):
+    """The same in pymunk."""
+
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
+        return super().swept_model(_turning_harder(mechanism), dt, sweeping)
+
+
+def _turning_harder(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, bodies=tuple(replace(body, inertia=1.0001 * body.inertia) for body in mechanism.bodies))
+
+
+@pytest.mark.parametrize("engine", [HeavierToTurn("default"), HeavierToTurnThere("leapfrog", leapfrog=True)])
+def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any) -> None:
+    assert faults(engine, ("pin",), 6) & {"acceleration", "velocity"}
+
+
+def test_a_sign_flipped_in_a_row_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right: Callable[..., Any] = mujoco_slot.slot_rows
+
+    def flipped(*given: Any) -> Any:
+        rows = right(*given)
+        return lambda t, first, second: [(*row[:2], -row[2], *row[3:]) for row in rows(t, first, second)]
+
+    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    assert "instant" in faults(EXTENDED, ("slot",), 8)  # MuJoCo then has a row that is none of the mechanism's
+
+
+def test_a_velocity_term_of_the_wrong_sign_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right: Callable[..., Any] = mujoco_slot.slot_rows
+
+    def flipped(*given: Any) -> Any:
+        rows = right(*given)
+        return lambda t, first, second: [(*row[:6], -row[6]) for row in rows(t, first, second)]
+
+    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    assert "acceleration" in faults(EXTENDED, ("slot",), 8)
+
+
+def test_a_motor_that_turns_the_wrong_way_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.motor
+    monkeypatch.setattr(
+        pymunk_model,
+        "motor",
+        lambda joint, *given: right(replace(joint, turning_rate=-joint.turning_rate), *given),
+    )
+    assert "velocity" in faults(LEAPFROG, ("pin", "drive"), 12)
+
+
+def test_a_reaction_read_at_the_wrong_time_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = MuJoCoRun.__call__
+
+    def late(self: MuJoCoRun, samples: int, every: int) -> Trajectory:
+        run = right(self, samples, every)
+        return replace(run, reaction=np.roll(run.reaction, 1, axis=0))
+
+    monkeypatch.setattr(MuJoCoRun, "__call__", late)
+    assert "reaction" in faults(DEFAULT, ("pin",), 6)
+
+
+@dataclass(frozen=True)
+class Downwards(Pymunk):
+    """Gravity as strong as asked for, and downwards whatever its direction."""
+
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        return super().build(replace(mechanism, gravity=(0.0, -math.hypot(*mechanism.gravity))), dt)
+
+
+def test_a_direction_of_the_world_that_is_taken_for_granted_is_found() -> None:
+    subject = Adapted(Downwards("tuned"))
+    case = next(case for case in (subject.draw(SEED, n, ("pin",), 0) for n in range(20)) if case.gravity[0])
+    assert subject.ask(case, NAMES.index("turned"), ("relations",)).faults == ("turned",)
+
+
+@dataclass(frozen=True)
+class Boasting(Lagrange):
+    """A method of the first order that promises the fourth."""
+
+    def order(self, mechanism: Mechanism) -> Promise:
+        return Promise(4)
+
+
+def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
+    assert faults(Boasting("euler", "projection"), ("pin",), 3, "motions") & {"motion", "reactions"}
+    assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
+
+
+@dataclass(frozen=True)
+class Careless(Lagrange):
+    """Gives an exception where it can't go on."""
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        raise KeyError("body 7")
+
+
+def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
+    [one] = told(Careless(), ALL, 1, "motions")
+    assert one.faults == ("raised",)
+    assert "body 7" in one.words
+
+
+# --------------------------------------------------------------------------------------------- faults of MuJoCo's own
+
+
+def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script() -> None:
+    """MuJoCo up to 4.0.1: polycoef beyond the slope. One body is left, and the script shows it without our code."""
+    subject = Alone()
+    number = next(n for n in range(20) if subject.ask(raw_draw.model(SEED, n, ("joint",)), n, ("instant",)).faults)
+    case = raw_draw.model(SEED, number, ("joint",))
+
+    def still(smaller: raw.Model) -> bool:
+        try:
+            return bool(subject.ask(smaller, number, ("instant",)).faults)
+        except ValueError:
+            return False
+
+    small = shrunk(case, still, 20.0)
+    assert len(small.links) <= 2
+    assert len(small.equalities) == 1
+    assert sum(abs(value) for link in small.links for value in (*link.offset, *link.centre, link.mass)) <= 1
+    text = script(subject, small, "acceleration")
+    assert "reports" not in text
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    largest = float(done.stdout.split("largest difference")[1])
+    assert largest > 1e-4  # of accelerations of about 0.01: rates are halves
+
+
+def test_a_script_for_pymunk_prints_what_the_joints_ask_for() -> None:
+    subject = Adapted(LEAPFROG)
+    case = subject.draw(SEED, 3, ("pin", "slot"), 0)
+    text = script(subject, case, "velocity")
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert float(done.stdout.split("largest difference")[1]) < 1e-9  # a right case: expected is what is found
+    assert "reports" not in text
