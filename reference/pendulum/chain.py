@@ -31,7 +31,8 @@ NUDGE = 1e-6  # rad, the difference of starts whose growth is measured: small ag
 TENFOLD = 10.0
 # Beyond this ratio of masses the forces are refined: a light link passes a heavy one's force on as a small difference.
 UNEVEN = 10.0
-REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
+REFINEMENTS = 3  # at most: each adds about as many digits as the first solution has, enough up to a ratio of 1e9
+DIGITS = 19.0  # of the extended precision in which what is missing is known
 
 
 @dataclass(frozen=True)
@@ -107,10 +108,18 @@ class Chain(Valid):
             return solution.reshape(*leading, self.links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
         forces = np.zeros((*leading, self.links, 2), dtype=np.longdouble)
-        for _ in range(1 + REFINEMENTS):
+        for _ in range(1 + self._refinements):
             missing = self._parting(angle, rate, forces).astype(float)
             forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
         return forces
+
+    @cached_property
+    def _refinements(self) -> int:
+        """How often the solution is refined: a ratio r of masses and n links leave log10(r n) digits less than a double
+        has.
+        """
+        had = -math.log10(np.finfo(float).eps) - math.log10(self.links * max(self.masses) / min(self.masses))
+        return REFINEMENTS if had <= DIGITS / (1 + REFINEMENTS) else math.ceil(DIGITS / had) - 1
 
     def _alike(self, *given: ArrayLike) -> list[Array]:
         """Angles, rates and accelerations as arrays; raises InvalidMechanism unless they have a number a link."""
