@@ -21,8 +21,8 @@ from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy
 from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
-from engines.mujoco.solver_check import choose_solver
-from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
+from engines.mujoco.solver_check import choose_solver, ease
+from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.mujoco.tree import Tree, spanning_tree
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
@@ -165,7 +165,9 @@ class MuJoCo(Valid):
             self.rolls,
         )
         model = build_model(mechanism, dt, settings)
-        choose_solver(model, self.solvers, self.stiffness.softening)
+        choose_solver(model, self.solvers)
+        if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
+            ease(model, self.stiffness.softening)
         return model
 
 
