@@ -52,7 +52,8 @@ def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...
 
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
     """What the engine's declared softness alone costs at this step [s]; 0 where it declares none, NaN if not known."""
-    softness = engine.softness(mechanism_of(scene), step)
+    mechanism = mechanism_of(scene)
+    softness = engine.softness(mechanism, step)
     soft: dict[Kind, dict[str, float]] = {}
     for complete in (True, False):
         rows = softness.rows if softness is not None else ()
@@ -60,6 +61,6 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
         if answer is not None and answer.finished:
             soft[rows, complete] = {name: answer.number(name) for name in QUANTITY_NAMES}
     try:
-        return given(soft, quantity, softness)
+        return given(soft, quantity, softness, mechanism.holonomic.tolist())
     except KeyError:  # the judge was not asked, or failed
         return math.nan
