@@ -107,10 +107,15 @@ class Chain(Valid):
             )
             return solution.reshape(*leading, self.links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
-        forces = np.zeros((*leading, self.links, 2), dtype=np.longdouble)
-        for _ in range(1 + self._refinements):
-            missing = self._parting(angle, rate, forces).astype(float)
-            forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
+
+        def solved(gap: Array) -> Array:
+            return cho_solve_banded((factor, False), gap.reshape(-1), check_finite=False).reshape(gap.shape)
+
+        forces = solved(right).astype(np.longdouble)
+        half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
+        centripetal = np.asarray(rate, dtype=np.longdouble)[..., None] ** 2 * half
+        for _ in range(self._refinements):
+            forces -= solved(self._parting(perpendicular(half), centripetal, forces).astype(float))
         return forces
 
     @cached_property
@@ -132,14 +137,16 @@ class Chain(Valid):
             )
         return states
 
-    def _parting(self, angle: Array, rate: Array, forces: Any) -> Any:
-        """How fast the joints would part under these forces (..., links, 2) [m/s^2], in extended precision."""
-        half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
+    def _parting(self, normal: Any, centripetal: Any, forces: Any) -> Any:
+        """How fast the joints would part under these forces (..., links, 2) [m/s^2], in extended precision.
+
+        `normal`: the links' halves, turned by a quarter (..., links, 2) [m]; `centripetal`: rate^2 times the halves.
+        """
         below = np.zeros_like(forces)
         below[..., :-1, :] = forces[..., 1:, :]
         centre = (forces - below) / self._mass[:, None]
-        alpha = -np.sum(perpendicular(half) * (forces + below), axis=-1) / self.inertia
-        lever = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), alpha, half)
+        alpha = -np.sum(normal * (forces + below), axis=-1) / self.inertia
+        lever = alpha[..., None] * normal - centripetal
         out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
         out[..., 1:, :] -= (centre + lever)[..., :-1, :]
         out[..., 0, 1] -= self.gravity

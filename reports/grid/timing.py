@@ -13,8 +13,8 @@ Result = TypeVar("Result")
 
 BUDGET = 0.05  # s spent on repeating one cell
 MOST_RUNS = 5
-# s: not repeated from here on. Of runs of 0.2 to 0.5 s the first took 1.00 times the later ones' time (median of ten, by
-# which single runs scatter more), of 0.1 to 0.2 s 1.04 times; and they are two fifths of all stepping of the full grid.
+# s: not repeated from here on. The first of runs of 0.2 to 0.5 s took 1.00 times as long as the later ones (median of
+# ten; single runs scatter by more), of 0.1 to 0.2 s 1.04 times. They are two fifths of all stepping of the full grid.
 LONG = 0.2
 
 
