@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.body import Body
+from reference.forces import ForceElement
 from reference.joint_rows import JointRows
 from reference.joints import Joint, Vector
 from reference.kinds import Floats
@@ -45,21 +46,25 @@ class Mechanism(Valid):
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     gravity: Vector = (0.0, 0.0)
+    forces: tuple[ForceElement, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.bodies:
             raise InvalidMechanism("mechanism: it has no bodies; give at least one")
-        for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
-            for name, count in Counter(names).items():
+        for kind, members in (("bodies", self.bodies), ("joints", self.joints), ("forces", self.forces)):
+            for name, count in Counter(member.name for member in members).items():
                 if count > 1:
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
-        for joint in self.joints:
-            for name in (joint.first, joint.second):
-                if name is not None and name not in self._index:
-                    raise self._unknown(f"joint {joint.name!r}", name)
-            if joint.first == joint.second:
-                raise InvalidMechanism(f"joint {joint.name!r}: it joins {joint.first!r} with itself; name two bodies")
+        for kind, members in (("joint", self.joints), ("force", self.forces)):
+            for member in members:
+                for name in (member.first, member.second):
+                    if name is not None and name not in self._index:
+                        raise self._unknown(f"{kind} {member.name!r}", name)
+                if member.first == member.second:
+                    raise InvalidMechanism(
+                        f"{kind} {member.name!r}: it joins {member.first!r} with itself; name two bodies"
+                    )
         self._refuse_a_start_off_the_joints()
 
     def _refuse_a_start_off_the_joints(self) -> None:
