@@ -165,11 +165,11 @@ class Tree:
 
 
 def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
-    """The tree that grows breadth first from the ground along welds, pins and slots; what they don't reach moves freely.
+    """The tree that grows breadth first from the ground along welds, pins and slots; all it doesn't reach moves freely.
 
-    Not `hanging`, every body moves freely. Every one of them that holds no link is a loop. A slot holds a link where
-    its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the angle. The trees of the
-    last mechanisms are kept: a report asks for one once a joint.
+    Not `hanging`, every body moves freely. Every one of them that holds no link is a loop. A slot holds a link
+    where its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the
+    angle. The trees of the last mechanisms are kept: a report asks for one once a joint.
     """
     return _tree_of(_Same(mechanism), hanging)
 
