@@ -53,8 +53,8 @@ class Dyad(Valid):
     def angles(self, reach: Moving) -> tuple[Moving, Moving]:
         """Directions of both bars [rad], from -pi to pi, for the complex vector `reach` [m] from pivot to point.
 
-        NaN where the bars don't reach. reach = a e^(i mu) + b e^(i nu), so the part of a derivative across one bar is
-        the other's alone.
+        NaN where the bars don't reach. reach = a e^(i mu) + b e^(i nu), so the part of a derivative along one bar is
+        the turning of the other alone.
         """
         a, b = self.first, self.second
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -63,10 +63,11 @@ class Dyad(Valid):
             across = self.side * np.sqrt(a**2 - along**2)
             unit = reach.value / distance
             one, other = unit * (along + 1j * across) / a, unit * (distance - along - 1j * across) / b
-            folded = (one * np.conj(other)).imag  # sin(mu - nu): zero where the bars are in line
+            folded = np.imag(one * np.conj(other))  # sin(mu - nu): zero where the bars are in line
 
             def rates(change: Array) -> tuple[Array, Array]:
-                return -(change * np.conj(other)).real / (a * folded), (change * np.conj(one)).real / (b * folded)
+                along_b, along_a = np.real(change * np.conj(other)), np.real(change * np.conj(one))
+                return -along_b / (a * folded), along_a / (b * folded)
 
             mu, nu = rates(reach.first)
             mu_second, nu_second = rates(reach.second + a * one * mu**2 + b * other * nu**2)

@@ -25,7 +25,7 @@ from reference.andrews.dyad import Dyad, Moving, direction
 from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, integrate
+from reference.numerics.integration import Integrated, integrate, units_of_motion
 from reference.plane import from_complex
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
@@ -156,22 +156,18 @@ class Andrews(Scene):
         for mass, own, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
             inertia = inertia + mass * np.abs(centre.first) ** 2 + own * angle.first**2
             change = (
-                change + 2 * mass * (np.conj(centre.first) * centre.second).real + 2 * own * angle.first * angle.second
+                change
+                + 2 * mass * np.real(np.conj(centre.first) * centre.second)
+                + 2 * own * angle.first * angle.second
             )
         length = np.abs(apart.value)
         pull = self.stiffness * (length - self.rest_length) / length
-        return inertia, change, pull * (np.conj(apart.value) * apart.first).real - self.torque
-
-    @cached_property
-    def rate_unit(self) -> float:
-        """A rate [rad/s] by which the integration counts time, so that it has no unit of its own."""
-        strength = abs(self.torque) + self.stiffness * self.crank[0] ** 2
-        return math.sqrt(strength / float(self._reduced(np.array(self.angle))[0]))
+        return inertia, change, pull * np.real(np.conj(apart.value) * apart.first) - self.torque
 
     def _rates(self, state: Array) -> Array:
         phi, rate = state[..., 0], state[..., 1]
         inertia, change, slope = self._reduced(phi)
-        return np.stack([rate, -(change * rate**2 / 2 + slope / self.rate_unit**2) / inertia], axis=-1)
+        return np.stack([rate, -(change * rate**2 / 2 + slope) / inertia], axis=-1)
 
     @cached_property
     def _known(self) -> list[tuple[float, Integrated]]:
@@ -179,16 +175,17 @@ class Andrews(Scene):
 
     def _states(self, times: Array) -> Array:
         """phi and phi' (times, 2) [rad, rad/s]."""
-        until = max(self.duration, float(times.max(initial=0.0)))
+        until, start = max(self.duration, float(times.max(initial=0.0))), np.array([self.angle, 0.0])
         if not (self._known and self._known[0][0] >= until):
-            self._known[:] = [(until, integrate(self._rates, [self.angle, 0.0], until * self.rate_unit))]
-        return self._known[0][1](times * self.rate_unit) * [1.0, self.rate_unit]
+            unit = units_of_motion(self._rates, start)
+            self._known[:] = [(until, integrate(self._rates, start, until, unit=unit))]
+        return self._known[0][1](times)
 
     def _placement(self, times: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 7, 3)."""
         state = self._states(times)
         phi, rate = state[:, 0], state[:, 1]
-        gain = self._rates(state / [1.0, self.rate_unit])[:, 1] * self.rate_unit**2
+        gain = self._rates(state)[:, 1]
         angles, centres, _ = self._placed(phi)
         parts = []
         for order in range(3):
