@@ -16,6 +16,7 @@ from reports.cli.run import run
 from reports.cli.search import search
 from reports.cli.shapes import shapes
 from reports.cli.show import show
+from reports.cli.site import site
 from reports.cli.terminal import written
 from reports.cli.versions import versions
 from reports.grid.ending import FINE, STATUSES
@@ -38,6 +39,7 @@ app.command("conform")(conform)
 app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
+app.command("site")(site)
 
 
 def invoke(arguments: Sequence[str]) -> int:
