@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
+from reports.cli.animate import animate
 from reports.cli.bench import bench
 from reports.cli.compare import compare
 from reports.cli.conform import conform
@@ -39,6 +40,7 @@ app.command("conform")(conform)
 app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
+app.command("animate")(animate)
 app.command("site")(site)
 
 

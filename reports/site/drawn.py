@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,9 @@ from reports.site.lesson import Point, Take
 Array = NDArray[np.float64]
 
 BLOCK = 0.07  # of the mechanism's length: half the side of a body that has no extent of its own
+PIN = 0.018  # of the mechanism's length: the radius of a pin
 BLADE = 0.16  # of the mechanism's length: a blade
+SUPPORT = 0.05  # of the mechanism's length: half the width of a support
 OUTLINE = 160  # points of a curve
 
 
@@ -36,11 +39,24 @@ def placed(pose: Sequence[float]) -> str:
     return f"translate({number(x)} {number(y)}) rotate({number(np.degrees(angle), 4)})"
 
 
-def body_shape(mechanism: Mechanism, take: Take, name: str) -> str:
-    """What is drawn of a body, in its own frame."""
+@dataclass(frozen=True)
+class Line:
+    """A line of a drawing: its kind, which gives its look, and its points (points, 2) [m]."""
+
+    kind: str
+    points: Array
+    closed: bool = False
+
+    def svg(self) -> str:
+        """As an element."""
+        return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
+
+
+def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Line]:
+    """What is drawn of a body, in its own frame; its pins are `pins_of`."""
     size = mechanism.length_scale
     points: list[Point] = list(take.ends.get(name, ()))
-    parts: list[str] = []
+    lines: list[Line] = []
     for joint in mechanism.joints:
         for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
             if owner != name or isinstance(joint, Roll) or not hasattr(joint, attribute):
@@ -51,32 +67,32 @@ def body_shape(mechanism: Mechanism, take: Take, name: str) -> str:
         if isinstance(joint, Skate) and joint.second == name:
             half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
             centre = np.array(joint.second_point)
-            parts.append(f'<path class="blade" d="{path([centre - half, centre + half])}"/>')
+            lines.append(Line("blade", np.array([centre - half, centre + half])))
             points.append((0.0, 0.0))
         if isinstance(joint, Roll):
             for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
                 if owner == name:
-                    arcs = np.linspace(0.0, curve.length, OUTLINE)
-                    outline = curve.point(arcs)
-                    parts.append(f'<path class="outline" d="{path(outline, closed=True)}"/>')
-                    parts.append(f'<path class="spoke" d="{path([(0.0, 0.0), outline[0]])}"/>')
-    for owner, curve in take.curves:
-        if owner == name:
-            parts.append(f'<path class="curve" d="{path(curve)}"/>')
+                    outline = curve.point(np.linspace(0.0, curve.length, OUTLINE))
+                    lines += [Line("outline", outline, True), Line("spoke", np.array([(0.0, 0.0), outline[0]]))]
+    lines += [Line("curve", np.array(curve)) for owner, curve in take.curves if owner == name]
     unique = sorted(dict.fromkeys(points))
     if len(unique) > 1:
-        parts.append(f'<path class="bar" d="{path(unique)}"/>')
+        lines.append(Line("bar", np.array(unique)))
     elif len(unique) == 1 and np.hypot(*unique[0]) > 1e-9 * size:
-        parts.append(f'<path class="bar" d="{path([unique[0], (0.0, 0.0)])}"/>')
-    elif not parts:
-        half = BLOCK * size
-        corners = [(-half, -0.6 * half), (half, -0.6 * half), (half, 0.6 * half), (-half, 0.6 * half)]
-        parts.append(f'<path class="outline" d="{path(corners, closed=True)}"/>')
-    for point in pins_of(mechanism, name):
-        parts.append(
-            f'<circle class="pin" cx="{number(point[0])}" cy="{number(point[1])}" r="{number(0.018 * size)}"/>'
-        )
-    return "".join(parts)
+        lines.append(Line("bar", np.array([unique[0], (0.0, 0.0)])))
+    elif not lines:
+        half = BLOCK * size * np.array([1.0, 0.6])
+        lines.append(Line("outline", half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]), True))
+    return lines
+
+
+def body_shape(mechanism: Mechanism, take: Take, name: str) -> str:
+    """The same as SVG, with its pins."""
+    radius = number(PIN * mechanism.length_scale)
+    pins = [
+        f'<circle class="pin" cx="{number(x)}" cy="{number(y)}" r="{radius}"/>' for x, y in pins_of(mechanism, name)
+    ]
+    return "".join([line.svg() for line in body_lines(mechanism, take, name)] + pins)
 
 
 def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
@@ -90,27 +106,30 @@ def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
     return list(dict.fromkeys(point for owner, point in sides if owner == name))
 
 
-def ground(mechanism: Mechanism, take: Take, pose: Array) -> str:
+def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Line]:
     """What does not move: supports, lines of slots, curves that are rolled on; `pose` (times, bodies, 3), the truth."""
-    size, parts = mechanism.length_scale, []
+    size = mechanism.length_scale
+    lines = []
     for joint in mechanism.joints:
         if isinstance(joint, Pin) and None in (joint.first, joint.second):
             x, y = joint.first_point if joint.first is None else joint.second_point
-            half = 0.05 * size
+            half = SUPPORT * size
             corners = [(x, y), (x - half, y - 1.6 * half), (x + half, y - 1.6 * half)]
-            parts.append(f'<path class="support" d="{path(corners, closed=True)}"/>')
+            lines.append(Line("support", np.array(corners), True))
         if isinstance(joint, Slot) and joint.first is None:
             along = np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
             origin = np.array(joint.first_point)
             reach = (pose[:, mechanism.body_index(str(joint.second)), :2] - origin) @ along
-            ends = [origin + along * (reach.min() - 0.2 * size), origin + along * (reach.max() + 0.2 * size)]
-            parts.append(f'<path class="rail" d="{path(ends)}"/>')
+            ends = (reach.min() - 0.2 * size, reach.max() + 0.2 * size)
+            lines.append(Line("rail", np.array([origin + along * end for end in ends])))
         if isinstance(joint, Roll) and joint.first is None:
-            parts.append(f'<path class="rail" d="{path(rolled_on(joint, pose, mechanism))}"/>')
-    for owner, curve in take.curves:
-        if owner is None:
-            parts.append(f'<path class="curve fixed" d="{path(curve)}"/>')
-    return "".join(parts)
+            lines.append(Line("rail", rolled_on(joint, pose, mechanism)))
+    return [*lines, *(Line("curve fixed", np.array(curve)) for owner, curve in take.curves if owner is None)]
+
+
+def ground(mechanism: Mechanism, take: Take, pose: Array) -> str:
+    """The same as SVG."""
+    return "".join(line.svg() for line in ground_lines(mechanism, take, pose))
 
 
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:

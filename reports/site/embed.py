@@ -15,7 +15,7 @@ from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.grid.tasks import Answer, Motion, trajectory_of
+from reports.grid.tasks import Answer, trajectory_of
 from reports.site import drawn
 from reports.site.lesson import Take
 
@@ -37,7 +37,7 @@ class Shown:
     lost: Mapping[str, str]  # legend -> why there is no motion
 
 
-def shown(take: Take, answers: Mapping[Motion, Answer]) -> Shown:
+def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
     """The take at its frames. A method that was not run, or did not finish, is told in `lost`."""
     motions: dict[str, Array] = {}
     lost: dict[str, str] = {}
