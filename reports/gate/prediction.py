@@ -37,8 +37,9 @@ MOST_STEPS = 20_000
 DIFFERENCES = 1000
 
 
-# What the judge's fourth order leaves of these is not of the motion alone: of a position it is how far rows that are left
-# alone drift, and energy it keeps an order better than the motion. Below both orders the angle's own time scale counts.
+# What the judge's fourth order leaves of these is not of the motion alone: of a position it is how far rows that are
+# left alone drift, and energy it keeps an order better than the motion. Below both orders the angle's own time scale
+# counts.
 OTHERWISE = ("position", "energy")
 
 
