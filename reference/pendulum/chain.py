@@ -32,14 +32,9 @@ NUDGE = 1e-6  # rad, the difference of starts whose growth is measured: small ag
 TENFOLD = 10.0
 # Beyond this ratio of masses the forces are refined: a light link passes a heavy one's force on as a small difference.
 UNEVEN = 10.0
-<<<<<<< HEAD
-REFINEMENTS = 3  # at most: each adds about as many digits as the first solution has, enough up to a ratio of 1e9
-DIGITS = 19.0  # of the extended precision in which what is missing is known
-=======
 REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
 # A correction this small, in parts of the forces, is the last: the next would be its square, below extended rounding.
 CORRECTED = 3e-10
->>>>>>> trace
 
 
 @dataclass(frozen=True)
@@ -115,11 +110,6 @@ class Chain(Valid):
             return solution.reshape(*leading, self.links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
         forces = np.zeros((*leading, self.links, 2), dtype=np.longdouble)
-<<<<<<< HEAD
-        for _ in range(1 + self._refinements):
-            missing = self._parting(angle, rate, forces).astype(float)
-            forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
-=======
         parting = self._parting(angle, rate)
         for _ in range(1 + REFINEMENTS):
             missing = parting(forces).astype(float)
@@ -129,16 +119,7 @@ class Chain(Valid):
             small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
             if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
                 break
->>>>>>> trace
         return forces
-
-    @cached_property
-    def _refinements(self) -> int:
-        """How often the solution is refined: a ratio r of masses and n links leave log10(r n) digits less than a double
-        has.
-        """
-        had = -math.log10(np.finfo(float).eps) - math.log10(self.links * max(self.masses) / min(self.masses))
-        return REFINEMENTS if had <= DIGITS / (1 + REFINEMENTS) else math.ceil(DIGITS / had) - 1
 
     def _alike(self, *given: ArrayLike) -> list[Array]:
         """Angles, rates and accelerations as arrays; raises InvalidMechanism unless they have a number a link."""
