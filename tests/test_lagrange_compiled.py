@@ -149,7 +149,7 @@ def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled):
 
 
 def test_a_run_whose_every_sample_takes_thousands_of_steps_is_told_and_ends():
-    # Masses and lengths five decades apart: some 15000 steps from one sample to the next, which is within what each may.
+    # Masses and lengths five decades apart: some 15000 steps from one sample to the next, which each of them may take.
     own = random_mechanism(1, 152, decades=5)
     found = Lagrange(tolerance=1e-13).build(own, own.time_scale / 10)(20, 1)
     assert np.isnan(found.pose[-1]).all()
