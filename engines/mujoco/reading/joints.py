@@ -1,0 +1,220 @@
+"""MuJoCo's joints and equalities as ideal ones: hinges, slides, connects, welds, couplings of angles."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
+from engines.reading import Names, Note, refuse
+from reference.body import Body
+from reference.joints import Drive, Gear, Joint, Pin, Slot, Vector, Weld
+
+Array = NDArray[np.float64]
+JOINT, EQUALITY, BODY = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_BODY
+
+
+@dataclass(eq=False)
+class Scene:
+    """A model in its start, while it is read: what the readers of joints and of forces ask of it."""
+
+    model: Any
+    data: Any
+    frame: Frame
+    groups: Groups
+    bodies: tuple[Body, ...]
+    names: Names = field(default_factory=Names)
+    notes: list[Note] = field(default_factory=list)
+    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # by equality: what stands for it
+
+    def group(self, body: int) -> int:
+        """The index among the mechanism's bodies, -1 for the ground."""
+        return int(self.groups.of[body])
+
+    def name(self, group: int) -> str | None:
+        return None if group < 0 else self.bodies[group].name
+
+    def parent(self, joint: int) -> int:
+        """The group on which a joint hangs its own."""
+        return self.group(int(self.model.body_parentid[self.model.jnt_bodyid[joint]]))
+
+    def own(self, group: int, place: Any) -> Vector:
+        """A place of the world (3,) [m] in the frame of a body, or of the ground."""
+        x, y = self.frame.in_plane(place)
+        if group < 0:
+            return x, y
+        at_x, at_y, angle = self.bodies[group].pose
+        cosine, sine = np.cos(angle), np.sin(angle)
+        x, y = x - at_x, y - at_y
+        return float(cosine * x + sine * y), float(cosine * y - sine * x)
+
+    def angle(self, group: int) -> float:
+        return 0.0 if group < 0 else self.bodies[group].pose[2]
+
+    def direction(self, group: int, axis: Any) -> float:
+        """The angle [rad] of a direction of the world in the frame of a body."""
+        x, y = self.frame.in_plane(axis)
+        return float(np.arctan2(y, x)) - self.angle(group)
+
+    def sign(self, joint: int) -> float:
+        return float(np.sign(self.data.xaxis[joint] @ self.frame.normal))
+
+    def joints_of(self, group: int) -> range:
+        root = self.groups.roots[group]
+        begin = int(self.model.body_jntadr[root])
+        return range(begin, begin + int(self.model.body_jntnum[root]))
+
+    def note(self, element: str, reason: str) -> None:
+        self.notes.append(Note(element, reason))
+
+
+def tree_joints(scene: Scene) -> list[Joint]:
+    """What hangs every body on its parent."""
+    return [joint for group in range(len(scene.bodies)) for joint in _hung(scene, group)]
+
+
+def _hung(scene: Scene, group: int) -> list[Joint]:
+    model, data = scene.model, scene.data
+    own = list(scene.joints_of(group))
+    kinds = [int(model.jnt_type[index]) for index in own]
+    hinges = [index for index in own if model.jnt_type[index] == HINGE]
+    slides = [index for index in own if model.jnt_type[index] == SLIDE]
+    body = name_of(model, BODY, scene.groups.roots[group])
+    if FREE in kinds:
+        return []
+    if len(hinges) > 1:
+        raise refuse(body, "it has two hinges with nothing between them that has a mass")
+    across = np.linalg.matrix_rank(np.array([data.xaxis[index] for index in slides]).reshape(-1, 3), tol=PLANAR)
+    if across < len(slides):
+        raise refuse(body, "two of its slides are parallel")
+    parent, second = scene.parent(own[0]), scene.name(group)
+    first = scene.name(parent)
+    label = scene.names.new(plain_name(model, JOINT, own[0] if not hinges else hinges[0]))
+    if len(slides) == 2 and hinges:
+        return []
+    turned = scene.angle(group) - scene.angle(parent)
+    if len(slides) == 2:
+        return [Drive(label, first, second, 0.0, turned)]
+    if not slides:
+        anchor = data.xanchor[hinges[0]]
+        return [Pin(label, first, second, scene.own(parent, anchor), scene.own(group, anchor))]
+    axis = data.xaxis[slides[0]]
+    if not hinges:
+        x, y, _ = scene.bodies[group].pose
+        centre = scene.frame.both.T @ [x, y]
+        line = Slot(label, first, second, scene.own(parent, centre), scene.direction(parent, axis), (0.0, 0.0))
+        return [line, Drive(scene.names.new(f"{label}, no turning"), first, second, 0.0, turned)]
+    anchor = data.xanchor[hinges[0]]
+    if slides[0] < hinges[0]:  # the slide comes first: its line is in the parent
+        points = scene.own(parent, anchor), scene.direction(parent, axis), scene.own(group, anchor)
+        return [Slot(label, first, second, *points)]
+    points = scene.own(group, anchor), scene.direction(group, axis), scene.own(parent, anchor)
+    return [Slot(label, second, first, *points)]
+
+
+def equalities(scene: Scene) -> list[Joint]:
+    """What closes loops and couples angles."""
+    model, data = scene.model, scene.data
+    off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    out: list[Joint] = []
+    for index in range(model.neq):
+        element = name_of(model, EQUALITY, index)
+        if not data.eq_active[index] or model.opt.disableflags & int(off):
+            scene.note(element, "it is switched off")
+            continue
+        match int(model.eq_type[index]):
+            case mujoco.mjtEq.mjEQ_CONNECT.value:
+                joints = _connected(scene, index, element)
+            case mujoco.mjtEq.mjEQ_WELD.value:
+                joints = _welded(scene, index, element)
+            case mujoco.mjtEq.mjEQ_JOINT.value:
+                joints = _coupled(scene, index, element)
+            case kind:
+                word = mujoco.mjtEq(kind).name.split("_")[1].lower()
+                raise refuse(element, f"an equality of the kind {word} has no ideal counterpart here")
+        scene.held[index] = tuple(joints)
+        out += joints
+    return out
+
+
+def _ends(scene: Scene, index: int, element: str) -> tuple[int, int, Array, Array]:
+    """The two groups, and where each has its point in the world."""
+    model, data = scene.model, scene.data
+    objects = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
+    if model.eq_objtype[index] == mujoco.mjtObj.mjOBJ_SITE:
+        bodies = [int(model.site_bodyid[each]) for each in objects]
+        places = [data.site_xpos[each] for each in objects]
+    else:
+        bodies = list(objects)
+        parts = (0, 3) if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT else (3, 0)
+        points = [model.eq_data[index][part : part + 3] for part in parts]
+        places = [
+            data.xpos[body] + data.xmat[body].reshape(3, 3) @ point for body, point in zip(bodies, points, strict=True)
+        ]
+    groups = [scene.group(body) for body in bodies]
+    return groups[0], groups[1], places[0], places[1]
+
+
+def _connected(scene: Scene, index: int, element: str) -> list[Joint]:
+    first, second, at, other = _ends(scene, index, element)
+    if first == second:
+        scene.note(element, "it connects a body with itself")
+        return []
+    label = scene.names.new(plain_name(scene.model, EQUALITY, index))
+    return [Pin(label, scene.name(first), scene.name(second), scene.own(first, at), scene.own(second, other))]
+
+
+def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
+    first, second, at, other = _ends(scene, index, element)
+    if first == second:
+        scene.note(element, "it welds a body to itself")
+        return []
+    rows = np.flatnonzero((scene.data.efc_id == index) & (scene.data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY))
+    if np.abs(scene.data.efc_pos[rows]).max(initial=0.0) > PLANAR * max(1.0, scene.model.stat.extent):
+        raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
+    label = scene.names.new(plain_name(scene.model, EQUALITY, index))
+    points = scene.own(first, at), scene.own(second, other)
+    turned = scene.angle(second) - scene.angle(first)
+    return [Weld(label, scene.name(first), scene.name(second), *points, turned)]
+
+
+def _coupled(scene: Scene, index: int, element: str) -> list[Joint]:
+    """Angles of bodies that a coupling of hinges holds in a linear relation: of one body, or of two."""
+    model, data = scene.model, scene.data
+    curve = model.eq_data[index][:5]
+    if np.any(curve[2:]):
+        raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
+    weights: dict[int, float] = {}
+    wrong = -curve[0]
+    for joint, factor in ((int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))):
+        if joint < 0 or factor == 0:
+            continue
+        if model.jnt_type[joint] != HINGE:
+            raise refuse(element, "it couples a slide, which has no ideal counterpart here; couple hinges")
+        place = int(model.jnt_qposadr[joint])
+        wrong += factor * (data.qpos[place] - model.qpos0[place])
+        for group, sign in ((scene.group(int(model.jnt_bodyid[joint])), 1.0), (scene.parent(joint), -1.0)):
+            if group >= 0:
+                weights[group] = weights.get(group, 0.0) + sign * factor * scene.sign(joint)
+    weights = {group: weight for group, weight in weights.items() if abs(weight) > PLANAR}
+    if abs(wrong) > PLANAR:
+        raise refuse(element, f"it is open by {abs(wrong):.2g} rad at the start")
+    label = scene.names.new(plain_name(model, EQUALITY, index))
+    groups = sorted(weights)
+    if len(groups) == 1:
+        return [Drive(label, None, scene.name(groups[0]), 0.0, scene.angle(groups[0]))]
+    if len(groups) != 2:
+        raise refuse(element, f"it couples the angles of {len(groups)} bodies; an ideal gear couples two")
+    first, second = groups
+    ratio = -weights[first] / weights[second]
+    turned = scene.angle(second) - ratio * scene.angle(first)
+    if abs(ratio - 1) <= PLANAR:
+        return [Drive(label, scene.name(first), scene.name(second), 0.0, turned)]
+    return [Gear(label, scene.name(first), scene.name(second), ratio, turned)]
