@@ -37,10 +37,10 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[
         start += joint.size
     ours = mechanism.rows(mechanism.pose) @ directions
     theirs = _dense(model, data)
-    pieces: list[tuple[list[int], Array, Any, float, float, float]] = []
+    pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
     for index, joints in scene.held.items():
         own = [place for joint in joints for place in places[joint.name]]
-        equality = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        equality = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         rows = np.flatnonzero(equality & (data.efc_id == index))
         if not own or not len(rows):
             continue
@@ -53,15 +53,14 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[
                 norm = float(np.linalg.norm(theirs[rows[3:] if len(rows) > 3 else rows]))
                 factors[number] = norm / float(np.linalg.norm(ours[place]) or 1.0)
             estimates[number] = data.efc_R[like] * impedance / (1 - impedance)
-        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, 0.0))
-        pieces[-1] = (*pieces[-1][:5], estimates)  # type: ignore[assignment]
+        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates))
 
     def give(gap: Array) -> Give:
         out = np.zeros((3, mechanism.row_count))
         for own, factors, shape, stiffness, damping, estimates in pieces:
             d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
             out[0, own], out[1, own] = stiffness * d, damping
-            out[2, own] = (1 - d) / d * np.asarray(estimates) / factors**2
+            out[2, own] = (1 - d) / d * estimates / factors**2
         return Give(*out)
 
     return give

@@ -16,7 +16,7 @@ from engines.reading import refuse
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 TENDON, ACTUATOR = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtObj.mjOBJ_ACTUATOR
-FAR = 1e3  # extents of the model: where the far end of a spring along a slide stands
+FAR = 30.0  # extents of the model: where the far end of a spring along a slide stands
 
 
 def off(model: Any, word: str) -> bool:
@@ -109,6 +109,18 @@ def _along(scene: Scene, joint: int) -> tuple[Any, Any, float]:
     return near - length * data.xaxis[joint], near, length
 
 
+def beyond_springs(scene: Scene, t: Any, places: Any) -> tuple[str, float] | None:
+    """When a motion of positions (times, nq) comes near the far end of a spring or damper along a slide, if it does."""
+    model, length = scene.model, FAR * max(1.0, float(scene.model.stat.extent))
+    for joint in np.flatnonzero(model.jnt_type == SLIDE):
+        if model.jnt_stiffness[joint] or model.dof_damping[model.jnt_dofadr[joint]]:
+            way = places[:, model.jnt_qposadr[joint]] - scene.data.qpos[model.jnt_qposadr[joint]]
+            if np.any(way < -0.9 * length):
+                words = f"{name_of(model, JOINT, int(joint))} slides further than the spring that stands for its own"
+                return words, float(t[int(np.argmax(way < -0.9 * length))])
+    return None
+
+
 def pushed(scene: Scene, joint: int, name: str, push: float) -> list[ForceElement]:
     """A constant force or torque along a joint's coordinate."""
     if not push:
@@ -156,7 +168,7 @@ def _of_tendons(scene: Scene) -> list[ForceElement]:
             continue
         begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
         kinds = model.wrap_type[begin : begin + count]
-        if count != 2 or np.any(kinds != mujoco.mjtWrap.mjWRAP_SITE):
+        if count != 2 or np.any(kinds != int(mujoco.mjtWrap.mjWRAP_SITE)):
             raise refuse(element, "only a tendon straight between two sites has an ideal counterpart; this one wraps")
         sites = [int(site) for site in model.wrap_objid[begin : begin + 2]]
         places = [data.site_xpos[site] for site in sites]
@@ -191,14 +203,14 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         gear = float(model.actuator_gear[actuator][0])
         gain, bias = model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]
         simple = (
-            model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE
-            and model.actuator_gaintype[actuator] == mujoco.mjtGain.mjGAIN_FIXED
-            and model.actuator_biastype[actuator] in (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
+            model.actuator_dyntype[actuator] == int(mujoco.mjtDyn.mjDYN_NONE)
+            and model.actuator_gaintype[actuator] == int(mujoco.mjtGain.mjGAIN_FIXED)
+            and model.actuator_biastype[actuator] in (int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE))
             and not _of(model, "actuator_delay", actuator)
         )
         if _of(model, "actuator_armature", actuator) or _of(model, "actuator_damping", actuator):
             raise refuse(element, "armature or damping of an actuator has no ideal counterpart here; give the joint's")
-        affine = bias[:3] if model.actuator_biastype[actuator] == mujoco.mjtBias.mjBIAS_AFFINE else np.zeros(3)
+        affine = bias[:3] if model.actuator_biastype[actuator] == int(mujoco.mjtBias.mjBIAS_AFFINE) else np.zeros(3)
         order = float(data.ctrl[actuator])
         if model.actuator_ctrllimited[actuator] and not off(model, "CLAMPCTRL"):
             order = float(np.clip(order, *model.actuator_ctrlrange[actuator]))
@@ -206,7 +218,7 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         if simple and not push and not np.any(affine):
             scene.note(element, "its control is zero, so it does not act")
             continue
-        kinds = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+        kinds = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
         joint = int(model.actuator_trnid[actuator][0])
         if not simple or model.actuator_trntype[actuator] not in kinds or model.jnt_type[joint] not in (HINGE, SLIDE):
             raise refuse(element, "only a motor or a servo of a hinge or a slide, at constant control, is read")

@@ -129,16 +129,10 @@ def equalities(scene: Scene) -> list[Joint]:
         if not data.eq_active[index] or model.opt.disableflags & int(off):
             scene.note(element, "it is switched off")
             continue
-        match int(model.eq_type[index]):
-            case mujoco.mjtEq.mjEQ_CONNECT.value:
-                joints = _connected(scene, index, element)
-            case mujoco.mjtEq.mjEQ_WELD.value:
-                joints = _welded(scene, index, element)
-            case mujoco.mjtEq.mjEQ_JOINT.value:
-                joints = _coupled(scene, index, element)
-            case kind:
-                word = mujoco.mjtEq(kind).name.split("_")[1].lower()
-                raise refuse(element, f"an equality of the kind {word} has no ideal counterpart here")
+        kind = mujoco.mjtEq(int(model.eq_type[index])).name.split("_")[1].lower()
+        if kind not in EQUALITIES:
+            raise refuse(element, f"an equality of the kind {kind} has no ideal counterpart here")
+        joints = EQUALITIES[kind](scene, index, element)
         scene.held[index] = tuple(joints)
         out += joints
     return out
@@ -148,12 +142,12 @@ def _ends(scene: Scene, index: int, element: str) -> tuple[int, int, Array, Arra
     """The two groups, and where each has its point in the world."""
     model, data = scene.model, scene.data
     objects = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
-    if model.eq_objtype[index] == mujoco.mjtObj.mjOBJ_SITE:
+    if model.eq_objtype[index] == int(mujoco.mjtObj.mjOBJ_SITE):
         bodies = [int(model.site_bodyid[each]) for each in objects]
         places = [data.site_xpos[each] for each in objects]
     else:
         bodies = list(objects)
-        parts = (0, 3) if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT else (3, 0)
+        parts = (0, 3) if model.eq_type[index] == int(mujoco.mjtEq.mjEQ_CONNECT) else (3, 0)
         points = [model.eq_data[index][part : part + 3] for part in parts]
         places = [
             data.xpos[body] + data.xmat[body].reshape(3, 3) @ point for body, point in zip(bodies, points, strict=True)
@@ -176,7 +170,7 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     if first == second:
         scene.note(element, "it welds a body to itself")
         return []
-    rows = np.flatnonzero((scene.data.efc_id == index) & (scene.data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY))
+    rows = np.flatnonzero((scene.data.efc_id == index) & (scene.data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)))
     if np.abs(scene.data.efc_pos[rows]).max(initial=0.0) > PLANAR * max(1.0, scene.model.stat.extent):
         raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
     label = scene.names.new(plain_name(scene.model, EQUALITY, index))
@@ -218,3 +212,6 @@ def _coupled(scene: Scene, index: int, element: str) -> list[Joint]:
     if abs(ratio - 1) <= PLANAR:
         return [Drive(label, scene.name(first), scene.name(second), 0.0, turned)]
     return [Gear(label, scene.name(first), scene.name(second), ratio, turned)]
+
+
+EQUALITIES = {"connect": _connected, "weld": _welded, "joint": _coupled}

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.mujoco.reading.declared import declared
+from engines.mujoco.reading.forces import beyond_springs
 from engines.mujoco.reading.frame import angles_of, name_of
 from engines.mujoco.reading.joints import Scene
 from engines.mujoco.reading.places import positions
@@ -124,7 +125,8 @@ class OwnMuJoCo:
         kinds = mujoco.mjtConstraint
         limits = {int(kinds.mjCNSTR_LIMIT_JOINT): "joint", int(kinds.mjCNSTR_LIMIT_TENDON): "tendon"}
         touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
-        for at, qpos in zip(t, positions(self.scene, pose), strict=True):
+        places = positions(self.scene, pose)
+        for at, qpos in zip(t, places, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
@@ -134,6 +136,8 @@ class OwnMuJoCo:
                 elif kind in touching:
                     pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, int(each)) for each in data.contact[index].geom]
                     found.setdefault(f"{pair[0]} touches {pair[1]}", float(at))
+        if reached := beyond_springs(self.scene, t, places):
+            found.setdefault(*reached)
         return sorted((at, words) for words, at in found.items())
 
     def changes(self, smallest: float) -> list[Change]:
@@ -188,8 +192,12 @@ class OwnMuJoCo:
             warnings = (*complaints.said, *marks())
         reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
         if self.mechanism.row_count:
-            reaction[sound] = reactions(self.mechanism, pose[sound], twist[sound], acceleration[sound])
+            own = (each[sound] for each in (pose, acceleration, twist))
+            reaction[sound] = self._reactions(*own) if sound.any() else np.nan
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset)
+
+    def _reactions(self, pose: Array, acceleration: Array, twist: Array) -> Array:
+        return self.mechanism.reaction(pose, acceleration, twist=twist)
 
     def _read(self, model: Any, data: Any, qpos: Array, qvel: Array, sound: Any) -> tuple[Array, Array, Array]:
         shape = (len(qpos), len(self.mechanism.bodies), 3)
@@ -245,7 +253,3 @@ class OwnMuJoCo:
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
 
-
-def reactions(mechanism: Mechanism, pose: Array, twist: Array, acceleration: Array) -> Array:
-    """The joints' reactions (times, rows) that these accelerations need, the force elements taken off."""
-    return mechanism.reaction(pose, acceleration)
