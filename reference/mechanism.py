@@ -194,9 +194,10 @@ class Mechanism(Valid):
 
         pose, acceleration, and twist, which only dampers ask for, (..., bodies, 3). f is of gravity and forces. This is
         Newton's law read backwards, so it tells what any engine must have applied. `inertias` (bodies, 3) [kg, kg,
-        kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an engine gives those of its own model (NaN for what it has none of): then the reactions are the forces that the
-        engine has applied, and a wrong mass in it shows even where the motion is prescribed. Unique when the rows are
-        independent; of redundant rows it gives the smallest.
+        kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an engine gives those of its own model (NaN for
+        what it has none of): then the reactions are the forces that the engine has applied, and a wrong mass in it
+        shows even where the motion is prescribed. Unique when the rows are independent; of redundant rows it gives the
+        smallest.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)

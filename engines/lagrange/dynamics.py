@@ -31,7 +31,6 @@ class Dynamics:
         self.mechanism = mechanism
         self.baumgarte = baumgarte  # 1/s; 0 for none
         self.weight = 1 / mechanism.inertias.reshape(-1)
-        self.free_fall = mechanism.free_fall.reshape(-1)
         self.holonomic = mechanism.holonomic
         self.unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
         # Redundant rows (two wheels on one axle) make the row system singular; then the smallest reactions are taken.
@@ -49,19 +48,20 @@ class Dynamics:
         return solve_symmetric(matrix, right)
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
-        """Accelerations (bodies, 3) under gravity and the joints' reactions."""
+        """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
         if not self.mechanism.row_count:
-            return self.mechanism.free_fall
+            return self.mechanism.unconstrained(pose, twist)
         if not np.all(np.isfinite(pose)):  # curves have no contact there
             return np.full_like(pose, np.nan)
         rows, reaction = self.reaction(pose, twist, t)
-        return (self.free_fall + self.weight * (rows.T @ reaction)).reshape(-1, 3)
+        free = self.mechanism.unconstrained(pose, twist).reshape(-1)
+        return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
         mechanism = self.mechanism
         rows = mechanism.rows(pose)
-        right = mechanism.bias(pose, twist) - rows @ self.free_fall
+        right = mechanism.bias(pose, twist) - rows @ mechanism.unconstrained(pose, twist).reshape(-1)
         if self.baumgarte:
             slip = rows @ twist.reshape(-1) - mechanism.rate
             gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)

@@ -217,12 +217,12 @@ class _LagrangeRun:
             reactions[:last], accelerations = self._machine.reactions(float(t[1]), columns, fast)
             if not self._machine.left_to_numpy:
                 if self._machine.dependent:
-                    reactions[:last] = mechanism.reaction(poses[:last], accelerations)
+                    reactions[:last] = mechanism.reaction(poses[:last], accelerations, twist=twists[:last])
                 return reactions
         states = zip(t[alive], poses[alive], twists[alive], strict=True)
         if self.dynamics.redundant:
             accelerations = np.array([self.dynamics.acceleration(pose, twist, at) for at, pose, twist in states])
-            reactions[alive] = mechanism.reaction(poses[alive], accelerations)
+            reactions[alive] = mechanism.reaction(poses[alive], accelerations, twist=twists[alive])
         else:
             reactions[alive] = [self.dynamics.reaction(pose, twist, at)[1] for at, pose, twist in states]
         return reactions
