@@ -23,10 +23,10 @@ GROWN = 100.0
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """The ideal motion; `error` (times,) is the judge's own, in the measure of `comparing.errors`."""
+    """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by."""
 
     trajectory: Trajectory
-    error: Array
+    looser: Trajectory
     growth: Array  # (times,) how many times a small disturbance of the start has grown
     horizon: float  # s; the duration if errors grow no faster than about linearly
 
@@ -45,7 +45,7 @@ def judged(mechanism: Mechanism, samples: int, spacing: float) -> Judged:
     expected = GROWN * (1 + motion.t / mechanism.time_scale)
     beyond = growth > expected
     horizon = float(motion.t[int(np.argmax(beyond))] if beyond.any() else motion.t[-1])
-    return Judged(motion, apart(mechanism, motion.pose, looser.pose), growth, horizon)
+    return Judged(motion, looser, growth, horizon)
 
 
 def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import typer
 
 from reports.cli.bench import bench
+from reports.cli.check import check
 from reports.cli.compare import compare
 from reports.cli.conform import conform
 from reports.cli.errata import errata
@@ -38,6 +39,7 @@ app.command("conform")(conform)
 app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
+app.command("check")(check)
 
 
 def invoke(arguments: Sequence[str]) -> int:

@@ -41,7 +41,7 @@ ELEMENTS = {
     "gravity": "GRAVITY",
 }
 TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
-HALVINGS = (1, 2, 4, 8, 16, 32, 64)
+HALVINGS = (1, 2, 4, 8, 16, 32)
 
 
 def switch_off(model: Any, element: str) -> None:
