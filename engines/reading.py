@@ -75,8 +75,13 @@ class OwnModel(Protocol):
         ...
 
     @property
+    def declares(self) -> bool:
+        """Whether the engine declares a law of its joints that no step takes part in."""
+        ...
+
+    @property
     def softly_held(self) -> bool:
-        """Whether the engine declares that some joints give way."""
+        """Whether that law lets some joints give way."""
         ...
 
     def start(self) -> Array:
@@ -131,10 +136,11 @@ class Reader(Protocol):
         """Whether a word on the command line is a model for this reader."""
         ...
 
-    def read(self, word: str, folder: Path, without: Sequence[str], key: str) -> Reading:
+    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
         """The model. Raises Unsupported, or ValueError where the file is no model.
 
-        `without`: elements to switch off in the user's model too; `key`: the name or number of a stored state.
+        `without`: elements to switch off in the user's model too; `key`: the name or number of a stored state; `step`
+        [s]: the user's, instead of the model's own.
         """
         ...
 

@@ -38,6 +38,12 @@ def parts_of(reading: Reading, truth: Trajectory, own: Trajectory, smaller: list
     """From the user's run, and those of the same settings at `smaller` steps, the largest step first."""
     mechanism, model = reading.mechanism, reading.model
     declared = truth.pose
+    if not model.declares:
+        rests = [each.error for each in smaller]
+        last = rests[-1] if rests else float("nan")
+        falling = len(rests) > 1 and rests[-1] < FALLS * rests[-2]
+        step = smaller[-1].change.dt if smaller else float("nan")
+        return Parts(float("nan"), _largest(apart(mechanism, own.pose, declared)), last, step, falling, False)
     if model.softly_held:
         declared, _ = soft_motion(mechanism, model.give, truth.t)
     softness = _largest(apart(mechanism, declared, truth.pose)) if model.softly_held else 0.0

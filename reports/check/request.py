@@ -32,6 +32,7 @@ class Request:
     tolerance: float
     without: tuple[str, ...] = ()
     key: str = ""
+    step: float | None = None
     pictures: bool = True
     notes: str = ""
 
@@ -65,12 +66,14 @@ def readers() -> dict[str, Reader]:
     return registered_by_key("crosscheck.readers", kind)
 
 
-def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "") -> Reading:
+def read(
+    word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None
+) -> Reading:
     """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
     known = readers().values()
     for reader in known:
         if reader.reads(word):
-            return reader.read(word, folder, without, key)
+            return reader.read(word, folder, without, key, step)
     raise ValueError(f"{word} is no model; give {' or '.join(reader.words for reader in known)}")
 
 
@@ -84,7 +87,7 @@ def answered(request: Request) -> Answer | Refused:
 
     try:
         told("reading")
-        reading = read(request.word, Path(request.folder), request.without, request.key)
+        reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
         found = check(reading, reading.title or Path(request.word).name, request.duration, request.tolerance, told)
         drawn = {}
         if request.pictures:

@@ -162,8 +162,14 @@ def _parts(found: Checked) -> tuple[str, ...]:
     parts, model = found.parts, found.reading.model
     out = []
     if not parts.divided:
-        out.append(f"{model.engine} declares no law of its soft joints, so the step and the softness are not told apart.")
-    elif model.softly_held:
+        smallest = f"at a step of {parts.smallest * 1e3:.3g} ms, with all else as you have it, {number(parts.rest)} is left"
+        kind = "it still falls: the step explains it" if parts.falling else "it no longer falls: a smaller step is no help"
+        return (
+            f"Step: your run is off the ideal motion by {number(parts.step)}; {smallest}, and {kind}.",
+            f"Softness: how far joints give way in {model.engine} follows from the step and the iterations, so no "
+            "part of the error is its own.",
+        )
+    if model.softly_held:
         out.append(
             f"Softness: the motion that {model.engine} declares for these joints is off the ideal one by "
             f"{number(parts.softness)}. No smaller step removes this; stiffer joints do."

@@ -39,6 +39,7 @@ def check(
         typer.Option("--without", help="Switch off contact, limit, frictionloss, armature ... (repeatable)."),
     ] = None,
     key: Annotated[str, typer.Option(help="The stored state to begin with, or none; the first unless given.")] = "",
+    step: Annotated[float | None, typer.Option(help="Your step [s], instead of the model's own.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which the check is ended.")] = 120.0,
 ) -> None:
     """Check a model of your own against ideal joints: how wrong your settings are, and which are enough.
@@ -48,10 +49,12 @@ def check(
     for name, value, most in (("duration", duration, LONGEST), ("tolerance", tolerance, 1.0), ("limit", limit, 1e6)):
         if not 0 < value <= most:
             raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
+    if step is not None and not 0 < step <= duration:
+        raise BadInput(f"--step is {step:g}; it must be greater than zero and at most the duration, {duration:g}")
     from reports.check.request import Request
 
     pictures = html is not None or markdown is not None
-    request = Request(model, os.getcwd(), duration, tolerance, tuple(without or ()), key, pictures)
+    request = Request(model, os.getcwd(), duration, tolerance, tuple(without or ()), key, step, pictures)
     answer = asked(request, limit)
     _write(answer, html, markdown)
     _print(answer, as_json)

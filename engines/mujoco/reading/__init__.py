@@ -105,7 +105,7 @@ class Reader:
     def reads(self, word: str) -> bool:
         return Path(word).suffix.lower() in SUFFIXES
 
-    def read(self, word: str, folder: Path, without: Sequence[str], key: str) -> Reading:
+    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
         """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
         path = folder / word
         if not path.is_file():
@@ -117,6 +117,8 @@ class Reader:
                 model = mujoco.MjModel.from_xml_path(str(path))
         except ValueError as error:
             raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
+        if step is not None:
+            model.opt.timestep = step
         data = mujoco.MjData(model)
         if model.nkey and key != "none":
             mujoco.mj_resetDataKeyframe(model, data, _key(model, key))

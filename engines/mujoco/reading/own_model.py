@@ -70,6 +70,10 @@ class OwnMuJoCo:
         return float(self.scene.model.opt.timestep)
 
     @property
+    def declares(self) -> bool:
+        return True
+
+    @property
     def softly_held(self) -> bool:
         return any(self.scene.held.values())
 
