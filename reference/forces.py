@@ -48,8 +48,8 @@ class Spring(Valid):
         rest = np.asarray(self.rest_length)
         with np.errstate(divide="ignore", invalid="ignore"):
             stretched = 1 - np.where(rest == 0, 0.0, rest / np.where(rest == 0, 1.0, length_of(apart)))
-        pull = (np.asarray(self.stiffness) * stretched)[..., None]
-        return -pull * (apart[..., 0, None] * rows[..., 0, :] + apart[..., 1, None] * rows[..., 1, :])
+            pull = (np.asarray(self.stiffness) * stretched)[..., None]
+            return -pull * (apart[..., 0, None] * rows[..., 0, :] + apart[..., 1, None] * rows[..., 1, :])
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
         """stiffness (distance - rest length)^2 / 2 (...) [J]."""

@@ -27,6 +27,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
@@ -82,7 +83,7 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
 
 
 def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
-    """A, without the rows that are prescribed motions here, and where each joint's block begins."""
+    """A, without the rows that are prescribed motions here, and where the block of each constraint begins."""
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
         weights[mechanism.body_index(name), 2] = 0
@@ -91,13 +92,18 @@ def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
     rows = mechanism.rows(pose)
     matrix = (rows * weights.reshape(-1)) @ rows.T
     kept, starts, row = [], [], 0
-    for joint in mechanism.joints:
-        block = list(range(row, row + joint.size))
-        row += joint.size
+    for size in (part for joint in mechanism.joints for part in _parts(joint)):
+        block = list(range(row, row + size))
+        row += size
         if np.any(matrix[block, block] > 0):
             starts.append(len(kept))
             kept += block
     return matrix[np.ix_(kept, kept)], starts
+
+
+def _parts(joint: Joint) -> tuple[int, ...]:
+    """How many rows pymunk solves at once: a weld is a pivot, and then a gear."""
+    return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 
 def _smallest(matrix: Array, lower: Array) -> float:
