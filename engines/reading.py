@@ -46,6 +46,7 @@ class Change:
 class Give:
     """How rows give way by the engine's own declaration: J a = bias - damping slip - stiffness gap - compliance F.
 
+    `lacking`: rows whose bias, the term of the velocities, the engine leaves out.
     All (rows,), of the mechanism's rows; zero where a row holds exactly. stiffness [1/s^2]; damping [1/s]; compliance
     [1/kg, 1/(kg m^2)].
     """
@@ -53,10 +54,7 @@ class Give:
     stiffness: Array
     damping: Array
     compliance: Array
-
-    @property
-    def any(self) -> bool:
-        return bool(np.any(self.compliance > 0) or np.any(self.stiffness > 0))
+    lacking: Array
 
 
 class OwnModel(Protocol):

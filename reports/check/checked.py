@@ -1,4 +1,4 @@
-"""The whole check of a user's model, from its reading to its verdict: numbers alone, told by `reports.check.telling`."""
+"""The whole check of a user's model, from its reading to its verdict: numbers alone, told by `telling`."""
 
 from __future__ import annotations
 
@@ -65,7 +65,9 @@ def check(
     every = max(1, round(duration / SAMPLES / model.dt))
     samples = max(1, round(duration / (every * model.dt)))
     if samples * every * model.dt > 2 * duration:
-        raise InvalidMechanism(f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one")
+        raise InvalidMechanism(
+            f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
+        )
     told("following the ideal motion")
     judge = judged(mechanism, samples, every * model.dt)
     truth = judge.trajectory

@@ -48,7 +48,9 @@ def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:
     position = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1)
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
     span = float(kinetic.max())
-    drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if span > 0 else np.full_like(angle, np.nan)
+    drift = (
+        np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if span > 0 else np.full_like(angle, np.nan)
+    )
     of = {"angle": angle, "position": position, "reaction": _reaction(mechanism, truth, run), "energy": drift}
     finished = bool(np.isfinite(run.pose).all())
     return Errors(run.t, of, apart(mechanism, run.pose, truth.pose), finished)

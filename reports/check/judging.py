@@ -71,7 +71,9 @@ def _growth(mechanism: Mechanism, motion: Trajectory, samples: int, spacing: flo
         disturbed = TRUTH.build(replace(mechanism, bodies=bodies), spacing)(samples, 1)
     except InvalidMechanism:  # a position in which nothing small is allowed
         return np.ones(samples + 1)
-    size = np.hypot(_size(disturbed.pose - motion.pose, unit), mechanism.time_scale * _size(disturbed.twist - motion.twist, unit))
+    size = np.hypot(
+        _size(disturbed.pose - motion.pose, unit), mechanism.time_scale * _size(disturbed.twist - motion.twist, unit)
+    )
     return np.nan_to_num(size, nan=np.inf) / size[0] if size[0] > 0 else np.ones(samples + 1)
 
 

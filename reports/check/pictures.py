@@ -77,7 +77,9 @@ def _worst(found: Checked) -> Figure:
         panel.set_aspect("equal", adjustable="datalim")
         points = ground_points(mechanism)
         if len(points):
-            panel.plot(*points.T, linestyle="none", marker="^", markersize=8, color=theme.quiet, label="held to the ground")
+            panel.plot(
+                *points.T, linestyle="none", marker="^", markersize=8, color=theme.quiet, label="held to the ground"
+            )
         _draw(panel, mechanism, truth, "ideal joints", color=theme.ink, linewidth=3.0, markersize=6)
         _draw(panel, mechanism, own, "your settings", color=theme.first, linewidth=1.5, linestyle="--", markersize=4)
         panel.set_xlabel("x in the plane of motion, m")

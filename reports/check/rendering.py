@@ -59,7 +59,9 @@ def html(name: str, sections: Sequence[Section]) -> str:
             parts.append(f"<pre>{escape(chr(10).join(section.code))}</pre>")
         if section.rows:
             head = "".join(f"<th>{escape(cell)}</th>" for cell in section.header)
-            rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in section.rows)
+            rows = "".join(
+                "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in section.rows
+            )
             parts.append(f"<table><tr>{head}</tr>{rows}</table>")
         if section.picture is not None:
             drawing = section.picture[1]

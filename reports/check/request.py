@@ -66,9 +66,7 @@ def readers() -> dict[str, Reader]:
     return registered_by_key("crosscheck.readers", kind)
 
 
-def read(
-    word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None
-) -> Reading:
+def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None) -> Reading:
     """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
     known = readers().values()
     for reader in known:

@@ -104,8 +104,7 @@ def _read(found: Checked) -> Section:
         f"elements; {velocity} freedoms by the rank of the rows"
         + (f" ({configuration} of configuration)." if configuration != velocity else "."),
         f"At t = 0 the accelerations of {reading.model.engine} and of the judge agree to {found.agreement:.1g} of "
-        "themselves"
-        + (", with the softness that the engine declares." if reading.model.softly_held else "."),
+        "themselves" + (", with the softness that the engine declares." if reading.model.softly_held else "."),
     ]
     if facts.redundant:
         names = ", ".join(facts.undetermined[:MOST_NAMED])
@@ -147,7 +146,7 @@ def _read(found: Checked) -> Section:
 
 def _own(found: Checked, picture: tuple[str, str] | None) -> Section:
     own, judge = found.own_errors, found.judge_errors
-    quarter = [int(round(share * (len(own.t) - 1))) for share in (0.25, 0.5, 0.75, 1.0)]
+    quarter = [round(share * (len(own.t) - 1)) for share in (0.25, 0.5, 0.75, 1.0)]
     rows = []
     for quantity in QUANTITIES:
         cells = [number(float(own.of[quantity][index])) for index in quarter]
@@ -162,8 +161,12 @@ def _parts(found: Checked) -> tuple[str, ...]:
     parts, model = found.parts, found.reading.model
     out = []
     if not parts.divided:
-        smallest = f"at a step of {parts.smallest * 1e3:.3g} ms, with all else as you have it, {number(parts.rest)} is left"
-        kind = "it still falls: the step explains it" if parts.falling else "it no longer falls: a smaller step is no help"
+        smallest = (
+            f"at a step of {parts.smallest * 1e3:.3g} ms, with all else as you have it, {number(parts.rest)} is left"
+        )
+        kind = (
+            "it still falls: the step explains it" if parts.falling else "it no longer falls: a smaller step is no help"
+        )
         return (
             f"Step: your run is off the ideal motion by {number(parts.step)}; {smallest}, and {kind}.",
             f"Softness: how far joints give way in {model.engine} follows from the step and the iterations, so no "
@@ -181,7 +184,9 @@ def _parts(found: Checked) -> tuple[str, ...]:
     else:
         out.append("Step: your run gave up, so its part has no number.")
     if math.isfinite(parts.rest):
-        smallest = f"at a step of {parts.smallest * 1e3:.3g} ms, with all else as you have it, {number(parts.rest)} is left"
+        smallest = (
+            f"at a step of {parts.smallest * 1e3:.3g} ms, with all else as you have it, {number(parts.rest)} is left"
+        )
         if parts.falling:
             out.append(f"Neither: {smallest}, and it still falls: there is no sign of a third part.")
         else:
@@ -202,7 +207,13 @@ def _table(found: Checked) -> Section:
     def row(each: Tried) -> tuple[str, ...]:
         marks = ["none is both cheaper and better"] if id(each) in front else []
         marks += ["meets the tolerance"] if each.error <= found.tolerance else []
-        return each.change.words, number(each.error), number(each.errors.worst("reaction")), number(each.cost), "; ".join(marks)
+        return (
+            each.change.words,
+            number(each.error),
+            number(each.errors.worst("reaction")),
+            number(each.cost),
+            "; ".join(marks),
+        )
 
     header = ("setting", "largest error", "reaction error", "CPU time, s", "")
     sentences = (

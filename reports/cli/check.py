@@ -32,7 +32,9 @@ def check(
     duration: Annotated[float, typer.Option(help="How long the motion is that is judged [s].")] = 2.0,
     tolerance: Annotated[float, typer.Option(help="Largest error: of angles [rad], of places in lengths.")] = 1e-4,
     html: Annotated[Path | None, typer.Option("--html", help="Write the report into this file.")] = None,
-    markdown: Annotated[Path | None, typer.Option("--markdown", help="Write it as Markdown, pictures beside it.")] = None,
+    markdown: Annotated[
+        Path | None, typer.Option("--markdown", help="Write it as Markdown, pictures beside it.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print all numbers as JSON instead of the report.")] = False,
     without: Annotated[
         list[str] | None,

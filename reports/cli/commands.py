@@ -11,6 +11,7 @@ from reports.cli.check import check
 from reports.cli.compare import compare
 from reports.cli.conform import conform
 from reports.cli.errata import errata
+from reports.cli.export import export, view
 from reports.cli.listing import list_command
 from reports.cli.report import report
 from reports.cli.run import run
@@ -40,6 +41,8 @@ app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
 app.command("check")(check)
+app.command("export")(export)
+app.command("view")(view)
 
 
 def invoke(arguments: Sequence[str]) -> int:

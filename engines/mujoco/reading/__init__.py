@@ -59,6 +59,10 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
         scene.note(element, "left out at your word, in your model too")
     mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
     own = OwnMuJoCo(scene, mechanism)
+    for _, words in own.obstacles(np.zeros(1), mechanism.pose[None]):
+        raise refuse(
+            words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
+        )
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
     return Reading(mechanism, own, tuple(scene.notes), title)
 

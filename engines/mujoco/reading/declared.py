@@ -37,13 +37,15 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[
         start += joint.size
     ours = mechanism.rows(mechanism.pose) @ directions
     theirs = _dense(model, data)
-    pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
+    pieces: list[tuple[list[int], Array, Array, float, float, Array, bool]] = []
     for index, joints in scene.held.items():
         own = [place for joint in joints for place in places[joint.name]]
         equality = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         rows = np.flatnonzero(equality & (data.efc_id == index))
         if not own or not len(rows):
             continue
+        # An equality of a tendon has no term of velocities (up to 4.0.1), which a sum of angles does without.
+        tendon = bool(model.eq_type[index] == int(mujoco.mjtEq.mjEQ_TENDON))
         stiffness, damping, impedance = (float(value) for value in data.efc_KBIP[rows[0]][:3])
         factors, estimates = np.ones(len(own)), np.zeros(len(own))
         for number, place in enumerate(own):
@@ -53,13 +55,13 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[
                 norm = float(np.linalg.norm(theirs[rows[3:] if len(rows) > 3 else rows]))
                 factors[number] = norm / float(np.linalg.norm(ours[place]) or 1.0)
             estimates[number] = data.efc_R[like] * impedance / (1 - impedance)
-        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates))
+        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates, tendon))
 
     def give(gap: Array) -> Give:
-        out = np.zeros((3, mechanism.row_count))
-        for own, factors, shape, stiffness, damping, estimates in pieces:
+        out = np.zeros((4, mechanism.row_count))
+        for own, factors, shape, stiffness, damping, estimates, lacking in pieces:
             d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
-            out[0, own], out[1, own] = stiffness * d, damping
+            out[0, own], out[1, own], out[3, own] = stiffness * d, damping, lacking
             out[2, own] = (1 - d) / d * estimates / factors**2
         return Give(*out)
 

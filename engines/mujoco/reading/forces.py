@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, name_of, plain_name
-from engines.mujoco.reading.joints import JOINT, Scene
+from engines.mujoco.reading.joints import JOINT, Scene, angle_weights, straight, wrapped_joints
 from engines.reading import refuse
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
@@ -156,38 +156,55 @@ def turns(scene: Scene, group: int) -> bool:
 
 
 def _of_tendons(scene: Scene) -> list[ForceElement]:
-    model, data = scene.model, scene.data
+    model = scene.model
     out: list[ForceElement] = []
     for tendon in range(model.ntendon):
-        element = name_of(model, TENDON, tendon)
+        element, name = name_of(model, TENDON, tendon), plain_name(model, TENDON, tendon)
         stiffness = 0.0 if off(model, "SPRING") else float(model.tendon_stiffness[tendon])
         damping = 0.0 if off(model, "DAMPER") else float(model.tendon_damping[tendon])
         if model.tendon_armature[tendon]:
             raise refuse(element, "the armature of a tendon has no ideal counterpart here")
         if not stiffness and not damping:
             continue
-        begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
-        kinds = model.wrap_type[begin : begin + count]
-        if count != 2 or np.any(kinds != int(mujoco.mjtWrap.mjWRAP_SITE)):
-            raise refuse(element, "only a tendon straight between two sites has an ideal counterpart; this one wraps")
-        sites = [int(site) for site in model.wrap_objid[begin : begin + 2]]
-        places = [data.site_xpos[site] for site in sites]
-        if abs((places[1] - places[0]) @ scene.frame.normal) > PLANAR * max(1.0, model.stat.extent):
-            raise refuse(element, "its two sites are at different distances from the plane, so its length is not ours")
-        first, second = (scene.group(int(model.site_bodyid[site])) for site in sites)
+        low, high = (float(value) for value in model.tendon_lengthspring[tendon])
+        if stiffness and low != high:
+            raise refuse(element, "a spring that is slack over a range of lengths has no ideal counterpart")
+        if min(stiffness, damping) < 0:
+            raise refuse(element, "a negative stiffness or damping has no counterpart here")
+        parts = wrapped_joints(model, tendon)
+        if parts is not None:
+            first, second, factor = _between(scene, element, parts)
+            ends = scene.name(first), scene.name(second)
+            turned = scene.angle(second) - scene.angle(first)
+            rest = turned + (low - float(scene.data.ten_length[tendon])) / factor
+            if stiffness:
+                out.append(TorsionSpring(scene.names.new(f"{name} spring"), *ends, stiffness * factor**2, rest))
+            if damping:
+                out.append(TorsionDamper(scene.names.new(f"{name} damper"), *ends, damping * factor**2))
+            continue
+        first, second, at, other = straight(scene, tendon)
         if first == second:
             scene.note(element, "its two ends are on one body")
             continue
-        ends = scene.name(first), scene.name(second), scene.own(first, places[0]), scene.own(second, places[1])
-        name = plain_name(model, TENDON, tendon)
+        ends = scene.name(first), scene.name(second), scene.own(first, at), scene.own(second, other)
         if stiffness:
-            low, high = (float(value) for value in model.tendon_lengthspring[tendon])
-            if low != high:
-                raise refuse(element, "a spring that is slack over a range of lengths has no ideal counterpart")
             out.append(Spring(scene.names.new(f"{name} spring"), *ends, stiffness, low))
         if damping:
             out.append(Damper(scene.names.new(f"{name} damper"), *ends, damping))
     return out
+
+
+def _between(scene: Scene, element: str, parts: list[tuple[int, float]]) -> tuple[int, int, float]:
+    """The two groups, the first perhaps the ground, whose relative angle times a factor a fixed tendon's length is."""
+    if any(scene.model.jnt_type[joint] != HINGE for joint, _ in parts):
+        raise refuse(element, "a tendon over slides has no ideal counterpart here")
+    weights = angle_weights(scene, parts)
+    groups = list(weights)
+    if len(groups) == 1:
+        return -1, groups[0], weights[groups[0]]
+    if len(groups) == 2 and abs(weights[groups[0]] + weights[groups[1]]) <= PLANAR:
+        return groups[0], groups[1], weights[groups[1]]
+    raise refuse(element, "its length is no multiple of the angle between two bodies")
 
 
 def _of_actuators(scene: Scene) -> list[ForceElement]:
@@ -205,7 +222,8 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         simple = (
             model.actuator_dyntype[actuator] == int(mujoco.mjtDyn.mjDYN_NONE)
             and model.actuator_gaintype[actuator] == int(mujoco.mjtGain.mjGAIN_FIXED)
-            and model.actuator_biastype[actuator] in (int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE))
+            and model.actuator_biastype[actuator]
+            in (int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE))
             and not _of(model, "actuator_delay", actuator)
         )
         if _of(model, "actuator_armature", actuator) or _of(model, "actuator_damping", actuator):
@@ -218,23 +236,67 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         if simple and not push and not np.any(affine):
             scene.note(element, "its control is zero, so it does not act")
             continue
-        kinds = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
-        joint = int(model.actuator_trnid[actuator][0])
-        if not simple or model.actuator_trntype[actuator] not in kinds or model.jnt_type[joint] not in (HINGE, SLIDE):
-            raise refuse(element, "only a motor or a servo of a hinge or a slide, at constant control, is read")
+        kind, target = int(model.actuator_trntype[actuator]), int(model.actuator_trnid[actuator][0])
+        if not simple:
+            raise refuse(element, "only a motor or a servo without a state of its own, at constant control, is read")
         if model.actuator_forcelimited[actuator]:
             low, high = model.actuator_forcerange[actuator]
             if np.any(affine[1:]):
                 scene.note(element, f"its force is limited to {low:g} to {high:g}, and is taken as not limited")
             else:
                 push = float(np.clip(push, low, high))
-        if model.jnt_actfrclimited[joint]:
-            low, high = model.jnt_actfrcrange[joint]
-            if not low <= gear * push <= high:
-                raise refuse(element, f"its joint limits the actuators' force to {low:g} to {high:g}")
-        out += pushed(scene, joint, name, gear * push)
-        out += sprung(scene, joint, name, -gear * gear * float(affine[1]), 0.0)
-        out += damped(scene, joint, name, -gear * gear * float(affine[2]))
+        if kind in (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)):
+            out += _on_joint(scene, element, name, target, gear, push, affine)
+        elif np.any(affine[1:]):
+            raise refuse(element, "a servo is read where it acts on a joint")
+        elif kind == int(mujoco.mjtTrn.mjTRN_TENDON) and (parts := wrapped_joints(model, target)) is not None:
+            first, second, factor = _between(scene, element, parts)
+            label, ends = scene.names.new(name), (scene.name(first), scene.name(second))
+            out.append(Torque(label, *ends, gear * push * factor))
+        elif kind == int(mujoco.mjtTrn.mjTRN_SITE):
+            out += _at_site(scene, element, name, actuator, push)
+        else:
+            raise refuse(element, "it acts neither on a joint, nor on a sum of angles, nor at a site")
+    return out
+
+
+def _on_joint(
+    scene: Scene, element: str, name: str, joint: int, gear: float, push: float, affine: Any
+) -> list[ForceElement]:
+    """A constant force, and the spring and damper of a servo."""
+    model = scene.model
+    if model.jnt_type[joint] not in (HINGE, SLIDE):
+        raise refuse(element, "it acts on a joint that is neither a hinge nor a slide")
+    if model.jnt_actfrclimited[joint]:
+        low, high = model.jnt_actfrcrange[joint]
+        if np.any(affine[1:]) or not low <= gear * push <= high:
+            raise refuse(element, f"its joint limits the actuators' force to {low:g} to {high:g}")
+    springs = sprung(scene, joint, name, -gear * gear * float(affine[1]), 0.0)
+    return [
+        *pushed(scene, joint, name, gear * push),
+        *springs,
+        *damped(scene, joint, name, -(gear**2) * float(affine[2])),
+    ]
+
+
+def _at_site(scene: Scene, element: str, name: str, actuator: int, push: float) -> list[ForceElement]:
+    """A constant force and torque at a site, in the directions of a site of the ground."""
+    model, data = scene.model, scene.data
+    site, base = (int(each) for each in model.actuator_trnid[actuator])
+    group = scene.group(int(model.site_bodyid[site]))
+    second = scene.name(group)
+    if base < 0 or scene.group(int(model.site_bodyid[base])) >= 0:
+        raise refuse(element, "a force at a site that turns with a body is not constant in the plane")
+    if second is None:
+        return []
+    axes = data.site_xmat[base].reshape(3, 3)
+    force, torque = (push * (axes @ part) for part in np.split(model.actuator_gear[actuator], 2))
+    out: list[ForceElement] = []
+    if any(scene.frame.in_plane(force)):
+        at = scene.own(group, data.site_xpos[site])
+        out.append(Force(scene.names.new(name), second, at, scene.frame.in_plane(force)))
+    if torque @ scene.frame.normal:
+        out.append(Torque(scene.names.new(name), None, second, float(torque @ scene.frame.normal)))
     return out
 
 
@@ -249,7 +311,9 @@ def _applied(scene: Scene) -> list[ForceElement]:
     for dof in np.flatnonzero(data.qfrc_applied):
         joint = int(model.dof_jntid[dof])
         if model.jnt_type[joint] not in (HINGE, SLIDE):
-            raise refuse(name_of(model, JOINT, joint), "a force applied to a free joint is not read; apply it to a body")
+            raise refuse(
+                name_of(model, JOINT, joint), "a force applied to a free joint is not read; apply it to a body"
+            )
         out += pushed(scene, joint, f"{plain_name(model, JOINT, joint)} applied", float(data.qfrc_applied[dof]))
     gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
     for body in range(1, model.nbody):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
 from engines.reading import Names, Note, refuse
 from reference.body import Body
-from reference.joints import Drive, Gear, Joint, Pin, Slot, Vector, Weld
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Vector, Weld
 
 Array = NDArray[np.float64]
 JOINT, EQUALITY, BODY = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_BODY
@@ -170,7 +170,9 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     if first == second:
         scene.note(element, "it welds a body to itself")
         return []
-    rows = np.flatnonzero((scene.data.efc_id == index) & (scene.data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)))
+    rows = np.flatnonzero(
+        (scene.data.efc_id == index) & (scene.data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY))
+    )
     if np.abs(scene.data.efc_pos[rows]).max(initial=0.0) > PLANAR * max(1.0, scene.model.stat.extent):
         raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
     label = scene.names.new(plain_name(scene.model, EQUALITY, index))
@@ -179,29 +181,63 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     return [Weld(label, scene.name(first), scene.name(second), *points, turned)]
 
 
+def angle_weights(scene: Scene, parts: list[tuple[int, float]]) -> dict[int, float]:
+    """How much the angle of each body adds to a sum of hinge coordinates; bodies that add nothing are left out."""
+    weights: dict[int, float] = {}
+    for joint, factor in parts:
+        for group, sign in ((scene.group(int(scene.model.jnt_bodyid[joint])), 1.0), (scene.parent(joint), -1.0)):
+            if group >= 0:
+                weights[group] = weights.get(group, 0.0) + sign * factor * scene.sign(joint)
+    return {group: weight for group, weight in sorted(weights.items()) if abs(weight) > PLANAR}
+
+
+def wrapped_joints(model: Any, tendon: int) -> list[tuple[int, float]] | None:
+    """The joints of a fixed tendon with their coefficients; None of a spatial one."""
+    begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
+    if np.any(model.wrap_type[begin : begin + count] != int(mujoco.mjtWrap.mjWRAP_JOINT)):
+        return None
+    return [(int(model.wrap_objid[each]), float(model.wrap_prm[each])) for each in range(begin, begin + count)]
+
+
+def straight(scene: Scene, tendon: int) -> tuple[int, int, Array, Array]:
+    """The two groups that a spatial tendon joins, and its ends in the world. Raises Unsupported if it wraps."""
+    model, data = scene.model, scene.data
+    element = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon)
+    begin, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
+    if count != 2 or np.any(model.wrap_type[begin : begin + count] != int(mujoco.mjtWrap.mjWRAP_SITE)):
+        raise refuse(element, "only a tendon straight between two sites has an ideal counterpart; this one wraps")
+    sites = [int(site) for site in model.wrap_objid[begin : begin + 2]]
+    places = [data.site_xpos[site] for site in sites]
+    if abs((places[1] - places[0]) @ scene.frame.normal) > PLANAR * max(1.0, model.stat.extent):
+        raise refuse(element, "its two sites are at different distances from the plane, so its length is not ours")
+    first, second = (scene.group(int(model.site_bodyid[site])) for site in sites)
+    return first, second, places[0], places[1]
+
+
 def _coupled(scene: Scene, index: int, element: str) -> list[Joint]:
     """Angles of bodies that a coupling of hinges holds in a linear relation: of one body, or of two."""
     model, data = scene.model, scene.data
     curve = model.eq_data[index][:5]
-    if np.any(curve[2:]):
-        raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
-    weights: dict[int, float] = {}
+    pairs = [(int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))]
+    parts = [(joint, factor) for joint, factor in pairs if joint >= 0 and factor]
     wrong = -curve[0]
-    for joint, factor in ((int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))):
-        if joint < 0 or factor == 0:
-            continue
-        if model.jnt_type[joint] != HINGE:
-            raise refuse(element, "it couples a slide, which has no ideal counterpart here; couple hinges")
+    for joint, factor in parts:
         place = int(model.jnt_qposadr[joint])
         wrong += factor * (data.qpos[place] - model.qpos0[place])
-        for group, sign in ((scene.group(int(model.jnt_bodyid[joint])), 1.0), (scene.parent(joint), -1.0)):
-            if group >= 0:
-                weights[group] = weights.get(group, 0.0) + sign * factor * scene.sign(joint)
-    weights = {group: weight for group, weight in weights.items() if abs(weight) > PLANAR}
+    return _held_angles(scene, index, element, parts, float(wrong))
+
+
+def _held_angles(scene: Scene, index: int, element: str, parts: list[tuple[int, float]], wrong: float) -> list[Joint]:
+    model = scene.model
+    if np.any(model.eq_data[index][2:5]):
+        raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
+    if any(model.jnt_type[joint] != HINGE for joint, _ in parts):
+        raise refuse(element, "it couples a slide, which has no ideal counterpart here; couple hinges")
     if abs(wrong) > PLANAR:
         raise refuse(element, f"it is open by {abs(wrong):.2g} rad at the start")
+    weights = angle_weights(scene, parts)
     label = scene.names.new(plain_name(model, EQUALITY, index))
-    groups = sorted(weights)
+    groups = list(weights)
     if len(groups) == 1:
         return [Drive(label, None, scene.name(groups[0]), 0.0, scene.angle(groups[0]))]
     if len(groups) != 2:
@@ -214,4 +250,25 @@ def _coupled(scene: Scene, index: int, element: str) -> list[Joint]:
     return [Gear(label, scene.name(first), scene.name(second), ratio, turned)]
 
 
-EQUALITIES = {"connect": _connected, "weld": _welded, "joint": _coupled}
+def _tied(scene: Scene, index: int, element: str) -> list[Joint]:
+    """A tendon of constant length: a rod between two sites, or a sum of angles."""
+    model, data = scene.model, scene.data
+    tendon = int(model.eq_obj1id[index])
+    if model.eq_obj2id[index] >= 0:
+        raise refuse(element, "it couples two tendons, which has no ideal counterpart here")
+    wrong = float(data.ten_length[tendon] - model.tendon_length0[tendon] - model.eq_data[index][0])
+    parts = wrapped_joints(model, tendon)
+    if parts is not None:
+        return _held_angles(scene, index, element, parts, wrong)
+    first, second, at, other = straight(scene, tendon)
+    if first == second:
+        scene.note(element, "its two ends are on one body")
+        return []
+    if abs(wrong) > PLANAR * max(1.0, model.stat.extent):
+        raise refuse(element, f"it is open by {abs(wrong):.2g} m at the start")
+    label = scene.names.new(plain_name(model, EQUALITY, index))
+    points = scene.own(first, at), scene.own(second, other)
+    return [Rod(label, scene.name(first), scene.name(second), *points, float(data.ten_length[tendon]))]
+
+
+EQUALITIES = {"connect": _connected, "weld": _welded, "joint": _coupled, "tendon": _tied}

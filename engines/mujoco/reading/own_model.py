@@ -256,4 +256,3 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
-

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pymunk
 
 from engines.pymunk.reading.joints import described
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
-from engines.reading import Note, Reading
+from engines.reading import Note, Reading, refuse
 from reference.mechanism import Mechanism
 
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
@@ -35,6 +36,10 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     x, y = space.gravity
     mechanism = Mechanism(tuple(found.bodies), tuple(found.joints), (float(x), float(y)), tuple(found.forces))
     own = OwnPymunk(found, mechanism, step or last or USUAL_STEP, not (step or last))
+    for _, words in own.obstacles(np.zeros(1), mechanism.pose[None]):
+        raise refuse(
+            words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
+        )
     notes = [*found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
     return Reading(mechanism, own, tuple(notes))
 
@@ -48,9 +53,7 @@ class Reader:
         file, _, _ = word.rpartition(":")
         return (file or word).lower().endswith(".py")
 
-    def read(
-        self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None
-    ) -> Reading:
+    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
         """Raises ValueError for a script that gives no space, Unsupported for a space that is no mechanism."""
         if key:
             raise ValueError(f"--key is {key!r}; a space has no stored states")
