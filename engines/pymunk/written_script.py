@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 
 import pymunk
+from pymunk.constraints import PinJoint
 
 from engines import Unsupported
 from engines.pymunk.engine import Pymunk
@@ -29,7 +30,7 @@ def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str
     for number, joint in enumerate(space.constraints):
         lines.append(f"j{number} = pymunk.{_made(joint, f'{names[joint.a]}, {names[joint.b]}')}")
         lines.append(f"j{number}.error_bias = {joint.error_bias!r}")
-        if isinstance(joint, pymunk.PinJoint):
+        if isinstance(joint, PinJoint):
             lines.append(f"j{number}.distance = {joint.distance!r}")
         lines.append(f"space.add(j{number})")
     return lines

@@ -33,7 +33,9 @@ def forces(scene: Scene) -> list[ForceElement]:
 def _refuse_what_has_no_counterpart(scene: Scene) -> None:
     model = scene.model
     if (model.opt.density or model.opt.viscosity) and not off(model, "PASSIVE"):
-        raise refuse("option density or viscosity", "the drag of a fluid has no ideal counterpart")
+        raise refuse(
+            "option density or viscosity", "the drag of a fluid has no ideal counterpart; give --without fluid"
+        )
     if model.nplugin or model.nflex:
         raise refuse("a plugin or a flexible body", "its forces have no ideal counterpart")
     if not (off(model, "FRICTIONLOSS") or off(model, "CONSTRAINT")):

@@ -46,10 +46,10 @@ class Frame:
         return float(x), float(y)
 
 
-def name_of(model: Any, kind: Any, index: int) -> str:
+def name_of(model: Any, kind: Any, index: Any) -> str:
     """An element's name as a user knows it, or its number."""
     word = str(kind).rsplit("_", 1)[-1].lower()
-    name = mujoco.mj_id2name(model, kind, index)
+    name = mujoco.mj_id2name(model, kind, int(index))
     return f"{word} {name!r}" if name else f"{word} {index}"
 
 
@@ -84,8 +84,11 @@ def find_frame(model: Any, data: Any) -> Frame:
     return Frame(np.cross(up, normal), up, normal)
 
 
-def _without_hinges(model: Any, data: Any, slides: Array) -> Array:
+def _without_hinges(model: Any, data: Any, slides: Any) -> Array:
     """A normal across all slides and gravity."""
+    axes = np.array([data.xaxis[index] for index in slides]).reshape(-1, 3)
+    if np.linalg.matrix_rank(axes, tol=PLANAR) == 2:  # they are a plane, whatever pulls across it
+        return np.asarray(np.linalg.svd(axes)[2][-1])
     vectors = [data.xaxis[index] for index in slides] + ([model.opt.gravity] if np.any(model.opt.gravity) else [])
     spanned = np.linalg.svd(np.array(vectors).reshape(-1, 3))
     rank = int(np.sum(spanned[1] > PLANAR * max(1.0, *spanned[1]))) if len(vectors) else 0

@@ -48,10 +48,12 @@ def switch_off(model: Any, element: str) -> None:
     """Change a model so that this kind of element no longer acts. Raises ValueError for a word that is none."""
     if element == "armature":
         model.dof_armature[:] = 0.0
+    elif element == "fluid":
+        model.opt.density = model.opt.viscosity = 0.0
     elif element in ELEMENTS:
         model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{ELEMENTS[element]}"))
     else:
-        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, 'armature'))}")
+        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, 'armature', 'fluid'))}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +177,7 @@ class OwnMuJoCo:
                 model.eq_solref[:] = (TIED_STEPS * change.dt, 1.0)
                 model.eq_solimp[:] = STIFFEST
         steps = max(1, round(spacing / model.opt.timestep))
-        t = np.arange(samples + 1) * spacing
+        t = np.arange(samples + 1, dtype=np.float64) * spacing
         data = self._fresh(model)
         qpos, qvel = np.full((samples + 1, model.nq), np.nan), np.full((samples + 1, model.nv), np.nan)
         now_qpos, now_qvel = data.qpos, data.qvel

@@ -52,7 +52,7 @@ class Described:
         if body in self.words:
             x, y = body.center_of_gravity
             return (float(point[0] - x), float(point[1] - y))
-        place = body.local_to_world(tuple(point))
+        place = body.local_to_world((point[0], point[1]))
         return (float(place.x), float(place.y))
 
     def angle(self, body: pymunk.Body) -> float:

@@ -160,7 +160,7 @@ class OwnPymunk:
                 for joint in space.constraints:
                     joint.error_bias = options["bias"]
         steps = max(1, round(spacing / dt))
-        t = np.arange(samples + 1) * spacing
+        t = np.arange(samples + 1, dtype=np.float64) * spacing
         shape = (samples + 1, len(bodies), 3)
         pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
         pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
@@ -187,7 +187,7 @@ class OwnPymunk:
         return Trajectory(t, pose, twist, reaction, stepping)
 
     @property
-    def _prescribed(self) -> Array:
+    def _prescribed(self) -> NDArray[np.bool_]:
         """Rows (rows,) that only say how a body moves: no force of pymunk holds them."""
         names = [joint.name for joint in self.mechanism.joints for _ in range(joint.size)]
         return np.array([name in self.described.prescribed for name in names], dtype=bool)
