@@ -18,6 +18,7 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
 from engines.pymunk.reflection import Reflected
 from reference import centrodes, shapes
+from reference.andrews import Dyad
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.four_bar import OverdrivenFourBar, Parallelogram
@@ -62,6 +63,7 @@ INSTANCES: tuple[Any, ...] = (
     *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
     *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),
     *(Slot("s", None, "b", (0.0, 0.5), 0.5, (1.0, 0.0)), Skate("k", None, "b", (0.5, 0.0), 0.5)),
+    Dyad(2.0, 1.0, 1),
     *(Rod("r", None, "b", (0.0, 0.5), (1.0, 0.0), 2.0), Gear("g", "a", "b", 2.0, 0.5)),
     *(Weld("w", "a", "b", (0.0, 0.5), (1.0, 0.0), 0.5), Spring("s", "a", "b", (0.0, 0.5), (1.0, 0.0), 2.0, 1.0)),
     *(Damper("d", "a", "b", (0.0, 0.5), (1.0, 0.0), 2.0), TorsionSpring("s", "a", "b", 2.0, 0.5)),

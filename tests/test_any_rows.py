@@ -24,6 +24,9 @@ from reports.grid.quantities import QUANTITIES
 from reports.grid.tasks import Answer, Motion, Task, answered
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
+from reports.pages.faults.equalities import Equalities
+from reports.pages.faults.groove import Grooves, Offsets
+from reports.pages.faults.scripts import Script
 from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
 from reports.pages.page import Material, Page, no_words
@@ -252,6 +255,12 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
         case Neighbours():
             values = {"growth": np.ones(len(task.times))}
+        case Offsets():
+            values = {"across": np.full(len(task.offsets), -0.1)}
+        case Grooves() | Equalities():
+            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
+        case Script():
+            values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case Softened():
             values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:
