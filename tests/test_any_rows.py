@@ -94,10 +94,13 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     text = "\n".join(prose(files[name]) for name in (f"{page}.md", f"{page}_data.md") if name in files)
     sentences = "\n".join(line for line in text.splitlines() if not line.startswith("|"))
     found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
-    found += [match[0] for match in re.finditer(r".*\b(nan|None|Undefined|Unmeasured)\b.*", text)]
-    found += [f"torn sentence: {match[0]}" for match in re.finditer(r".*[\s(][,.;:)](\s.*|$)", sentences)]
-    found += [f"nothing follows: {match[0]}" for match in re.finditer(r".*:\n\n+(#.*|\Z)", sentences)]
-    found += [f"no number: {match[0]}" for match in re.finditer(r".*(?<!\|) - (rad|m|s|ms|N|off)\b.*", sentences)]
+    found += [line for line in text.splitlines() if re.search(r"\b(nan|None|Undefined|Unmeasured)\b", line)]
+    for line in sentences.splitlines():
+        if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
+            found.append(f"torn sentence: {line}")
+        if re.search(r"(?<!\|) - (rad|m|s|ms|N|off)\b", line):
+            found.append(f"no number: {line}")
+    found += [f"nothing follows: {match[0]}" for match in re.finditer(r":\n\n+(#.*|\Z)", sentences)]
     shown = set(re.findall(r"\]\((\w+\.svg)\)", text))
     drawn = {name for name in files if name.endswith(".svg")}
     found += [f"picture without file: {name}" for name in shown - drawn]

@@ -23,8 +23,9 @@ Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 TOLERANCE = 3e-14
 COARSER = 10.0
 MOST_STEPS = 20_000  # a motion that needs more is creeping up to a singularity
-# Of the whole time: short for any motion, and a step grows tenfold in one. What scipy would choose is in seconds.
-FIRST_STEP = 1e-6
+# Of the time in which the start changes by itself and its unit: short for any motion, and a step may grow tenfold in
+# one. What scipy would choose has seconds in it.
+FIRST_STEP = 1e-3
 
 
 class IntegrationFailed(ArithmeticError):
@@ -61,10 +62,12 @@ def integrate(
     Raises IntegrationFailed when the step vanishes or a number is no longer finite.
     """
     state = np.asarray(start, dtype=float)
-    passed: Any = tolerance * np.asarray(unit, dtype=float)  # scipy's types have a number only
-    solver = DOP853(
-        lambda _, y: rates(y), 0.0, state, until, first_step=FIRST_STEP * until, rtol=tolerance, atol=passed
-    )
+    units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)
+    with np.errstate(invalid="ignore", over="ignore"):
+        pace = float(np.max(np.abs(rates(state)) / (np.abs(state) + units), initial=0.0))  # 1/s
+    first = min(until, FIRST_STEP / pace) if math.isfinite(pace) and pace > 0 else until
+    passed: Any = tolerance * units  # scipy's types have a number only
+    solver = DOP853(lambda _, y: rates(y), 0.0, state, until, first_step=first, rtol=tolerance, atol=passed)
     times, states = [0.0], [state]
     while solver.status == "running":
         message = solver.step() if len(times) < MOST_STEPS else f"it takes more than {MOST_STEPS} steps"
