@@ -46,7 +46,7 @@ class Change:
 class Give:
     """How rows give way by the engine's own declaration: J a = bias - damping slip - stiffness gap - compliance F.
 
-    `lacking`: rows whose bias, the term of the velocities, the engine leaves out.
+    `instead`: at the start, what stands in the place of the bias where the engine leaves it out; NaN elsewhere.
     All (rows,), of the mechanism's rows; zero where a row holds exactly. stiffness [1/s^2]; damping [1/s]; compliance
     [1/kg, 1/(kg m^2)].
     """
@@ -54,7 +54,7 @@ class Give:
     stiffness: Array
     damping: Array
     compliance: Array
-    lacking: Array
+    instead: Array
 
 
 class OwnModel(Protocol):

@@ -36,7 +36,7 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
         slip = rows @ twist.reshape(-1) - mechanism.rate
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
         right = right - give.damping * slip - give.stiffness * gap
-        right = right - np.where(give.lacking > 0, bias, 0.0)
+        right = right + np.nan_to_num(give.instead - bias)
         matrix = matrix + np.diag(give.compliance)
     return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
 

@@ -18,34 +18,39 @@ from numpy.typing import NDArray
 
 from engines.mujoco.reading.joints import Scene
 from engines.reading import Give
+from reference.joints import Rod
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 LEAST_IMPEDANCE, MOST_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 
 
-def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[[Array], Give]:
+def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array) -> Callable[[Array], Give]:
     """Of a gap (rows,) [m, rad] of the mechanism's rows, how each gives way there.
 
     directions (3 bodies, nv): how MuJoCo's coordinates move the bodies at the start, where its rows are compared with
-    the mechanism's: a row that is a multiple of ours has a compliance of another size.
+    the mechanism's: a row that is a multiple of ours has a compliance of another size. drift (3 bodies,): the bodies'
+    accelerations there with MuJoCo's coordinates at a steady rate: an equality of a tendon, which has no term of
+    velocities (up to 4.0.1), holds these steady.
     """
     model, data = scene.model, scene.data
     places, start = dict[str, range](), 0
     for joint in mechanism.joints:
         places[joint.name] = range(start, start + joint.size)
         start += joint.size
+    instead = np.full(mechanism.row_count, np.nan)
+    rods = [joint.name for joint in mechanism.joints if isinstance(joint, Rod)]
+    for name in rods:
+        instead[places[name]] = mechanism.rows(mechanism.pose)[places[name]] @ drift
     ours = mechanism.rows(mechanism.pose) @ directions
     theirs = _dense(model, data)
-    pieces: list[tuple[list[int], Array, Array, float, float, Array, bool]] = []
+    pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
     for index, joints in scene.held.items():
         own = [place for joint in joints for place in places[joint.name]]
         equality = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         rows = np.flatnonzero(equality & (data.efc_id == index))
         if not own or not len(rows):
             continue
-        # An equality of a tendon has no term of velocities (up to 4.0.1), which a sum of angles does without.
-        tendon = bool(model.eq_type[index] == int(mujoco.mjtEq.mjEQ_TENDON))
         stiffness, damping, impedance = (float(value) for value in data.efc_KBIP[rows[0]][:3])
         factors, estimates = np.ones(len(own)), np.zeros(len(own))
         for number, place in enumerate(own):
@@ -55,15 +60,15 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array) -> Callable[
                 norm = float(np.linalg.norm(theirs[rows[3:] if len(rows) > 3 else rows]))
                 factors[number] = norm / float(np.linalg.norm(ours[place]) or 1.0)
             estimates[number] = data.efc_R[like] * impedance / (1 - impedance)
-        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates, tendon))
+        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates))
 
     def give(gap: Array) -> Give:
-        out = np.zeros((4, mechanism.row_count))
-        for own, factors, shape, stiffness, damping, estimates, lacking in pieces:
+        out = np.zeros((3, mechanism.row_count))
+        for own, factors, shape, stiffness, damping, estimates in pieces:
             d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
-            out[0, own], out[1, own], out[3, own] = stiffness * d, damping, lacking
+            out[0, own], out[1, own] = stiffness * d, damping
             out[2, own] = (1 - d) / d * estimates / factors**2
-        return Give(*out)
+        return Give(*out, instead)
 
     return give
 

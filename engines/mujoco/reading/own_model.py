@@ -25,6 +25,7 @@ from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
 from engines.reading import Change, Give
+from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -73,7 +74,8 @@ class OwnMuJoCo:
 
     @property
     def declares(self) -> bool:
-        return True
+        """Of a rod, MuJoCo's equality of a tendon leaves out the term of the velocities: that is no law of ideal rows."""
+        return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
     def softly_held(self) -> bool:
@@ -120,7 +122,15 @@ class OwnMuJoCo:
 
     @cached_property
     def _give(self) -> Any:
-        return declared(self.scene, self.mechanism, self._directions(self.scene.data))
+        return declared(self.scene, self.mechanism, self._directions(self.scene.data), self._drift())
+
+    def _drift(self) -> Array:
+        """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
+        model = self.scene.model
+        data = self._fresh(model)
+        mujoco.mj_forward(model, data)
+        data.qacc[:] = 0.0
+        return self._motion(model, data)[1].reshape(-1)
 
     def give(self, gap: Array) -> Give:
         return self._give(gap)
