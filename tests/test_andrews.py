@@ -1,4 +1,4 @@
-"""Andrews' squeezing mechanism against numbers that nobody here wrote: the test set's end, accelerations, multipliers."""
+"""Andrews' squeezing mechanism against what nobody here wrote: the test set's end, accelerations, multipliers."""
 
 from __future__ import annotations
 
@@ -60,10 +60,10 @@ def test_its_first_accelerations_are_those_of_the_test_set():
     np.testing.assert_allclose(test_set_coordinates(newton[:, 2]), ACCELERATIONS, rtol=1e-11, atol=1e-7)
 
 
-@pytest.mark.parametrize("told", ("truth", "lagrange"))
+@pytest.mark.parametrize("told", ["truth", "lagrange"])
 def test_its_first_multipliers_are_those_of_the_test_set(told):
-    # Its rows are the rod's end less that of body 3, 4 and 6, and M q'' = f - G^T lambda. Ours are the second point less
-    # the first with M a = f + J^T reaction, and the rod, K2, is the second: so a multiplier is minus the reaction.
+    # Its rows are the rod's end less that of body 3, 4 and 6, and M q'' = f - G^T lambda. Ours are the second point
+    # less the first, M a = f + J^T reaction, and the rod, K2, is the second: a multiplier is minus the reaction.
     mechanism = SCENE.mechanism()
     motion = SCENE.motion(0.0) if told == "truth" else TRUTH.build(mechanism, 1e-4)(1, 1)
     names = [f"{pin} {direction}" for pin in ("P3", "P4", "P6") for direction in "xy"]
@@ -87,9 +87,9 @@ def test_exact_multipliers_follow_the_one_coordinate():
     np.testing.assert_allclose(motion.reaction, exact.reaction, atol=1e-8 * np.abs(exact.reaction).max())
 
 
-@pytest.mark.parametrize("change", ({"torque": 0.0331}, {"stiffness": 4535.0}, {"crank": (0.007005, 0.00092)}))
+@pytest.mark.parametrize("change", [{"torque": 0.0331}, {"stiffness": 4535.0}, {"crank": (0.007005, 0.00092)}])
 def test_another_number_gives_another_end(change):
-    ends = replace(SCENE, **change).motion(0.03).pose[0, :, 2]
+    ends = replace(SCENE, duration=0.03, **change).motion(0.03).pose[0, :, 2]
     assert np.abs(test_set_coordinates(ends) - END).max() > 1e-4
 
 
