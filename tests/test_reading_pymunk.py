@@ -266,9 +266,14 @@ def no_distance(space, first, second):
     return joint
 
 
+def lonely(space, first, second):
+    return PivotJoint(first, pymunk.Body(1, 1), (0, 0), (0, 0))
+
+
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
+        (lonely, "PivotJoint 2: it holds a body that is not in the space"),
         (limited, "PivotJoint 2: its force is limited to 10"),
         (pushed, "body 2: a force stands on it"),
         (guided, "body 2: it moves by a function of its own"),

@@ -200,10 +200,9 @@ class OwnPymunk:
         space = given.copy()
         copies = list(space.bodies)
         for mine, own in zip(copies, order, strict=True):
-            if tuple(mine.position) != tuple(own.position):
+            if own.center_of_gravity.length:
                 # pymunk (7.3.1) places a copy before it knows where the centre of mass is, and so elsewhere.
-                mine.center_of_gravity, mine.angle = own.center_of_gravity, own.angle
-                mine.position, mine.velocity = own.position, own.velocity
+                mine.angle, mine.position = own.angle, own.position
         bodies = [copies[place] for place in places]
         return space, bodies
 
