@@ -126,12 +126,13 @@ ELEMENTS = {
     ),
     "a spatial tendon": (
         PENDULUM,
-        '<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site site="post"/><site site="tip"/></spatial></tendon>',
+        '<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site site="post"/><site site="tip"/>'
+        "</spatial></tendon>",
     ),
     "a fixed tendon": (
         PENDULUM,
-        '<tendon><fixed stiffness="2" springlength=".3" damping=".5"><joint joint="A" coef="2"/><joint joint="B" coef="2"/>'
-        "</fixed></tendon>",
+        '<tendon><fixed stiffness="2" springlength=".3" damping=".5"><joint joint="A" coef="2"/>'
+        '<joint joint="B" coef="2"/></fixed></tendon>',
     ),
     "a motor": (PENDULUM, '<actuator><motor joint="B" gear="2"/></actuator>'),
     "a motor of a slide": (
@@ -221,7 +222,7 @@ def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
 )
 def test_a_wrong_reading_is_stopped_at_the_start(change):
     reading = read(model_of(FOUR_BAR, f"<equality>{CONNECT}</equality>"))
-    with pytest.raises(Unsupported, match="most of all at '(crank|coupler|rocker)'"):
+    with pytest.raises(Unsupported, match=r"most of all at '(crank|coupler|rocker)'"):
         refuse_disagreement(changed(reading, **change(reading.mechanism)))
 
 
@@ -304,7 +305,7 @@ def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
     (at, words), *_ = reading.model.obstacles(np.arange(41) * 0.02, reading.model.run(40, 10).pose)
     assert words.startswith("geom 'floor' touches geom")
     assert 0.1 < at < 0.5
-    with pytest.raises(Unsupported, match="geom 'floor' touches geom .*: so it does at the start"):
+    with pytest.raises(Unsupported, match=r"geom 'floor' touches geom .*: so it does at the start"):
         read(with_floor(0.0))
 
 
@@ -335,7 +336,8 @@ REFUSED = {
     ),
     "a tendon that wraps": (
         PENDULUM.replace("<site", '<site name="mid" pos=".1 0 0"/><site'),
-        '<tendon><spatial name="t" stiffness="1"><site site="post"/><site site="mid"/><site site="tip"/></spatial></tendon>',
+        '<tendon><spatial name="t" stiffness="1"><site site="post"/><site site="mid"/><site site="tip"/></spatial>'
+        "</tendon>",
         "tendon 't': only a tendon straight",
     ),
     "a tendon out of the plane": (

@@ -1,4 +1,4 @@
-"""pymunk spaces become mechanisms: the same accelerations, constraint by constraint, or a sentence that names what can't."""
+"""pymunk spaces become mechanisms: the same accelerations, or a sentence that names what can't be."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def test_a_groove_beside_the_centre_of_mass_is_stopped_since_chipmunk_pushes_oth
 
 def test_names_and_static_bodies_are_kept():
     space = space_of(elbow)
-    list(space.bodies)[0].name = "crank"  # type: ignore[attr-defined]
+    next(iter(space.bodies)).name = "crank"  # type: ignore[attr-defined]
     wall = pymunk.Body(body_type=pymunk.Body.STATIC)
     wall.position, wall.angle = (5.0, 1.0), 0.3
     second = list(space.bodies)[1]

@@ -74,7 +74,7 @@ class OwnMuJoCo:
 
     @property
     def declares(self) -> bool:
-        """Of a rod, MuJoCo's equality of a tendon leaves out the term of the velocities: that is no law of ideal rows."""
+        """Not with a rod: the equality of a tendon leaves out the term of the velocities, which no ideal row does."""
         return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
