@@ -109,7 +109,7 @@ def refuse_disagreement(reading: Reading) -> float:
         if _apart(mechanism, model.without(element), expected) <= AGREE:
             raise Unsupported(
                 f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
-                f"agree without '{element}': it acts at the start and has no ideal counterpart; give --without {element}"
+                f"agree without '{element}': it acts at the start, and in no ideal joint; give --without {element}"
             )
     size = np.abs(found - expected) * [1.0, 1.0, mechanism.length_scale]
     body = mechanism.bodies[int(np.argmax(size.max(axis=1)))].name

@@ -77,7 +77,7 @@ def _advice(found: Checked) -> tuple[str, ...]:
     ratio = advised.cost / found.cost if found.cost > 0 else float("nan")
     return (
         f"The cheapest documented setting that meets it: {advised.change.words}. Its error is "
-        f"{number(advised.error)} instead of {number(own)}, and its steps take {ratio:.2g} times the CPU time of yours.",
+        f"{number(advised.error)} instead of {number(own)}, at {ratio:.2g} times your CPU time.",
         *_decade(found),
     )
 
