@@ -13,7 +13,6 @@ from engines import Unsupported
 from reference.four_bar import FreeFourBar
 from reference.scenes import SCENES
 from reports.check import rendering, settings
-from reports.check.animation import animation
 from reports.check.checked import check
 from reports.check.comparing import errors
 from reports.check.facts import facts_of
@@ -186,15 +185,6 @@ def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(tmp_path)
     front = best(found.table)
     assert [each.cost for each in front] == sorted(each.cost for each in front)
     assert [each.error for each in front] == sorted((each.error for each in front), reverse=True)
-
-
-def test_an_animation_begins_and_ends_where_the_motion_does():
-    scene = FreeFourBar()
-    text = animation(scene.mechanism(), scene.motion(np.linspace(0, 1, 5)), "four bar")
-    assert text.count("<polyline") == 3
-    frames = re.findall(r'values="([^"]*)"', text)[0].split(";")
-    assert len(frames) == 5
-    assert frames[0] != frames[-1]
 
 
 # ------------------------------------------------------------------------------------------------------- bad models

@@ -115,7 +115,7 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(folder, capfd, monke
     monkeypatch.setattr(sys, "platform", "linux")
     assert call("view", "pendulum_2") == 0
     assert "no viewer: there is no display" in capfd.readouterr().out
-    root = xml.parse(folder / "pendulum_2.svg").getroot()
-    assert len(root.findall("{http://www.w3.org/2000/svg}polyline")) == 2
+    xml.parse(folder / "pendulum_2.svg")
+    assert (folder / "pendulum_2.svg").read_text().count("@keyframes") == 2  # a body each
     assert call("view", "pendulum_2") == 2
     assert "--force" in capfd.readouterr().err

@@ -41,8 +41,8 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
-# What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no part
-# of rho: five sweeps leave half of the force of a disc on a plane, ten leave 1e-5 of it.
+# What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no
+# part of rho: five sweeps leave a disc on a plane without half of its force, ten leave nothing to be seen.
 CONTACT_CONVERGED = 1000
 
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]

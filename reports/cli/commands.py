@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
+from reports.cli.animate import animate
 from reports.cli.bench import bench
 from reports.cli.check import check
 from reports.cli.compare import compare
@@ -18,6 +19,7 @@ from reports.cli.run import run
 from reports.cli.search import search
 from reports.cli.shapes import shapes
 from reports.cli.show import show
+from reports.cli.site import site
 from reports.cli.terminal import written
 from reports.cli.versions import versions
 from reports.grid.ending import FINE, STATUSES
@@ -40,6 +42,8 @@ app.command("conform")(conform)
 app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
+app.command("animate")(animate)
+app.command("site")(site)
 app.command("check")(check)
 app.command("export")(export)
 app.command("view")(view)

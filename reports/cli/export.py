@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from reference.scene import Scene
 
 INSTANTS = 10  # at which the truth is told
-FRAMES = 150  # of an animation
 MEMBERS = ("suffix", "write", "commented")
 
 SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
@@ -66,12 +65,12 @@ def view(
         except Unsupported as reason:
             print(f"no viewer: {reason}")
         out = Path(f"{chosen.name}.svg")
-    import numpy as np
+    from reports.site.animated import animation
+    from reports.site.embed import shown
+    from reports.site.lessons import take_like
 
-    from reports.check.animation import animation
-
-    motion = chosen.motion(np.linspace(0.0, chosen.duration, FRAMES))
-    _write(out, animation(chosen.mechanism(), motion, f"{chosen.name}, the true motion"), force)
+    motion = shown(take_like(chosen, ()), {})
+    _write(out, animation(motion, f"{chosen.name.replace('_', ' ')}: the exact motion"), force)
 
 
 def writers() -> dict[str, Any]:
