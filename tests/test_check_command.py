@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
@@ -116,6 +117,6 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(folder, capfd, monke
     assert call("view", "pendulum_2") == 0
     assert "no viewer: there is no display" in capfd.readouterr().out
     xml.parse(folder / "pendulum_2.svg")
-    assert (folder / "pendulum_2.svg").read_text().count("@keyframes") == 2  # a body each
+    assert len(re.findall(r"@keyframes m0b\d", (folder / "pendulum_2.svg").read_text())) == 2  # of each body
     assert call("view", "pendulum_2") == 2
     assert "--force" in capfd.readouterr().err

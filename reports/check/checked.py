@@ -53,9 +53,15 @@ class Checked:
 
 
 def check(
-    reading: Reading, name: str, duration: float, tolerance: float, told: Callable[[str], None] = lambda words: None
+    reading: Reading,
+    name: str,
+    duration: float,
+    tolerance: float,
+    told: Callable[[str], None] = lambda words: None,
+    patience: float | None = None,
 ) -> Checked:
-    """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work.
+    """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work;
+    `patience` [s]: see `settings.tried`.
 
     Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
     """
@@ -84,7 +90,7 @@ def check(
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")
 
-    table = tried(reading, truth, samples, every, own.stepping, progress)
+    table = tried(reading, truth, samples, every, own.stepping, progress, patience)
     told("telling softness from the step")
     smaller = same_step(table, table[0])[1 : 1 + SMALLER] if table else []
     parts = parts_of(reading, truth, own, smaller)

@@ -13,23 +13,24 @@ from reports.charts.drawings import ground_points
 from reports.charts.theme import LIGHT, new_figure, settings, style_axes, svg
 from reports.check.checked import Checked
 from reports.check.comparing import QUANTITIES, UNITS
+from reports.check.settings import Tried
 
 Array = NDArray[np.float64]
 LEAST = 1e-16
 
 
-def pictures(found: Checked) -> dict[str, tuple[str, str]]:
-    """By 'errors' and 'worst': what each shows, and the SVG."""
+def pictures(found: Checked, advised: Tried | None = None) -> dict[str, tuple[str, str]]:
+    """By 'errors' and 'worst': what each shows, and the SVG. `advised`: the settings beside the user's own."""
+    advised = advised or found.advised
     named = {
-        "errors": ("Errors of your settings over time, beside the judge's own error", _errors(found)),
+        "errors": ("Errors of your settings over time, beside the judge's own error", _errors(found, advised)),
         "worst": (_worst_title(found), _worst(found)),
     }
     return {key: (title, svg(figure, title)) for key, (title, figure) in named.items()}
 
 
-def _errors(found: Checked) -> Figure:
+def _errors(found: Checked, advised: Tried | None) -> Figure:
     own, judge, theme = found.own_errors, found.judge_errors, LIGHT
-    advised = found.advised
     shown = [quantity for quantity in QUANTITIES if np.isfinite(own.of[quantity]).any()]
     with settings():
         figure = new_figure(5.4 if len(shown) > 2 else 3.1, theme)

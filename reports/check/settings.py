@@ -28,21 +28,29 @@ class Tried:
 
 
 def tried(
-    reading: Reading, truth: Trajectory, samples: int, every: int, first: float, told: Callable[[int, int], None]
+    reading: Reading,
+    truth: Trajectory,
+    samples: int,
+    every: int,
+    first: float,
+    told: Callable[[int, int], None],
+    patience: float | None = None,
 ) -> list[Tried]:
     """Runs at the documented settings, coarse steps first. `first`: the CPU time of the user's own run [s].
 
-    Left out is what takes too long: by how often the engine would step, from what it took so far.
+    Left out is what takes too long: by how often the engine would step, from what it took so far. `patience` [s] of CPU
+    time, PATIENCE unless given; if it is infinite all are run, whatever a machine takes.
     """
     model, mechanism = reading.model, reading.mechanism
-    changes = model.changes(model.dt * max(first, 1e-4) / LONGEST)
+    patience = PATIENCE if patience is None else patience
+    changes = model.changes(0.0 if patience == float("inf") else model.dt * max(first, 1e-4) / LONGEST)
     order = sorted(range(len(changes)), key=lambda index: -changes[index].dt)
     begin, found, rate = time.process_time(), [], max(first, 1e-5) / (samples * every)
     for number, index in enumerate(order):
         change = changes[index]
         told(number, len(changes))
         steps = samples * every * model.dt / change.dt
-        if time.process_time() - begin + steps * rate > PATIENCE:
+        if time.process_time() - begin + steps * rate > patience:
             continue
         run = model.run(samples, every, change)
         rate = max(rate, run.stepping / steps)

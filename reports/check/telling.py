@@ -242,6 +242,7 @@ def data(found: Checked) -> dict[str, Any]:
             "words": each.change.words,
             "step": each.change.dt,
             "error": each.error,
+            "reaction": each.errors.worst("reaction"),
             "cpu": each.cost,
             "lines": list(each.change.lines),
         }
