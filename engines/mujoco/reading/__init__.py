@@ -55,6 +55,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     bodies, weights = _with_armature(scene)
     gravity = (0.0, 0.0) if off(model, "GRAVITY") else frame.in_plane(model.opt.gravity)
     _note_gravity_across(scene)
+    _note_what_may_act(scene)
     for element in without:
         scene.note(element, "left out at your word, in your model too")
     mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
@@ -75,6 +76,21 @@ def _note_gravity_across(scene: Scene) -> None:
     if np.any(model.jnt_type == FREE):
         raise refuse("gravity", "it pulls a free body out of the plane")
     scene.note("gravity", f"{across:g} m/s^2 of it act across the plane, where joints hold the bodies")
+
+
+def _note_what_may_act(scene: Scene) -> None:
+    """Limits and contacts, which count as left out once nothing in the judged motion has met them."""
+    model = scene.model
+    if off(model, "CONSTRAINT"):
+        return
+    if not off(model, "LIMIT"):
+        for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
+            for index in np.flatnonzero(limited):
+                element = name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
+                scene.note(element, "its limit, which is not reached in the judged motion")
+    shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
+    if not off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
+        scene.note("contacts", "none is made in the judged motion")
 
 
 def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:

@@ -40,6 +40,8 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
         raise refuse(
             words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
         )
+    if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
+        found.notes.append(Note("contacts", "none is made in the judged motion"))
     notes = [*found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
     return Reading(mechanism, own, tuple(notes))
 

@@ -14,7 +14,7 @@ from reports.check.settings import Tried
 from reports.check.telling import data
 from reports.grid.tasks import Task, Values
 
-PROGRAMS = Path(__file__).parent / "programs"
+MODELS = Path(__file__).parent / "models"
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def _setting(each: Tried) -> dict[str, object]:
 
 def walk(file: str, name: str = "", **settings: float) -> Walk:
     """The task of a model of the page."""
-    text = (PROGRAMS / file).read_text(encoding="utf-8")
+    text = (MODELS / file).read_text(encoding="utf-8")
     return Walk(file, text, f"{file}:{name}" if name else file, **settings)  # type: ignore[arg-type]
 
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from reference.four_bar import FreeFourBar
 from reports.pages.page import Material, Page
 from reports.pages.your_model.answers import WALKS, Walk
 from reports.text.tables import markdown, number
@@ -57,6 +58,7 @@ PAGE = Page(
     lesson="What `crosscheck check` tells of a model of your own: how wrong it is, why, and which settings are enough.",
     scenes=(),
     engines=(),
+    companions=(FreeFourBar(),),  # a full run of it runs the checks too
     figures=figures,
     words=words,
     tasks=WALKS,
