@@ -193,7 +193,7 @@ def test_without_dask_the_line_names_the_extra(monkeypatch):
 
 def test_chunks_keep_to_their_time(two_workers):
     """Cells that take longer than estimated go in smaller chunks: the last ones are not waited for."""
-    cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 81)]
+    cells = [Cell(Disc(), SlowToy(seconds=0.05, factor=float(number)), 1) for number in range(80)]
     sizes: list[int] = []
     start = clusters._Sender.__call__
 

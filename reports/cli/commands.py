@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
+from reports.cli.atlas import atlas
 from reports.cli.bench import bench
 from reports.cli.compare import compare
 from reports.cli.conform import conform
@@ -36,6 +37,7 @@ app.command("shapes")(shapes)
 app.command("errata")(errata)
 app.command("conform")(conform)
 app.command("search")(search)
+app.command("atlas")(atlas)
 app.command("versions")(versions)
 app.command("compare")(compare)
 
