@@ -8,6 +8,7 @@ from itertools import pairwise
 from textwrap import fill
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -48,7 +49,7 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             drawn |= _explained(panel, own, subject, theme)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
             panel.set_ylabel("step [s]" if index % columns == 0 else "")
-        handles = [
+        handles: list[Artist] = [
             Rectangle((0, 0), 1, 1, facecolor=outcome_colour(o, theme), edgecolor=theme.quiet, hatch=HATCHES.get(o))
             for o in Outcome
             if o in met
@@ -100,7 +101,8 @@ def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> s
         if hatch := HATCHES.get(outcome):
             panel.add_patch(PathPatch(path, facecolor="none", edgecolor=theme.quiet, linewidth=0, hatch=hatch))
     panel.set_xlim(across[0], across[-1])
-    panel.set_ylim(edges(lines[0].steps[::-1], False)[[0, -1]])
+    upwards = edges(lines[0].steps[::-1], False)
+    panel.set_ylim(upwards[0], upwards[-1])
     return set(shapes)
 
 

@@ -117,4 +117,7 @@ def left_by_sweeps(mechanism: Mechanism, engine: Any) -> float:
     From half on, a gap that is closed in one step grows from step to step (`engines.pymunk.contraction`).
     """
     sweeps = getattr(engine, "sweeps", None)
-    return math.nan if not callable(sweeps) else float(contraction(mechanism) ** sweeps(mechanism))
+    if not callable(sweeps):
+        return math.nan
+    count: Any = sweeps(mechanism)
+    return float(contraction(mechanism) ** count)

@@ -114,6 +114,12 @@ def ellipse(ratio: float) -> RollingEllipse:
     return replace(plain, along_y=plain.along_x * ratio, start_rate=1.0, duration=1.0)
 
 
+def rocking(ratio: float) -> float:
+    """Of small swings about that side [rad/s]."""
+    law = ellipse(ratio).motion_law
+    return law.small_frequency(law.rolling.theta)
+
+
 SUBJECTS: tuple[Subject, ...] = (
     Subject(
         "coupler",
@@ -194,9 +200,9 @@ SUBJECTS: tuple[Subject, ...] = (
         "An ellipse that rolls, ever thinner",
         "short semi-axis over the long one",
         ellipse,
-        (0.03, 1.0),
-        lambda ratio: ellipse(ratio).start_rate / ratio**2,
-        "the contact's way round the sharp end",
+        (0.03, 0.99),
+        rocking,
+        "rocking on the flat side",
     ),
     Subject(
         "loops",
