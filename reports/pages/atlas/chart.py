@@ -14,14 +14,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.charts.stability import HATCHES, outcome_colour
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 from reports.grid.outcomes import Outcome
 from reports.pages.atlas.subjects import Subject
 from reports.pages.atlas.table import Line
+from reports.text.tables import number
 
 HALF = 0.5  # of the slowest mode: from here on, what sweeps leave grows from step to step
+WIDE = 2.2  # decades
 DASHES = {"fastest": (0, (5, 2)), "gives": (0, (1, 1.2)), "left": (0, (6, 2, 1, 2))}
 ROLES = {"fastest": "second", "gives": "first", "left": "fourth"}
 
@@ -45,6 +48,11 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             panel.set_yscale("log")
             if not subject.whole:
                 panel.set_xscale("log")
+            # Of few decades, ticks between them too.
+            decades = math.log10(own[0].steps[0] / own[0].steps[-1])
+            panel.yaxis.set_major_locator(LogLocator(10, (1.0,) if decades > WIDE else (1.0, 2.0, 5.0)))
+            panel.yaxis.set_major_formatter(FuncFormatter(lambda step, _: number(step)))
+            panel.yaxis.set_minor_formatter(NullFormatter())
             met |= _regions(panel, own, subject.whole, theme)
             drawn |= _explained(panel, own, subject, theme)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
@@ -84,7 +92,7 @@ def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> s
     """One shape an outcome: the cells of a column that follow one another are one rectangle of it."""
     across = edges([line.value for line in lines], whole)
     shapes: dict[Outcome, list[tuple[float, float, float, float]]] = {}
-    for line, left, right in zip(lines, across, across[1:], strict=True):
+    for line, (left, right) in zip(lines, pairwise(across), strict=True):
         up, told = edges(line.steps[::-1], False), line.told[::-1]
         begin = 0
         for place in range(1, len(told) + 1):
