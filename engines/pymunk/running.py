@@ -163,7 +163,12 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
 
 
 def reactions(
-    mechanism: Mechanism, pose: Array, acceleration: Array, inertias: Array, gravity: tuple[float, float]
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    acceleration: Array,
+    inertias: Array,
+    gravity: tuple[float, float],
 ) -> Array:
     """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
     out = np.full((len(pose), mechanism.row_count), np.nan)
@@ -171,7 +176,7 @@ def reactions(
     sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
     if mechanism.row_count and np.any(sane):
         with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity))
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
     return out
 
 
@@ -234,7 +239,7 @@ class PymunkRun:
         reaction = np.concatenate(
             [
                 self._start_reaction(sweeping)[None],
-                reactions(self._mechanism, recording.pose[1:], acceleration, *loads(model)),
+                reactions(self._mechanism, recording.pose[1:], twist[1:], acceleration, *loads(model)),
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
@@ -254,7 +259,8 @@ class PymunkRun:
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
             held = loads(model)
-            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:], *held)
+            twist = (recording.before + recording.after[1:]) / 2 if self._leapfrog else recording.after[1:]
+            third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
 
 

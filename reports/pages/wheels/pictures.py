@@ -79,7 +79,7 @@ def _cart(casters: Casters, travelled: float) -> np.ndarray:
     """The cart's outline (points, 2) [m]: from its fixed axle, which has come so far [m], to the kingpins."""
     places = np.array(casters.places)
     corners = np.array([[0.0, places[0, 1]], places[0], places[1], [0.0, places[1, 1]], [0.0, places[0, 1]]])
-    return corners + (travelled, 0.0)
+    return corners + np.array([travelled, 0.0])
 
 
 def reversing() -> Figure:
