@@ -213,6 +213,6 @@ SUBJECTS: tuple[Subject, ...] = (
         lambda loops: NFourBar(loops=round(loops)).pendulum.frequency,
         "the cranks' swing",
         whole=True,
-        doublings=4.5,
+        doublings=5.0,
     ),
 )
