@@ -145,6 +145,11 @@ def _running(files: Files, missing: list[str]) -> dict[str, object]:
         "names": [name for _, name in there],
         "missing": missing,
         "nothing": figure,
+        "places": {
+            "cranks": live.CRANKS,
+            "couplers": [round(length, 4) for length in live.COUPLERS],
+            "ratios": live.RATIOS,
+        },
     }
 
 

@@ -22,8 +22,14 @@ from engines.mujoco.model import Model
 from engines.mujoco.written_model import Written
 from reference.four_bar.scenes import DrivenFourBar, FourBarScene, FreeFourBar
 
-CRANKS = (0.3, 0.35, 0.4, 0.45, 0.5)  # m; the chapter's is 0.4
-COUPLERS = (0.5, 0.4 * 2**0.5, 0.65, 0.75, 0.9)  # m; the chapter's is 0.566: all turn fully with every crank
+CRANKS = (0.2, 0.3, 0.4, 0.42, 0.45)  # m; the chapter's is 0.4
+COUPLERS = (
+    0.53,
+    0.4 * 2**0.5,
+    0.65,
+    0.75,
+    0.9,
+)  # m; the chapter's is 0.566; every crank can turn
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)  # of the coupler's density to that of the others
 SAMPLES = 60  # of a revolution
 FREE_SAMPLES = 100
