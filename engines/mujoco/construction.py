@@ -12,7 +12,7 @@ from typing import Any
 import mujoco
 
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.tree import Tree
+from engines.tree import Tree
 from engines.mujoco.written_rows import WrittenJoint
 from reference.mechanism import Mechanism
 

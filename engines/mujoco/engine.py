@@ -22,7 +22,7 @@ from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver
 from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
-from engines.mujoco.tree import Tree, spanning_tree
+from engines.tree import Tree, spanning_tree
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll

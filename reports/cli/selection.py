@@ -47,7 +47,9 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
     if engine is not None:
         chosen = tuple(e for e in chosen if e.name == engine)
         if not chosen:
-            raise nearest("engine", engine, (e.name for e in engines))
+            from engines.registry import ABSENT
+
+            raise BadInput(ABSENT[engine]) if engine in ABSENT else nearest("engine", engine, (e.name for e in engines))
     if variant is not None:
         found = tuple(e for e in chosen if e.variant == variant)
         if not found:
@@ -73,11 +75,11 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
-    from engines.registry import ENGINES
+    from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
     kept = (task.engine for page in pages for task in page.all_tasks() if task.engine is not None)
-    return tuple(dict.fromkeys([*ENGINES, *compared, *kept]))
+    return tuple(dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept]))
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:

@@ -20,7 +20,7 @@ import mujoco
 import numpy as np
 
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import Link, Tree, world_offset
+from engines.tree import Link, Tree, world_offset
 from engines.mujoco.written_rows import Row, State, WrittenJoint
 from reference.joints import Slot
 from reference.plane import rotation_velocity
