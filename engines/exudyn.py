@@ -52,7 +52,7 @@ class Exudyn(Optional):
 
     `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
     radius of GeneralizedAlpha at infinite frequency, 0.9 as shipped (1 damps nothing). `consistent`: the start's
-    accelerations are given to the engine, and not computed by it.
+    accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as a sparse one.
     """
 
     extra: ClassVar[str] = "exudyn"
@@ -65,6 +65,7 @@ class Exudyn(Optional):
     absolute: Positive = 1e-10
     damping: Positive = 0.9
     consistent: bool = False
+    sparse: bool = False
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -76,8 +77,10 @@ class Exudyn(Optional):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]: Newton's matrix is dense, so the cube of many bodies."""
+        """About what a step takes [s]: the cube of many bodies where Newton's matrix is dense."""
         size = over_three(mechanism)
+        if self.sparse:
+            return STEP_COST * size
         return STEP_COST * size * max(1.0, size / 5) ** 2
 
     @validated
@@ -204,6 +207,8 @@ class _System:
         steps.endTime, steps.numberOfSteps = samples * every * dt, samples * every
         steps.adaptiveStep = False
         steps.newton.relativeTolerance, steps.newton.absoluteTolerance = engine.relative, engine.absolute
+        if engine.sparse:
+            settings.linearSolverType = exudyn.LinearSolverType.EigenSparse
         steps.generalizedAlpha.spectralRadius = engine.damping
         velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in self.mechanism.joints)
         if engine.consistent:
@@ -239,6 +244,6 @@ class _System:
 
 
 DEFAULT = Exudyn("default")
-TUNED = Exudyn("tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-12, consistent=True)
+TUNED = Exudyn("tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-12, consistent=True, sparse=True)
 EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(2, 4, 6))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)
