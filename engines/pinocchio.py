@@ -24,10 +24,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.single_run import Optional, Recorded, SingleRun, tree_states
-from engines.tree import Link, Tree, spanning_tree, world_offset
+from engines.tree import Link, Tree, refuse_all_but_pins_of_loops, spanning_tree, world_offset
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Mechanism
 from reference.validation import Name, Positive, validated
@@ -84,16 +84,6 @@ class Pinocchio(Optional):
         return SingleRun(
             mechanism, dt, model.size, lambda samples, every: model.record(self.integrator, dt, samples, every)
         )
-
-
-def refuse_all_but_pins_of_loops(mechanism: Mechanism, tree: Tree, engine: str) -> None:
-    """Raises Unsupported for skates and rolls, and for slots that no coordinate of the tree stands for."""
-    for joint in mechanism.joints:
-        if not isinstance(joint, Pin | Slot | Drive):
-            raise Unsupported(f"joint {joint.name!r}: {engine} has no constraint of a {type(joint).__name__.lower()}")
-    for joint in tree.loops:
-        if isinstance(joint, Slot):
-            raise Unsupported(f"joint {joint.name!r}: a slot closes a loop, and {engine} closes loops at points alone")
 
 
 class _Model:
