@@ -113,7 +113,11 @@ class _World:
         drives = [joint for joint in joints if isinstance(joint, Drive)]
         for joint in joints:
             if not isinstance(joint, Pin | Slot | Drive):
-                what = "a disc rolls by contact and friction" if isinstance(joint, Roll) else "nothing stops a slip across a line"
+                what = (
+                    "a disc rolls by contact and friction"
+                    if isinstance(joint, Roll)
+                    else "nothing stops a slip across a line"
+                )
                 raise Unsupported(f"joint {joint.name!r}: in box2d {what}, there is no joint for it")
         for drive in drives:
             if frozenset((drive.first, drive.second)) not in held:

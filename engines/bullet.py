@@ -19,7 +19,6 @@ order. Accelerations are changes of velocity over the last step, so nothing is t
 
 from __future__ import annotations
 
-
 import tempfile
 import time
 from dataclasses import dataclass
@@ -166,7 +165,9 @@ class _World:
             self.bullet.disconnect(self.server)
 
     def _urdf(self) -> str:
-        return "\n".join(['<robot name="mechanism"><link name="ground"/>', *map(self._link, self.tree.links), "</robot>"])
+        return "\n".join(
+            ['<robot name="mechanism"><link name="ground"/>', *map(self._link, self.tree.links), "</robot>"]
+        )
 
     def _link(self, link: Link) -> str:
         """A link whose frame stands at its joint, parallel to the world's at the start."""

@@ -67,7 +67,9 @@ ENGINES: tuple[Engine, ...] = tuple(
     if engine.name == name
 )
 
-_optional = registered("crosscheck.engines", ENGINE, method, {method(engine): engine for engine in ENGINES}, extras=True)
+_optional = registered(
+    "crosscheck.engines", ENGINE, method, {method(engine): engine for engine in ENGINES}, extras=True
+)
 
 
 def missing(engine: Engine) -> str:
