@@ -46,6 +46,7 @@ JUDGE = Prediction(
     acceleration=10.0,
     changing=(1.0, 1.0),
     soft={((True, True), True): dict.fromkeys(NAMES, 1e-3)},
+    gapped=(True, True),
 )
 FINE = 1e-3
 

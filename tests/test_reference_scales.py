@@ -115,10 +115,10 @@ def test_a_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("scene", [each for each in ALL if each.name in COSTLY], ids=lambda scene: scene.name)
 def test_a_costly_scene_in_other_units_is_the_same_scene(scene: Scene, kind: str, scale: str) -> None:
-    # Chaotic ones magnify a rounding up to their horizon, where a difference has grown tenfold and more.
-    assert difference(scene, kind, SCALES[scale]) < 1e-9
+    # Integrated in the same steps, or solved for iteratively: rounding, grown tenfold and more up to the horizon.
+    assert difference(scene, kind, SCALES[scale]) < 1e-12
 
 
 def test_a_number_left_in_its_old_unit_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(UNITS, "gravity", LENGTH)
-    assert difference(RollingDisc(), "time", SCALES["giga"]) > 1e-3
+    assert difference(RollingDisc(), "time", SCALES["nano"]) > 1e-3  # it hardly falls; in "giga" it never ends

@@ -29,7 +29,7 @@ Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 
 ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
 # Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
 BAUMGARTE_STEPS = 5.0
-# About the CPU time of a step of three bodies [s], from how often the rows are evaluated: compiled, and in numpy.
+# About the CPU time of a step of three bodies [s], by `compiled`: in machine code, and in numpy.
 STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
@@ -102,8 +102,10 @@ class Lagrange(Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s], from how often the rows are evaluated; more without numba."""
-        return STEP_COSTS[self.in_machine_code][self.integrator] * over_three(mechanism)
+        """About what a step takes [s] where numba is installed: the same where it is not, as it says what is worth
+        running, and the grid is to have the same cells everywhere.
+        """
+        return STEP_COSTS[self.compiled][self.integrator] * over_three(mechanism)
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import dataclass, field
 from typing import Literal
@@ -16,12 +17,12 @@ from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
 from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
-from engines.mujoco.joints.skate import STEPWISE, SkateBy
+from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy
 from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
-from engines.mujoco.solver_check import choose_solver
-from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
+from engines.mujoco.solver_check import choose_solver, ease
+from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.tree import Tree, spanning_tree
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
@@ -116,6 +117,10 @@ class MuJoCo(Valid):
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
         lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
         gain, damping = stiffness.gains(mechanism, dt)
+        if self.skates == "rows" and all(
+            isinstance(joint, Skate) for joint in itertools.compress(mechanism.joints, soft)
+        ):
+            damping = slip_damping(mechanism)  # which such a row brings along, whatever the springs of loops have
         # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * stiffness.softening
         rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
@@ -160,7 +165,9 @@ class MuJoCo(Valid):
             self.rolls,
         )
         model = build_model(mechanism, dt, settings)
-        choose_solver(model, self.solvers, self.stiffness.softening)
+        choose_solver(model, self.solvers)
+        if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
+            ease(model, self.stiffness.softening)
         return model
 
 

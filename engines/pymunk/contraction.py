@@ -40,6 +40,9 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
+# What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no part
+# of rho: five sweeps leave half of the force of a disc on a plane, ten leave 1e-5 of it.
+CONTACT_CONVERGED = 1000
 
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]

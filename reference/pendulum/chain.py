@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
 from reference.memory import require_room
-from reference.numerics.integration import error_of, integrate
+from reference.numerics.integration import error_of, integrate, units_of_motion
 from reference.pendulum.link import direction_of
 from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
 from reference.validation import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -160,7 +160,8 @@ class Chain(Valid):
         From any start, an angle [rad] and a rate [rad/s] a link (links,); integrated, see `truth_error`.
         """
         times, start = sample_times("chain", t), self._start(angle, rate)
-        state = integrate(self.rates, start, max(float(times.max(initial=0.0)), math.ulp(1.0)))(times)
+        until, unit = max(float(times.max(initial=0.0)), math.ulp(1.0)), units_of_motion(self.rates, start)
+        state = integrate(self.rates, start, until, unit=unit)(times)
         angles, rates = state[:, : self.links], state[:, self.links :]
         return angles, rates, self._accelerations(angles, rates)
 
@@ -240,13 +241,14 @@ class Chain(Valid):
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
         tolerance = NUDGE * 1e-4  # its error stays far below the difference that is measured
-        motion = integrate(self.rates, start, until, tolerance)(t)
+        unit = units_of_motion(self.rates, start)
+        motion = integrate(self.rates, start, until, tolerance, unit)(t)
         growth = np.zeros(len(t))
         generator = np.random.default_rng(0)
         for _ in range(starts):
             move = np.concatenate([generator.uniform(-1, 1, self.links), np.zeros(self.links)])
             move *= NUDGE / np.abs(move).max()
-            neighbour = integrate(self.rates, start + move, until, tolerance)(t)
+            neighbour = integrate(self.rates, start + move, until, tolerance, unit)(t)
             growth = np.maximum(growth, np.abs(neighbour - motion)[:, : self.links].max(axis=-1) / NUDGE)
         return growth
 
@@ -270,7 +272,8 @@ class Chain(Valid):
     @validated
     def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
-        return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
+        start = self._start(angle, rate)
+        return error_of(self.rates, start, sample_times("chain", t), unit=units_of_motion(self.rates, start))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         return np.concatenate(self._alike(angle, rate))

@@ -9,7 +9,7 @@ they are, so one softness tells of all.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -42,7 +42,7 @@ class Prediction:
     """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
     the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
     themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
-    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE.
+    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE. `gapped`: which rows of the mechanism have a gap to close.
     """
 
     step: float
@@ -53,6 +53,7 @@ class Prediction:
     acceleration: float
     changing: tuple[float, float]
     soft: Mapping[Kind, Mapping[str, float]]
+    gapped: tuple[bool, ...]
 
     def error(self, quantity: str, order: float, step: float) -> float:
         """A (step / tau)^order, A and tau from the two ideal methods; infinite where those failed, NaN if unknown.
@@ -65,10 +66,16 @@ class Prediction:
         match quantity:
             case "rate":
                 return max(own, pace * self._power("angle", order, step))
+            case "position" if order < 2:
+                # Rows left alone drift: at fourth order that is most of a position's error, at first next to nothing.
+                return max(own, self.length * self._power("angle", order, step))
             case "velocity":
-                return max(own, pace * self._power("position", order, step))
+                return max(own, pace * self.error("position", order, step))
             case "slip":
                 return max(own, self._power("velocity", order, step))
+            case "energy" if order < 2:
+                # Both judges keep the energy an order better than the motion; a method of first order need not.
+                return max(own, 2 * self._power("velocity", order, step) / self.speed)
         return own
 
     def _power(self, quantity: str, order: float, step: float) -> float:
@@ -84,7 +91,7 @@ class Prediction:
 
     def give(self, quantity: str, softness: Softness | None) -> float:
         """What this softness costs, in proportion to what the judge's own does."""
-        return given(self.soft, quantity, softness)
+        return given(self.soft, quantity, softness, self.gapped)
 
     def closing(self, quantity: str, gap: float, softness: Softness | None) -> float:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
@@ -110,18 +117,24 @@ class Prediction:
         return scales.get(quantity, math.inf)
 
 
-def given(soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None) -> float:
-    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`)."""
+def given(
+    soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None, gapped: Sequence[bool]
+) -> float:
+    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`).
+
+    A row that has a gap (`gapped`, (rows,)) gives way by its spring, one that has none by its damper.
+    """
     if softness is None:
         return 0.0
-    stiff = STIFFNESS / softness.stiffness
+    stiff, damped = STIFFNESS / softness.stiffness, DAMPING / softness.damping
     found = 0.0
     if softness.compliance > 0:
-        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
+        yielding = {stiff if gap else damped for gives, gap in zip(softness.rows, gapped, strict=True) if gives}
+        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * max(yielding, default=0.0)
         # However stiff the spring, this share of a force is not felt by what gives it.
         found += softness.compliance if quantity == "reaction" else 0.0
     if not softness.complete:
-        lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
+        lag = stiff if quantity == "gap" else max(damped, stiff)
         found += soft[softness.rows, False][quantity] * lag
     return found
 
@@ -159,13 +172,18 @@ def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
         second, fourth = (_judged(scene, order, every) for order in (2, 4))
         if second["angle"] <= REACH:
             break
+    if not max(second["angle"], fourth["angle"]) <= SATURATED:
+        # Of a motion that is lost nothing follows for another order.
+        second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
+    mechanism = scene.mechanism()
     return Prediction(
         scene.spacing / every,
         second,
         fourth,
-        scene.mechanism().length_scale,
+        mechanism.length_scale,
         *_motion(scene),
         {kind: softened(scene, *kind) for kind in soft},
+        tuple(mechanism.holonomic.tolist()),
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.checks import Check
+from reports.gate.order_check import PROPORTIONAL
 from reports.gate.prediction import Prediction
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
@@ -43,7 +44,9 @@ def terms(
     if quantity in ("rate", "velocity", "slip", "energy"):
         rounding *= promise.amplified
     if quantity == "reaction" and promise.differences:
-        rounding += ROUNDING["velocity"] * promise.differences / step / prediction.acceleration
+        # A change of velocity: a combination of runs carries its rounding as it carries that of velocities.
+        carried = ROUNDING["velocity"] * promise.amplified
+        rounding += carried * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
         return 0.0, 0.0, rounding
     cost = prediction.error(quantity, promise.step(quantity), step)
@@ -62,7 +65,8 @@ def theory(
 ) -> tuple[Check, ...]:
     """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
 
-    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too.
+    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too:
+    those whose errors are still proportional to what causes them, or any where the judge itself has lost the motion.
     Where no order is promised the outcome alone is held.
     """
     outcome = Outcome(row.outcome)
@@ -71,7 +75,8 @@ def theory(
     checks = [Check("outcome", "outcome", 0.0 if outcome.comparable else math.inf, 1.0, sentence=f", {row.outcome}")]
     if not outcome.comparable or isinstance(promise, Unpromised):
         return tuple(checks)
-    usable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
+    comparable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
+    proportional = [other for other in comparable if other.angle <= PROPORTIONAL]
     for name, quantities in HELD.items():
         for quantity in quantities:
             measured = getattr(row, quantity)
@@ -80,6 +85,7 @@ def theory(
             cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step)
             cost, soft = ROOM * cost, ROOM_SOFT * soft
             order = promise.of(quantity)
+            usable = proportional if math.isfinite(cost + soft) else comparable
             if usable and order < EXACT:
                 known = [getattr(other, quantity) * (row.step / other.step) ** order for other in usable]
                 own = ROOM_OWN * max(known)

@@ -81,11 +81,12 @@ def estimated_cost(cell: Cell) -> float:
 
 @lru_cache(maxsize=4096)
 def _step_cost(scene: Scene, engine: Engine) -> float:
-    return engine.step_cost(_mechanism(scene))
+    return engine.step_cost(mechanism_of(scene))
 
 
-@lru_cache(maxsize=128)
-def _mechanism(scene: Scene) -> Mechanism:
+@lru_cache(maxsize=512)
+def mechanism_of(scene: Scene) -> Mechanism:
+    """The scene's mechanism, made once: cells, tables and pictures ask for it hundreds of times."""
     return scene.mechanism()
 
 

@@ -17,8 +17,6 @@ COMPLIANT = "by design: a row with its shipped compliance gives way, whatever th
 ALTERNATES = "by design: what a reflection lacks in velocities changes sign with every step, and starts at its largest"
 THIN = "by design: a wheel has a width on which it rolls, and an inertia of its own, whatever the step"
 
-ROW = "ours: worse since written rows have their own inverse inertia; the cause is not traced"
-
 KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh", "pymunk default", "outcome"): Deviation(ANOTHER_BODY),
     ("sleigh", "mujoco default", "order"): Deviation(SOFT, 2.5),
@@ -44,8 +42,4 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh_backwards", "mujoco default", "rate"): Deviation(SOFT, 1.7),
     ("sleigh_backwards", "mujoco default", "energy"): Deviation(SOFT, 3300),
     ("sleigh_backwards", "mujoco default", "order"): Deviation(SOFT, 2.5),
-    ("sleigh", "mujoco rows, shipped compliance", "error"): Deviation(ROW, 1.5),
-    ("sleigh", "mujoco rows, shipped compliance", "rate"): Deviation(ROW, 1.1),
-    ("sleigh", "mujoco rows, shipped compliance", "gap"): Deviation(ROW, 1.2),
-    ("sleigh", "mujoco rows, shipped compliance", "energy"): Deviation(ROW, 1.2),
 }
