@@ -1,10 +1,10 @@
 """Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by sub-steps of impulses.
 
 A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
-no contact is the subject. A Pin is a revolute joint, a Slot a wheel joint without its spring (a point on a line, free to
-turn), or a prismatic joint where a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or Slot between
-the same two bodies, with more torque than it can need. There is no joint that holds a velocity across a blade, and
-rolling is contact with friction; both are refused.
+no contact is the subject. A Pin is a revolute joint, a Slot a wheel joint without its spring (a point on a line that is
+free to turn), or a prismatic joint where a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or Slot
+between the same two bodies, with more torque than it can need. There is no joint that holds a velocity across a blade,
+and rolling is contact with friction; both are refused.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.

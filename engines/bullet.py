@@ -5,7 +5,7 @@ whole, while ode-python needs a library of the system. It costs 290 MB, and ther
 
 The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
 continuous joints, and prismatic ones for slots whose angle is kept. A Pin that closes a loop is a JOINT_POINT2POINT of
-enough force, a Drive the velocity motor of a joint. A link without a mass can't stand between two joints, so a body that
+enough force, a Drive the velocity motor of a joint. No link without a mass stands between two joints, so a body that
 slides and turns, or that hangs on nothing, is refused, as are slots in loops, skates and rolling contact. All damping
 and the limit on joint velocities are off; the wheel is built in double precision.
 
@@ -181,7 +181,7 @@ class _World:
             f'<link name="body {link.body}"><inertial><origin xyz="{-link.anchor[0]!r} {-link.anchor[1]!r} 0"/>'
             f'<mass value="{body.mass!r}"/><inertia {inertia} ixy="0" ixz="0" iyz="0"/></inertial></link>'
             f'<joint name="joint {link.body}" type="{kind}"><parent link="{parent}"/><child link="body {link.body}"/>'
-            f'<origin xyz="{float(x)!r} {float(y)!r} 0"/><axis xyz="{axis[0]!r} {axis[1]!r} {axis[2]!r}"/>{reach}</joint>'
+            f'<origin xyz="{float(x)!r} {float(y)!r} 0"/><axis xyz="{" ".join(map(repr, axis))}"/>{reach}</joint>'
         )
 
     def _close(self, loop: Pin | Slot) -> None:

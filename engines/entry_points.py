@@ -39,8 +39,8 @@ def registered(
 ) -> Registered:
     """All values of a group, no two of one `name`; of two, ours stays, or that of the first distribution.
 
-    `known`: what is registered elsewhere already, by name: another value of such a name is left out too. `extras`: those
-    entry points alone that name an extra, as in `engines.exudyn:VARIANTS [exudyn]`; otherwise those alone that name none.
+    `known`: what is registered elsewhere already, by name: another value of such a name is left out too. `extras`:
+    those entry points alone that name an extra, as `engines.exudyn:VARIANTS [exudyn]` does; else those that name none.
     """
     values: dict[str, Any] = {}
     owners = dict.fromkeys(known, "another group")

@@ -52,7 +52,7 @@ class Exudyn(Optional):
 
     `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
     radius of GeneralizedAlpha at infinite frequency, 0.9 as shipped (1 damps nothing). `consistent`: the start's
-    accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as a sparse one.
+    accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as sparse.
     """
 
     extra: ClassVar[str] = "exudyn"

@@ -4,7 +4,7 @@ The model is the MjModel that our MuJoCo adapter compiles with the same settings
 what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C, skates and rolling
 contacts among it, has no place in a compiled program and is refused.
 
-MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. The loop is then pulled off its
+MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. A loop is then pulled off its
 path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force.
 
 A program is compiled for each model, 6 to 12 s for one with a loop: that is building and not stepping. JAX keeps it for
@@ -54,6 +54,7 @@ class Mjx(Optional):
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
     distributions: ClassVar[tuple[str, ...]] = ("mujoco-mjx", "jax", "mujoco-core")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
+    building: ClassVar[float] = 20.0
 
     variant: Name
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)

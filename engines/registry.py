@@ -4,7 +4,7 @@ A distribution registers under `crosscheck.engines` what shall be run in every s
 what more there is of an engine: the methods between its variants, which show what each setting buys. The value of an
 entry point is an engine, or a tuple or list of engines.
 
-An entry point that names an extra, `engines.exudyn:VARIANTS [exudyn]`, is of an engine that not everybody installs. Such
+An entry point that names an extra, `engines.exudyn:VARIANTS [exudyn]`, is of an engine that few install. Such
 engines are OTHERS: they are compared at a few steps, beside the tables and charts of the engines that everybody has.
 """
 

@@ -34,7 +34,8 @@ class Optional(Valid):
     """The base of an engine whose package is an extra of this project: a value even where the package is missing.
 
     `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
-    belong to; `apart`: what has to be installed besides, since pip can't in one go. A package is imported when the
+    belong to; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
+    takes to build [s], where that is no matter of milliseconds. A package is imported when the
     first mechanism is built, because some take seconds.
     """
 
@@ -42,6 +43,7 @@ class Optional(Valid):
     modules: ClassVar[tuple[str, ...]]
     distributions: ClassVar[tuple[str, ...]]
     apart: ClassVar[str] = ""
+    building: ClassVar[float] = 0.0
 
     @property
     def name(self) -> str:
