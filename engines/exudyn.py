@@ -208,7 +208,7 @@ class _System:
         steps.adaptiveStep = False
         steps.newton.relativeTolerance, steps.newton.absoluteTolerance = engine.relative, engine.absolute
         if engine.sparse:
-            settings.linearSolverType = exudyn.LinearSolverType.EigenSparse
+            settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         steps.generalizedAlpha.spectralRadius = engine.damping
         velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in self.mechanism.joints)
         if engine.consistent:
@@ -228,19 +228,22 @@ class _System:
             warnings.append("exudyn: the solver gave up before the end, as Newton's method did not converge")
         stepping = time.process_time() - begin
         count = len(self.mechanism.bodies)
-        states = np.full((3, samples + 1, count, 3), np.nan)
+        states, last = np.full((3, samples + 1, count, 3), np.nan), 0
         for kind, sensors in enumerate(self.sensors):
             for body, sensor in enumerate(sensors):
                 told = np.array(self.system.GetSensorStoredData(sensor)).reshape(-1, 4)[: samples + 1, 1:]
-                states[kind, : len(told), body] = told
+                states[kind, : len(told), body], last = told, len(told) - 1
         states[0] += self.mechanism.pose  # coordinates count from where a node stands at the start
         if warnings:
-            states[:, max(1, len(told) - 1) :] = np.nan
+            states[:, max(1, last) :] = np.nan
         if velocities and not engine.consistent:
             states[2] = np.nan
             warnings.append("ours: reactions are not told, as the start's accelerations ignore velocity constraints")
         mechanism = self.mechanism
-        return Recorded(*states, stepping, mechanism.inertias, np.array(mechanism.gravity), tuple(warnings))
+        pose, twist, acceleration = states
+        return Recorded(
+            pose, twist, acceleration, stepping, mechanism.inertias, np.array(mechanism.gravity), tuple(warnings)
+        )
 
 
 DEFAULT = Exudyn("default")

@@ -158,8 +158,8 @@ class SingleRun:
         pose, twist = found.pose.copy(), found.twist.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.
         pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
-        sound = np.isfinite(pose).all(axis=(1, 2)) & np.isfinite(twist).all(axis=(1, 2))
-        lost = int(np.argmin(sound)) if not sound.all() else len(sound)
+        sound = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
+        lost = int(np.argmin(sound)) if not sound.all() else samples + 1
         acceleration = found.acceleration.copy()
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
         reaction = reactions(self.mechanism, pose, acceleration, found.inertias, found.gravity)
