@@ -68,7 +68,7 @@ def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array
             d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
             out[0, own], out[1, own] = stiffness * d, damping
             out[2, own] = (1 - d) / d * estimates / factors**2
-        return Give(*out, instead)
+        return Give(out[0], out[1], out[2], instead)
 
     return give
 
