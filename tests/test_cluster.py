@@ -155,14 +155,21 @@ def test_a_worker_with_another_version_is_refused_and_both_are_named(no_workers,
 
 def test_a_foreman_with_other_source_files_runs_nothing():
     cell = Cell(Disc(), Toy(), 1)
-    own, none = cell.key, pytest.fail
-    request = Request(pickle.dumps(none), (("of another file", pickle.dumps(cell)),), 1.0, 1.0)
+    own = cell.key
+    request = Request(pickle.dumps(pytest.fail), (("of another file", pickle.dumps(cell)),), 1.0, 1.0)
     told = reply(None, request)  # type: ignore[arg-type]
     assert isinstance(told, Refusal)
     assert told.versions["our source files"]
     assert own == cell.key
-    unreadable = Request(pickle.dumps(none), ((own, b"cmissing_module\nX\n."),), 1.0, 1.0)
+    unreadable = Request(pickle.dumps(pytest.fail), ((own, b"cmissing_module\nX\n."),), 1.0, 1.0)
     assert "missing_module" in reply(None, unreadable).reason  # type: ignore[arg-type,union-attr]
+
+
+def test_a_key_that_travels_with_an_item_is_made_anew():
+    cell = Cell(Disc(), Toy(), 1)
+    vars(cell)["key"] = "of another file"  # as a client with other sources has it
+    request = Request(pickle.dumps(pytest.fail), ((cell.key, pickle.dumps(cell)),), 1.0, 1.0)
+    assert isinstance(reply(None, request), Refusal)  # type: ignore[arg-type]
 
 
 def test_without_workers_a_run_ends_after_a_while_in_a_sentence(no_workers, monkeypatch):
@@ -193,7 +200,7 @@ def test_without_dask_the_line_names_the_extra(monkeypatch):
 
 def test_chunks_keep_to_their_time(two_workers):
     """Cells that take longer than estimated go in smaller chunks: the last ones are not waited for."""
-    cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 81)]
+    cells = [Cell(Disc(), SlowToy(seconds=0.05, factor=float(number)), 1) for number in range(80)]
     sizes: list[int] = []
     start = clusters._Sender.__call__
 

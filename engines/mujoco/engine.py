@@ -24,8 +24,8 @@ from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
-from engines.mujoco.tree import Tree, spanning_tree
 from engines.mujoco.written_file import as_text
+from engines.tree import Tree, spanning_tree
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll

@@ -26,7 +26,6 @@ from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.tree import Tree, spanning_tree
 from engines.mujoco.written_model import Written, new_specification
 from engines.mujoco.written_rows import (
     add_placeholders,
@@ -37,6 +36,7 @@ from engines.mujoco.written_rows import (
     writing,
     writing_free,
 )
+from engines.tree import Tree, spanning_tree
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll

@@ -10,7 +10,7 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 from engines import Unsupported
-from engines.mujoco.tree import Link, spanning_tree
+from engines.tree import Link, spanning_tree
 from reference.mechanism import Mechanism
 
 

@@ -26,7 +26,7 @@ from pymunk._chipmunk_cffi import lib
 from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported, refuse_forces
 from engines.motions import over_three
 from engines.pymunk.joints.skate import along_blade
-from engines.pymunk.running import reactions
+from engines.read_reactions import reactions
 from engines.rolling_table import rolled
 from reference.joints import Joint, Skate, Vector
 from reference.mechanism import Body, Mechanism

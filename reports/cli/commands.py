@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import typer
 
 from reports.cli.animate import animate
+from reports.cli.atlas import atlas
 from reports.cli.bench import bench
 from reports.cli.check import check
 from reports.cli.compare import compare
@@ -40,6 +41,7 @@ app.command("shapes")(shapes)
 app.command("errata")(errata)
 app.command("conform")(conform)
 app.command("search")(search)
+app.command("atlas")(atlas)
 app.command("versions")(versions)
 app.command("compare")(compare)
 app.command("animate")(animate)

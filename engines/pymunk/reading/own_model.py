@@ -103,7 +103,8 @@ class OwnPymunk:
         return (_twists(bodies) - self.mechanism.twist) / step
 
     def give(self, gap: Array) -> Give:
-        return Give(*np.zeros((3, self.mechanism.row_count)), np.full(self.mechanism.row_count, np.nan))
+        none = np.zeros(self.mechanism.row_count)
+        return Give(none, none, none, np.full_like(none, np.nan))
 
     def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
         space, bodies = self._fresh()
