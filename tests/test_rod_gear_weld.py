@@ -10,7 +10,7 @@ import pytest
 from engines import registry
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco.methods import DEFAULT, EXTENDED
-from engines.mujoco.tree import spanning_tree
+from engines.tree import spanning_tree
 from reference.forces import Torque
 from reference.joints import Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism

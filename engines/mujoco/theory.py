@@ -10,7 +10,7 @@ from engines.mujoco.joints.roll import RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE
 from engines.mujoco.joints.slot import resting_line
 from engines.mujoco.stiffness import TiedToStep
-from engines.mujoco.tree import Tree
+from engines.tree import Tree
 from reference.joints import Drive, Joint, Rod, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 

@@ -24,7 +24,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.tree import Tree
+from engines.tree import Tree
 
 # x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]; the ground's are all zero. Angles are never wrapped.
 State = tuple[float, float, float, float, float, float]

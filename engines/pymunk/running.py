@@ -17,6 +17,7 @@ from pymunk.batch import BodyFields, Buffer, get_space_bodies
 from engines import Size
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
+from engines.read_reactions import reactions
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
@@ -159,24 +160,6 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
         out[:, index, 0] = -(rate**2) * (np.cos(angle) * x - np.sin(angle) * y)
         out[:, index, 1] = -(rate**2) * (np.sin(angle) * x + np.cos(angle) * y)
         out[:, index, 2] = 0
-    return out
-
-
-def reactions(
-    mechanism: Mechanism,
-    pose: Array,
-    twist: Array,
-    acceleration: Array,
-    inertias: Array,
-    gravity: tuple[float, float],
-) -> Array:
-    """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
-    out = np.full((len(pose), mechanism.row_count), np.nan)
-    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
-    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
-    if mechanism.row_count and np.any(sane):
-        with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
     return out
 
 

@@ -80,7 +80,7 @@ def listed(option: str, words: str, known: Sequence[str]) -> tuple[str, ...]:
 def chosen(engine: str | None, variant: str | None) -> list[Subject]:
     """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
     from engines.loading import is_reference
-    from engines.registry import ENGINES, VARIANTS, load
+    from engines.registry import ENGINES, INSTALLED, VARIANTS, load
     from reports.cli.selection import choose_engines
     from reports.search.subjects import Adapted, Alone
 
@@ -91,7 +91,8 @@ def chosen(engine: str | None, variant: str | None) -> list[Subject]:
             return [Adapted(one) for one in choose_engines(None, variant, load(engine))]
         except ValueError as error:
             raise BadInput(str(error)) from None
-    engines = choose_engines(engine, variant, VARIANTS if variant is None else ENGINES)
+    known = (*(VARIANTS if variant is None else ENGINES), *(INSTALLED if engine is not None else ()))
+    engines = choose_engines(engine, variant, known)
     alone: list[Subject] = [Alone()] if variant is None and engine in (None, "mujoco") else []
     return [*(Adapted(one) for one in engines), *alone]
 

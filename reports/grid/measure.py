@@ -21,7 +21,7 @@ from reports.grid.timing import process_seconds, repeated_stepping
 NAN = float("nan")
 
 # Experiments and maps are about what becomes of a run; only what is charted against its cost is timed with care.
-TIMED = ("sweep", "growth", "large")
+TIMED = ("sweep", "beside", "growth", "large")
 
 TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
 BLOWN = 1e3  # of the mechanism's length

@@ -1,6 +1,6 @@
 """A Pin in MuJoCo: a hinge of the tree, or a `connect` where it closes a loop.
 
-The hinges are made with the tree (`engines.mujoco.tree`). `connect` has three rows; out of the plane nothing can move,
+The hinges are made with the tree (`engines.tree`). `connect` has three rows; out of the plane nothing can move,
 so the third row is empty and harmless.
 """
 
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import mujoco
 
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import world_offset
+from engines.tree import world_offset
 from reference.joints import Pin, Weld
 
 

@@ -24,8 +24,8 @@ import mujoco
 
 from engines.mujoco.construction import Building
 from engines.mujoco.joints.pin import add_pins
-from engines.mujoco.tree import world_offset
 from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.tree import world_offset
 from reference.joints import Gear, Rod, Weld
 
 RodBy = Literal["tendon", "rows"]

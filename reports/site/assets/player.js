@@ -270,7 +270,7 @@ function change(player, name) {
 document.documentElement.classList.add("js");
 /** @type {Map<string, Player>} */
 export const players = new Map();
-for (const figure of document.querySelectorAll("figure.moving[data-take]")) {
+for (const figure of document.querySelectorAll('figure.moving[data-take]:not([data-take=""])')) {
   if (figure instanceof HTMLElement) players.set(figure.id, new Player(figure, read(figure.dataset.take ?? "")));
 }
 const front = players.get("front");

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.contract import Unsupported
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
@@ -253,3 +254,13 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)
     return float(x), float(y)
+
+
+def refuse_all_but_pins_of_loops(mechanism: Mechanism, tree: Tree, engine: str) -> None:
+    """Raises Unsupported for skates and rolls, and for slots that no coordinate of the tree stands for."""
+    for joint in mechanism.joints:
+        if not isinstance(joint, Pin | Slot | Drive):
+            raise Unsupported(f"joint {joint.name!r}: {engine} has no constraint of a {type(joint).__name__.lower()}")
+    for joint in tree.loops:
+        if isinstance(joint, Slot):
+            raise Unsupported(f"joint {joint.name!r}: a slot closes a loop, and {engine} closes loops at points alone")
