@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
 
@@ -86,9 +86,8 @@ class Mjx(Optional):
         return self.settings.holder(joint, mechanism)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        """MuJoCo's, without the term of velocities."""
-        soft = self.settings.softness(mechanism, dt)
-        return None if soft is None else replace(soft, complete=False)
+        """As the settings declare it in MuJoCo; that the velocity term is missing is declared nowhere."""
+        return self.settings.softness(mechanism, dt)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
