@@ -11,7 +11,12 @@ Array = NDArray[np.float64]
 
 
 def reactions(
-    mechanism: Mechanism, pose: Array, acceleration: Array, inertias: Array, gravity: Array | tuple[float, float]
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    acceleration: Array,
+    inertias: Array,
+    gravity: Array | tuple[float, float],
 ) -> Array:
     """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
     out = np.full((len(pose), mechanism.row_count), np.nan)
@@ -19,5 +24,5 @@ def reactions(
     sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
     if mechanism.row_count and np.any(sane):
         with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity))
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
     return out

@@ -76,6 +76,15 @@ class Optional(Valid):
         return None
 
 
+def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...]) -> None:
+    """Raises Unsupported for joints of other kinds, and for springs and dampers, which these adapters don't build."""
+    for joint in mechanism.joints:
+        if not isinstance(joint, kinds):
+            raise Unsupported(f"joint {joint.name!r}: {engine} is given no {type(joint).__name__.lower()} here")
+    for force in mechanism.forces:
+        raise Unsupported(f"force {force.name!r}: {engine} is given no springs, dampers and the like here")
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """What native code prints in here goes nowhere: file descriptors 1 and 2, which Python's streams don't see."""
@@ -162,6 +171,6 @@ class SingleRun:
         lost = int(np.argmin(sound)) if not sound.all() else samples + 1
         acceleration = found.acceleration.copy()
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
-        reaction = reactions(self.mechanism, pose, acceleration, found.inertias, found.gravity)
+        reaction = reactions(self.mechanism, pose, twist, acceleration, found.inertias, found.gravity)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self.dt)
         return Trajectory(t, pose, twist, reaction, found.stepping, found.warnings)

@@ -24,7 +24,8 @@ RATE, SPEED, PULL, INERTIA = (0, -1, 0), (1, -1, 0), (1, -2, 0), (2, 0, 1)
 _METRES = (
     "crank coupler rocker ground rod offset length hitch wheelbase track centres centre front width trail points point "
     "pin along_x along_y radius eccentricity cosines sines gyration ring hill major hole side ground_arc stance hip_x "
-    "hip_y height caster_centre lever distance"
+    "hip_y height caster_centre lever distance "
+    "pivot_a pivot_b pivot_c bar spring_point upper upper_end lower lower_end rest_length"
 )
 UNITS = {
     **dict.fromkeys(_METRES.split(), LENGTH),
@@ -32,7 +33,7 @@ UNITS = {
     **dict.fromkeys(("rate", "turning_rate", "start_rate"), RATE),
     **dict.fromkeys(("mass", "masses", "crank_mass", "rod_mass", "slider_mass", "caster_mass", "lever_mass"), MASS),
     **dict.fromkeys(("inertia", "inertias", "slider_inertia", "caster_inertia"), INERTIA),
-    **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1)},
+    **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1), "stiffness": (0, -2, 1), "torque": (2, -2, 1)},
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
 POSES = ("start", "pose")  # x, y, angle, where they are three numbers
@@ -98,7 +99,15 @@ ALL = tuple(scene for scene in (*SCENES, *SCENES_OF_LIMITS) if scene.name != "ov
 COSTLY = (
     *("free_four_bar", "spinning_four_bar", "cart", "free_slider_crank", "slider_at_dead_centre", "pendulum_2"),
     *("pendulum_10", "pendulum_100", "pendulum_n", "rolling_cam", "rolling_in_ring", "rolling_ellipse"),
-    *("rolling_disc", "rolling_incline", "person_swaying", "person_one_foot", "person_two_feet", "n_four_bar_40"),
+    *(
+        "rolling_disc",
+        "rolling_incline",
+        "person_swaying",
+        "person_one_foot",
+        "person_two_feet",
+        "n_four_bar_40",
+        "andrews",
+    ),
 )
 
 

@@ -46,6 +46,14 @@ STEP_SHARE, LEAST_TOLERANCE = 0.1, 2e-15
 MOST_MOVES = 8  # of windows, for one sample
 
 
+def not_held(tolerance: float, t: float) -> str:
+    """What a run says that stopped at t [s]."""
+    return (
+        f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
+        "steps become too small or too many; give a larger tolerance, or end the run there"
+    )
+
+
 @dataclass
 class Machine:
     """A mechanism's arrays and the compiled function that steps them."""
@@ -89,10 +97,7 @@ class Machine:
         """What the control of steps has to say after a run."""
         found = []
         if not np.isnan(self.told(STOPPED)):
-            found.append(
-                f"lagrange: the tolerance {tolerance:g} can't be held beyond {self.told(STOPPED):.6g} s: "
-                "steps become too small or too many; give a larger tolerance, or end the run there"
-            )
+            found.append(not_held(tolerance, self.told(STOPPED)))
         if not np.isnan(self.told(STIFF)):
             found.append(f"lagrange: stiff from {self.told(STIFF):.6g} s on: stability and not accuracy sets the steps")
         if self.told(ROUNDED) > 10 * tolerance:

@@ -16,6 +16,7 @@ from engines import Holder, Promise, Size, Softness, Unpromised
 from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
+from engines.mujoco.joints.rod_gear_weld import RodBy
 from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy
@@ -24,7 +25,7 @@ from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.tree import Tree, spanning_tree
-from reference.joints import Joint, Skate
+from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
@@ -43,11 +44,12 @@ class MuJoCo(Valid):
     it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
     `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver is not told
-    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at
-    the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
-    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
-    integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a second run
-    with half as many steps tells the error of the first, if that falls with the fourth power of the step.
+    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this order, and
+    the first that solves it is taken. `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see
+    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever
+    the integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a
+    second run with half as many steps tells the error of the first, if that falls with the fourth power of the
+    step.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -68,6 +70,7 @@ class MuJoCo(Valid):
     euler_for_skates: bool = True
     rolls: RollBy = field(default_factory=RollContact)
     estimates: bool = False
+    rods: RodBy = "tendon"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -116,6 +119,7 @@ class MuJoCo(Valid):
         lacking = rolling and isinstance(self.rolls, RollContact | RollEquality)
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
         lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
+        lacking |= self.rods == "tendon" and any(isinstance(joint, Rod) for joint in mechanism.joints)
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(
             isinstance(joint, Skate) for joint in itertools.compress(mechanism.joints, soft)
@@ -163,6 +167,7 @@ class MuJoCo(Valid):
             self.slots,
             self.skates,
             self.rolls,
+            self.rods,
         )
         model = build_model(mechanism, dt, settings)
         choose_solver(model, self.solvers)

@@ -38,6 +38,7 @@ EXTENDED = MuJoCo(
     skates="rows",
     rolls=RollRows(),
     estimates=True,
+    rods="rows",
 )
 VARIANTS = (DEFAULT, TUNED, EXTENDED)
 METHODS = (

@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
+from engines.mujoco.forces import add_forces, lighter
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
 from engines.mujoco.joints.pin import add_pins
+from engines.mujoco.joints.rod_gear_weld import RodBy, add_gears, add_rods, add_welds
 from engines.mujoco.joints.roll import RollBy
 from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
@@ -35,7 +37,7 @@ from engines.mujoco.written_rows import (
     writing_free,
 )
 from engines.tree import Tree, spanning_tree
-from reference.joints import Drive, Pin, Skate, Slot
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -56,6 +58,7 @@ class Settings:
     slots: SlotBy
     skates: SkateBy
     rolls: RollBy
+    rods: RodBy
 
 
 @dataclass(frozen=True)
@@ -116,8 +119,10 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     rolling: list[Roll] = []
     for joint in mechanism.joints:
         match joint:
-            case Pin() | Slot():
+            case Pin() | Slot() | Weld():
                 pass  # in the tree, or one of its loops
+            case Rod() | Gear():
+                pass  # a row beside the tree
             case Drive():
                 drives.append(joint)
             case Skate():
@@ -135,6 +140,10 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)
+    add_welds(building, [joint for joint in tree.loops if isinstance(joint, Weld)])
+    add_rods(building, [joint for joint in mechanism.joints if isinstance(joint, Rod)], settings.rods)
+    add_gears(building, [joint for joint in mechanism.joints if isinstance(joint, Gear)])
+    add_forces(building)
     clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
     add_skates(building, skating, settings.skates)
     if rolling:
@@ -183,7 +192,7 @@ def _unit_of_mass(mechanism: Mechanism) -> float:
 def _lighter(mechanism: Mechanism, unit: float) -> Mechanism:
     """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
     bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
-    return replace(mechanism, bodies=tuple(bodies))
+    return replace(mechanism, bodies=tuple(bodies), forces=tuple(lighter(force, unit) for force in mechanism.forces))
 
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:

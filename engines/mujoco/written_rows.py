@@ -238,7 +238,7 @@ def _columns(tree: Tree, index: int, address: Sequence[int]) -> tuple[int | None
     if link.kind == "free":
         return columns[0], columns[1], None, columns[2]
     if link.kind == "hinge":
-        return None, 0, None, columns[0]
+        return None, 0, None, columns[0] if columns else None  # none: welded
     return None, 0, columns[0], columns[1] if len(columns) > 1 else None
 
 

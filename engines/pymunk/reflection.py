@@ -43,10 +43,10 @@ Reflector = Callable[[Any], tuple[Triple, Triple]]
 
 @validated
 def reflectable(mechanism: Mechanism) -> bool:
-    """Whether every joint is a Skate or Roll of a body on the ground that has no other joint."""
+    """Whether every joint is a Skate or Roll of a body on the ground that has no other joint; and no forces."""
     held = [joint.second for joint in mechanism.joints]
     kinds = all(isinstance(joint, Skate | Roll) and joint.first is None for joint in mechanism.joints)
-    return bool(held) and kinds and len(set(held)) == len(held)
+    return bool(held) and kinds and not mechanism.forces and len(set(held)) == len(held)
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,8 @@ class Reflected(Valid):
     def build(self, mechanism: Mechanism, dt: Positive) -> ReflectedRun:
         """Raises Unsupported for any other joint, ValueError for a bad dt."""
         if not reflectable(mechanism):
+            if mechanism.forces:
+                raise Unsupported(f"force {mechanism.forces[0].name!r}: a reflection knows no force but gravity")
             raise Unsupported(
                 "a reflection is known in closed form only for one skate or contact of a body on the ground"
             )
@@ -137,7 +139,7 @@ class ReflectedRun:
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         mechanism = self._mechanism
         # The reflection makes its impulses with these masses.
-        reaction = reactions(mechanism, pose, acceleration, mechanism.inertias, mechanism.gravity)
+        reaction = reactions(mechanism, pose, twist, acceleration, mechanism.inertias, mechanism.gravity)
         return Trajectory(t, pose, twist, reaction, stepping, (stopped,) if stopped else ())
 
     def _stepped(self, sense: float, samples: int, every: int) -> tuple[Array, Array, Array, float, str]:

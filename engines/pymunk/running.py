@@ -222,7 +222,7 @@ class PymunkRun:
         reaction = np.concatenate(
             [
                 self._start_reaction(sweeping)[None],
-                reactions(self._mechanism, recording.pose[1:], acceleration, *loads(model)),
+                reactions(self._mechanism, recording.pose[1:], twist[1:], acceleration, *loads(model)),
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
@@ -242,7 +242,8 @@ class PymunkRun:
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
             held = loads(model)
-            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:], *held)
+            twist = (recording.before + recording.after[1:]) / 2 if self._leapfrog else recording.after[1:]
+            third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
 
 

@@ -11,6 +11,7 @@ J.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,6 +33,8 @@ TENFOLD = 10.0
 # Beyond this ratio of masses the forces are refined: a light link passes a heavy one's force on as a small difference.
 UNEVEN = 10.0
 REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
+# A correction this small, in parts of the forces, is the last: the next would be its square, below extended rounding.
+CORRECTED = 3e-10
 
 
 @dataclass(frozen=True)
@@ -107,9 +110,15 @@ class Chain(Valid):
             return solution.reshape(*leading, self.links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
         forces = np.zeros((*leading, self.links, 2), dtype=np.longdouble)
+        parting = self._parting(angle, rate)
         for _ in range(1 + REFINEMENTS):
-            missing = self._parting(angle, rate, forces).astype(float)
-            forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
+            missing = parting(forces).astype(float)
+            correction = cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False)
+            forces -= correction.reshape(forces.shape)
+            each = (-1, 2 * self.links)
+            small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
+            if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
+                break
         return forces
 
     def _alike(self, *given: ArrayLike) -> list[Array]:
@@ -123,18 +132,25 @@ class Chain(Valid):
             )
         return states
 
-    def _parting(self, angle: Array, rate: Array, forces: Any) -> Any:
-        """How fast the joints would part under these forces (..., links, 2) [m/s^2], in extended precision."""
+    def _parting(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
+        """How fast the joints would part under forces (..., links, 2) [m/s^2], in extended precision: a function."""
         half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
-        below = np.zeros_like(forces)
-        below[..., :-1, :] = forces[..., 1:, :]
-        centre = (forces - below) / self._mass[:, None]
-        alpha = -np.sum(perpendicular(half) * (forces + below), axis=-1) / self.inertia
-        lever = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), alpha, half)
-        out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
-        out[..., 1:, :] -= (centre + lever)[..., :-1, :]
-        out[..., 0, 1] -= self.gravity
-        return out
+        normal = perpendicular(half)
+        centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
+        turned, light = normal / self.inertia[:, None], 1 / self._mass.astype(np.longdouble)[:, None]
+
+        def parting(forces: Any) -> Any:
+            below = np.zeros_like(forces)
+            below[..., :-1, :] = forces[..., 1:, :]
+            centre = (forces - below) * light
+            alpha = -(turned * (forces + below)).sum(axis=-1)
+            lever = centripetal + alpha[..., None] * normal
+            out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
+            out[..., 1:, :] -= (centre + lever)[..., :-1, :]
+            out[..., 0, 1] -= self.gravity
+            return out
+
+        return parting
 
     @validated
     def accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:

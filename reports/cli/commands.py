@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
+from reports.cli.animate import animate
 from reports.cli.bench import bench
 from reports.cli.compare import compare
 from reports.cli.conform import conform
@@ -16,6 +17,7 @@ from reports.cli.run import run
 from reports.cli.search import search
 from reports.cli.shapes import shapes
 from reports.cli.show import show
+from reports.cli.site import site
 from reports.cli.terminal import written
 from reports.cli.versions import versions
 from reports.grid.ending import FINE, STATUSES
@@ -38,6 +40,8 @@ app.command("conform")(conform)
 app.command("search")(search)
 app.command("versions")(versions)
 app.command("compare")(compare)
+app.command("animate")(animate)
+app.command("site")(site)
 
 
 def invoke(arguments: Sequence[str]) -> int:

@@ -37,6 +37,12 @@ MOST_STEPS = 20_000
 DIFFERENCES = 1000
 
 
+# What the judge's fourth order leaves of these is not of the motion alone: of a position it is how far rows that are
+# left alone drift, and energy it keeps an order better than the motion. Below both orders the angle's own time scale
+# counts.
+OTHERWISE = ("position", "energy")
+
+
 @dataclass(frozen=True)
 class Prediction:
     """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
@@ -66,16 +72,10 @@ class Prediction:
         match quantity:
             case "rate":
                 return max(own, pace * self._power("angle", order, step))
-            case "position" if order < 2:
-                # Rows left alone drift: at fourth order that is most of a position's error, at first next to nothing.
-                return max(own, self.length * self._power("angle", order, step))
             case "velocity":
-                return max(own, pace * self.error("position", order, step))
+                return max(own, pace * self._power("position", order, step))
             case "slip":
                 return max(own, self._power("velocity", order, step))
-            case "energy" if order < 2:
-                # Both judges keep the energy an order better than the motion; a method of first order need not.
-                return max(own, 2 * self._power("velocity", order, step) / self.speed)
         return own
 
     def _power(self, quantity: str, order: float, step: float) -> float:
@@ -87,7 +87,10 @@ class Prediction:
         if second == 0 or fourth == 0:
             return 0.0
         # At the judge's step the error falls by (step / tau)^2 from order 2 to order 4: by its root for each order.
-        return second * (fourth / second) ** ((order - 2) / 2) * (step / self.step) ** order
+        fall = fourth / second
+        if order < 2 and quantity in OTHERWISE and 0 < self.fourth["angle"] < math.inf:
+            fall = min(fall, self.fourth["angle"] / self.second["angle"])
+        return second * fall ** ((order - 2) / 2) * (step / self.step) ** order
 
     def give(self, quantity: str, softness: Softness | None) -> float:
         """What this softness costs, in proportion to what the judge's own does."""

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.checks import Check
-from reports.gate.order_check import PROPORTIONAL
 from reports.gate.prediction import Prediction
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
@@ -34,6 +33,8 @@ ROOM_SOFT = 2.0
 # the next power of the step, and that a largest error over samples is met at another one. It is below the three of half
 # a decade, so that an error that stays is seen between the two finest steps even at first order.
 ROOM_OWN = 2.5
+# Coarser steps that tell what a method costs: at a single one two errors may cancel by luck.
+ENOUGH = 2
 
 
 def terms(
@@ -65,8 +66,8 @@ def theory(
 ) -> tuple[Check, ...]:
     """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
 
-    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too:
-    those whose errors are still proportional to what causes them, or any where the judge itself has lost the motion.
+    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too
+    where they are ENOUGH, or where the judge itself has lost the motion.
     Where no order is promised the outcome alone is held.
     """
     outcome = Outcome(row.outcome)
@@ -75,8 +76,7 @@ def theory(
     checks = [Check("outcome", "outcome", 0.0 if outcome.comparable else math.inf, 1.0, sentence=f", {row.outcome}")]
     if not outcome.comparable or isinstance(promise, Unpromised):
         return tuple(checks)
-    comparable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
-    proportional = [other for other in comparable if other.angle <= PROPORTIONAL]
+    usable = [other for other in coarser if other.step > row.step and Outcome(other.outcome).comparable]
     for name, quantities in HELD.items():
         for quantity in quantities:
             measured = getattr(row, quantity)
@@ -85,8 +85,7 @@ def theory(
             cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step)
             cost, soft = ROOM * cost, ROOM_SOFT * soft
             order = promise.of(quantity)
-            usable = proportional if math.isfinite(cost + soft) else comparable
-            if usable and order < EXACT:
+            if order < EXACT and len(usable) >= (ENOUGH if math.isfinite(cost + soft) else 1):
                 known = [getattr(other, quantity) * (row.step / other.step) ** order for other in usable]
                 own = ROOM_OWN * max(known)
                 # Where the judge's soft run lost the motion, the method's own steps are all that is known.

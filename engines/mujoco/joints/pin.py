@@ -15,10 +15,10 @@ import mujoco
 
 from engines.mujoco.construction import Building
 from engines.tree import world_offset
-from reference.joints import Pin
+from reference.joints import Pin, Weld
 
 
-def add_pins(building: Building, pins: Sequence[Pin]) -> None:
+def add_pins(building: Building, pins: Sequence[Pin | Weld]) -> None:
     """Add a `connect` each, bound by MuJoCo in the assembled start pose; its force acts on `name1`: the second body."""
     for pin in pins:
         names = ["world" if name is None else f"body {building.index(name)}" for name in (pin.first, pin.second)]

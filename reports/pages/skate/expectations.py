@@ -35,7 +35,7 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh_backwards", "pymunk default", "error"): Deviation(STRAIGHT, 140),
     ("sleigh_backwards", "pymunk default", "rate"): Deviation(STRAIGHT, 98),
     ("sleigh_backwards", "pymunk default", "gap"): Deviation(STRAIGHT, 1.3),
-    ("sleigh_backwards", "pymunk default", "energy"): Deviation(STRAIGHT, 25),
+    ("sleigh_backwards", "pymunk default", "energy"): Deviation(STRAIGHT, 18),
     ("sleigh_backwards", "pymunk default", "reaction"): Deviation(STRAIGHT, 43),
     ("sleigh_backwards", "pymunk default", "order"): Deviation(STRAIGHT, 2.5),
     ("sleigh_backwards", "mujoco default", "error"): Deviation(SOFT, 1.6),

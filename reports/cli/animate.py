@@ -1,0 +1,114 @@
+"""`crosscheck animate SCENE`: the exact motion and engines over it, as a picture that moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings
+from reports.cli.terminal import Terminal
+from reports.grid.ending import BadInput, FileTrouble
+
+if TYPE_CHECKING:
+    from engines import Engine
+    from reference.scene import Scene
+    from reports.site.embed import Shown
+
+KINDS = ("svg", "gif", "mp4")
+MOST = 4  # methods in one picture: more can't be told apart
+
+
+def animate(
+    scene: Annotated[str, typer.Argument(help=f"A scene by name, or {REFERENCES}.")],
+    engines: Annotated[
+        list[str] | None,
+        typer.Option(help="Methods by name, such as 'mujoco tuned,pymunk tuned'; those as shipped unless given."),
+    ] = None,
+    to: Annotated[str, typer.Option(help="svg (moves without a script), gif, or mp4 (needs ffmpeg).")] = "svg",
+    every: Annotated[int, typer.Option(help="Steps between samples.")] = 1,
+    output: Annotated[Path | None, typer.Option(help="The file; SCENE.svg, .gif or .mp4 unless given.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    settings: Settings = None,
+    results: Folder = FOLDER,
+) -> None:
+    """Write a picture that moves: the exact motion, what engines make of it, and how their errors grow."""
+    if to not in KINDS:
+        raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
+    if every < 1:
+        raise BadInput(f"--every is {every}; give a whole number from 1 on")
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_scenes
+
+    known, names, _ = with_words(registered(), [scene], None, settings or ())
+    chosen = choose_scenes(names, known.scenes, known.pages)
+    if len(chosen) != 1:
+        told = ", ".join(one.name for one in chosen)
+        raise BadInput(f"{scene!r} names {len(chosen)} scenes; give one of {told}")
+    methods = _methods(engines, known.engines)
+    path = output or Path(f"{chosen[0].name}.{to}")
+    if not force and (path.is_symlink() or path.exists()):
+        raise FileTrouble(f"{path} is there already: give another --output, or --force to replace it")
+    shown = _shown(chosen[0], methods, every, results)
+    for word, why in shown.lost.items():
+        Terminal(140).say(f"{word}: {why}")
+    _write(shown, to, path)
+    Terminal(140).say(f"written: {path}, {path.stat().st_size / 1000:.0f} kB")
+
+
+def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
+    """The engines of these names. Raises BadInput for one that is not known, and for too many."""
+    from engines.registry import method
+    from reports.cli.selection import nearest
+
+    if words is None:
+        return [engine for engine in engines if engine.variant == "default"][:MOST]
+    known = {method(engine): engine for engine in engines}
+    names = [name.strip() for word in words for name in word.split(",") if name.strip()]
+    for name in names:
+        if name not in known:
+            raise nearest("method", name, known)
+    if len(names) > MOST:
+        raise BadInput(f"--engines names {len(names)} methods; more than {MOST} can't be told apart in one picture")
+    return [known[name] for name in dict.fromkeys(names)]
+
+
+def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Shown:
+    """The motions, those that are not stored run by the pool first."""
+    from engines.registry import method
+    from reports.cli.run import run_interruptible
+    from reports.grid.store import Store
+    from reports.site.embed import shown
+    from reports.site.lessons import take_like
+
+    take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))
+    motions = tuple(take.motions().values())
+    with Store(results / STORE) as store:
+        run_interruptible(Terminal(140), store, motions, fresh=False, limit=60.0)
+        return shown(take, dict(store.answers(motions)))
+
+
+def _write(shown: Shown, kind: str, path: Path) -> None:
+    from reports.grid.files import folder_for, write_whole
+    from reports.site.animated import animation
+    from reports.site.film import film
+    from reports.text.tables import number
+
+    take = shown.take
+    step = number(take.scene.spacing / take.methods[0][2]) if take.methods else ""
+    title = f"{take.scene.name.replace('_', ' ')}: the exact motion" + (
+        f", and engines at a step of {step} s" if step else ""
+    )
+    if kind == "svg":
+        write_whole({path: animation(shown, title)}, "give another --output")
+        return
+    folder_for(path.absolute().parent, "give another --output")
+    aside = path.with_name(f".part-{path.stem}.{kind}")
+    try:
+        film(shown, title, aside)
+        aside.replace(path)
+    except OSError as reason:
+        raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): give another --output") from None
+    finally:
+        aside.unlink(missing_ok=True)

@@ -1,0 +1,89 @@
+"""`crosscheck site`: the results as a static site, with motions that are run for it if they are not stored."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.cli.interruption import kept
+from reports.cli.options import FOLDER, STORE, Folder, with_folder
+from reports.cli.report import CHECKOUT
+from reports.cli.terminal import Terminal
+from reports.grid.ending import BadInput
+
+if TYPE_CHECKING:
+    from reports.grid.tasks import Answer, Motion
+
+PUBLISHED = CHECKOUT / "reports" / "results"
+SITE = Path("crosscheck-site")
+CACHE = "npm"  # the folder in that of the results with the packages that were fetched
+
+
+def site(
+    output: Annotated[Path, typer.Option(help="Where the site is written.")] = SITE,
+    pages: Annotated[
+        Path | None,
+        typer.Option(help="Folder with the pages that `crosscheck report` wrote; the published ones unless given."),
+    ] = None,
+    serve: Annotated[bool, typer.Option("--serve", help="Then show it at http://localhost:8000 until Ctrl-C.")] = False,
+    port: Annotated[int, typer.Option(help="Another port for --serve.")] = 8000,
+    results: Folder = FOLDER,
+) -> None:
+    """Write the results as a static site: lessons with moving pictures, tables, charts, engines in the page."""
+    from reports.site.build import Source, build
+    from reports.site.writing import refuse_strangers, write_site
+
+    if not 0 < port < 65536:
+        raise BadInput(f"--port is {port}; give a number from 1 to 65535")
+    folder = pages or (PUBLISHED if (PUBLISHED / "index.md").is_file() else results)
+    if not (folder / "index.md").is_file():
+        command = with_folder("crosscheck report", results)
+        raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
+    refuse_strangers(output)
+    console = Terminal(140)
+    source = Source(
+        pages=_texts(folder, "*.md"),
+        pictures=_texts(folder, "*.svg"),
+        tables=_texts(folder, "*.csv"),
+        answers=_answers(console, results),
+        cache=results / CACHE,
+        foot=_foot(),
+    )
+    files = build(source)
+    with kept() as check:
+        size = write_site(output, files)
+        check()
+    for trouble in source.troubles:
+        print(f"crosscheck: {trouble}", file=sys.stderr)
+    console.say(f"{len(files)} files written to {output}, {size / 1e6:.2f} MB when compressed; index.html is the first")
+    if serve:
+        from reports.site.serving import serve_folder
+
+        console.say(f"http://localhost:{port} shows it; Ctrl-C ends")
+        serve_folder(output, port)
+
+
+def _texts(folder: Path, pattern: str) -> dict[str, str]:
+    return {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob(pattern))}
+
+
+def _answers(console: Terminal, results: Path) -> dict[Motion, Answer]:
+    """The motions of the lessons; those that are not stored are run by the pool first."""
+    from reports.cli.run import run_interruptible
+    from reports.grid.store import Store
+    from reports.site.build import tasks
+
+    wanted = tasks()
+    with Store(results / STORE) as store:
+        run_interruptible(console, store, wanted, fresh=False, limit=60.0)
+        found = store.answers(wanted)
+    return {task: found[task] for task in wanted if task in found}
+
+
+def _foot() -> str:
+    from reports.text.provenance import versions
+
+    return f"Made by `crosscheck site` with {versions(())}.".replace("`", "")

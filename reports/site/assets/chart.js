@@ -1,0 +1,69 @@
+// @ts-check
+/** Errors over time on a logarithmic scale, as an SVG that needs no library. */
+
+const WIDTH = 640;
+const HEIGHT = 190;
+const LEFT = 62;
+const BOTTOM = 30;
+const TOP = 20;
+const FLOOR = 1e-16; // below rounding nothing is drawn
+
+/** @typedef {{name: string, mark: number, values: ArrayLike<number>}} Line */
+
+/** @param {string} tag @param {Record<string, string|number>} attributes @param {string} [text] */
+export function svg(tag, attributes, text) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+/** Draw lines over time; what is returned moves the mark of the present instant.
+ * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {string} unit
+ * @returns {(time: number) => void} */
+export function errorChart(place, t, lines, unit) {
+  place.replaceChildren();
+  const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
+  if (!positive.length) return () => {};
+  const high = Math.ceil(Math.log10(Math.max(...positive)));
+  // The first instants would take half of the scale: what nine in ten values are above is shown.
+  const tenth = positive.sort((a, b) => a - b)[Math.floor(positive.length / 10)];
+  const low = Math.min(high - 1, Math.max(Math.floor(Math.log10(tenth)), high - 9));
+  const last = t[t.length - 1];
+  const first = t[0];
+  const x = (/** @type {number} */ time) => LEFT + ((WIDTH - LEFT - 12) * (time - first)) / (last - first || 1);
+  const y = (/** @type {number} */ power) => TOP + ((HEIGHT - TOP - BOTTOM) * (high - power)) / Math.max(1, high - low);
+  const label = `Error against time [${unit}], logarithmic`;
+  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label });
+  chart.append(svg("text", { x: LEFT, y: 13 }, `largest error of an angle [${unit}]`));
+  const stride = Math.ceil((high - low) / 5);
+  for (let power = high; power >= low; power -= stride) {
+    chart.append(svg("line", { class: "axis", x1: LEFT, x2: WIDTH - 12, y1: y(power), y2: y(power) }));
+    chart.append(svg("text", { x: LEFT - 8, y: y(power) + 4, "text-anchor": "end" }, `1e${power}`));
+  }
+  for (let part = 0; part <= 4; part++) {
+    const time = first + ((last - first) * part) / 4;
+    const text = `${Number(time.toPrecision(3))}${part === 4 ? " s" : ""}`;
+    chart.append(svg("text", { x: x(time), y: HEIGHT - 10, "text-anchor": part === 4 ? "end" : "middle" }, text));
+  }
+  for (const line of lines) {
+    let path = "";
+    let drawing = false;
+    for (let index = 0; index < t.length; index++) {
+      const power = Math.log10(line.values[index]);
+      const seen = Number.isFinite(power) && power >= low;
+      if (seen) path += `${drawing ? "L" : "M"}${x(t[index]).toFixed(1)} ${y(Math.min(power, high)).toFixed(1)}`;
+      drawing = seen;
+    }
+    const group = svg("g", { class: `method-${line.mark}` });
+    group.append(svg("path", { class: "line", d: path }), svg("title", {}, line.name));
+    chart.append(group);
+  }
+  const now = svg("line", { class: "now", y1: TOP, y2: HEIGHT - BOTTOM, x1: LEFT, x2: LEFT });
+  chart.append(now);
+  place.append(chart);
+  return (time) => {
+    now.setAttribute("x1", x(time).toFixed(1));
+    now.setAttribute("x2", x(time).toFixed(1));
+  };
+}

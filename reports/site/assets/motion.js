@@ -1,0 +1,88 @@
+// @ts-check
+/** What can be said of a motion: where points are, how far joints are open, how far it is from the exact one. */
+
+/**
+ * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[]}} Joint
+ * @typedef {{name: string, pose: (number|null)[]}} Motion
+ * @typedef {{name: string, at: number[], force: (number|null)[]}} Force
+ * @typedef {{t: number[], bodies: string[], joints: Joint[], size: number,
+ *   truth: {pose: number[], twist: number[]}, motions: Motion[], lost: {name: string, why: string}[],
+ *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[]}} Take
+ * @typedef {[number, number]} Point
+ */
+
+/** A pose [x, y, angle] at an instant; NaN where there is none.
+ * @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame @param {number} body
+ * @returns {[number, number, number]} */
+export function poseAt(pose, bodies, frame, body) {
+  const start = 3 * (frame * bodies + body);
+  const read = (/** @type {number} */ index) => {
+    const value = pose[index];
+    return value === null || value === undefined ? NaN : value;
+  };
+  return [read(start), read(start + 1), read(start + 2)];
+}
+
+/** Where a point of a body is, for its pose. @param {number[]} pose @param {number[]} point @returns {Point} */
+export function placed([x, y, angle], [a, b]) {
+  const cosine = Math.cos(angle);
+  const sine = Math.sin(angle);
+  return [x + cosine * a - sine * b, y + sine * a + cosine * b];
+}
+
+/** The two points of a pin at an instant; a body of -1 is the ground.
+ * @param {Joint} joint @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame
+ * @returns {[Point, Point]} */
+export function ends(joint, pose, bodies, frame) {
+  const one = (/** @type {number} */ body, /** @type {number[]} */ point) =>
+    body < 0 ? /** @type {Point} */ ([point[0], point[1]]) : placed(poseAt(pose, bodies, frame, body), point);
+  return [one(joint.first, joint.firstPoint), one(joint.second, joint.secondPoint)];
+}
+
+/** The largest error of an angle [rad] and of a place [m] at every instant; NaN where the method gave up.
+ * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
+ * @param {number} frames @returns {{angle: Float64Array, place: Float64Array}} */
+export function errors(truth, pose, bodies, frames) {
+  const angle = new Float64Array(frames);
+  const place = new Float64Array(frames);
+  for (let frame = 0; frame < frames; frame++) {
+    for (let body = 0; body < bodies; body++) {
+      const exact = poseAt(truth, bodies, frame, body);
+      const own = poseAt(pose, bodies, frame, body);
+      const turned = Math.abs(own[2] - exact[2]);
+      const moved = Math.hypot(own[0] - exact[0], own[1] - exact[1]);
+      // NaN has to win: Math.max hands it on.
+      angle[frame] = Math.max(angle[frame], turned);
+      place[frame] = Math.max(place[frame], moved);
+    }
+  }
+  return { angle, place };
+}
+
+/** The largest gap of any pin over all instants [m].
+ * @param {Joint[]} joints @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frames */
+export function largestGap(joints, pose, bodies, frames) {
+  let largest = 0;
+  for (const joint of joints) {
+    for (let frame = 0; frame < frames; frame++) {
+      const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, frame);
+      const gap = Math.hypot(bx - ax, by - ay);
+      if (gap > largest) largest = gap;
+    }
+  }
+  return largest;
+}
+
+/** The point about which a body turns at an instant, for its pose and twist; null where it does not turn.
+ * @param {number[]} pose @param {number[]} twist @returns {Point|null} */
+export function instantCentre([x, y], [vx, vy, rate]) {
+  return Math.abs(rate) < 1e-9 ? null : [x - vy / rate, y + vx / rate];
+}
+
+/** A number for a reader: two digits, and a power of ten where that is shorter. @param {number} value */
+export function told(value) {
+  if (!Number.isFinite(value)) return "lost";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 0.01 && size < 1000 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
+}

@@ -1,0 +1,60 @@
+// @ts-check
+/** Tables of the pages: a click on a heading sorts, a word filters. Without a script they are as they were written. */
+
+const SHORT = 6; // rows: below this a filter is no help
+
+/** What a cell is sorted by: its first number if it has one, else its text. @param {HTMLTableCellElement|undefined} cell */
+function key(cell) {
+  const text = cell?.textContent?.trim() ?? "";
+  const number = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/i.exec(text);
+  return number ? Number(number[0]) : text.toLowerCase();
+}
+
+/** @param {HTMLTableElement} table @param {number} column @param {boolean} rising */
+function sort(table, column, rising) {
+  const body = table.tBodies[0];
+  const rows = [...body.rows].map((row) => ({ row, key: key(row.cells[column]) }));
+  rows.sort((a, b) => {
+    if (typeof a.key !== typeof b.key) return typeof a.key === "number" ? -1 : 1; // numbers first, whichever way
+    const order = a.key < b.key ? -1 : a.key > b.key ? 1 : 0;
+    return rising ? order : -order;
+  });
+  body.append(...rows.map(({ row }) => row));
+}
+
+/** @param {HTMLTableElement} table */
+function equip(table) {
+  const body = table.tBodies[0];
+  if (!table.tHead || !body || body.rows.length < 2) return;
+  const heads = [...table.tHead.rows[0].cells];
+  heads.forEach((head, column) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.append(...head.childNodes);
+    head.append(button);
+    button.addEventListener("click", () => {
+      const rising = head.getAttribute("aria-sort") !== "ascending";
+      for (const other of heads) other.removeAttribute("aria-sort");
+      head.setAttribute("aria-sort", rising ? "ascending" : "descending");
+      sort(table, column, rising);
+    });
+  });
+  if (body.rows.length < SHORT) return;
+  const label = document.createElement("label");
+  label.className = "filter";
+  const input = document.createElement("input");
+  input.type = "search";
+  label.append("Only rows with ", input);
+  input.addEventListener("input", () => {
+    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
+    for (const row of body.rows) {
+      const text = row.textContent?.toLowerCase() ?? "";
+      row.hidden = !words.every((word) => text.includes(word));
+    }
+  });
+  (table.closest(".wide") ?? table).before(label);
+}
+
+for (const table of document.querySelectorAll("table.sortable")) {
+  if (table instanceof HTMLTableElement) equip(table);
+}

@@ -1,0 +1,179 @@
+"""A mechanism as SVG groups: one group a body, which only has to be moved and turned to show another instant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.joints import Pin, Skate, Slot
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reports.site.lesson import Point, Take
+
+Array = NDArray[np.float64]
+
+BLOCK = 0.07  # of the mechanism's length: half the side of a body that has no extent of its own
+PIN = 0.018  # of the mechanism's length: the radius of a pin
+BLADE = 0.16  # of the mechanism's length: a blade
+SUPPORT = 0.05  # of the mechanism's length: half the width of a support
+OUTLINE = 160  # points of a curve
+
+
+def number(value: float, digits: int = 5) -> str:
+    """A coordinate for a drawing, without trailing zeros."""
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def path(points: Iterable[Sequence[float] | Array], closed: bool = False) -> str:
+    """The `d` of a line through points."""
+    return "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + ("Z" if closed else "")
+
+
+def placed(pose: Sequence[float]) -> str:
+    """The transform of a body at a pose (x, y, angle) [m, m, rad]."""
+    x, y, angle = pose
+    return f"translate({number(x)} {number(y)}) rotate({number(np.degrees(angle), 4)})"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a drawing: its kind, which gives its look, and its points (points, 2) [m]."""
+
+    kind: str
+    points: Array
+    closed: bool = False
+
+    def svg(self) -> str:
+        """As an element."""
+        return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
+
+
+def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Line]:
+    """What is drawn of a body, in its own frame; its pins are `pins_of`."""
+    size = mechanism.length_scale
+    points: list[Point] = list(take.ends.get(name, ()))
+    lines: list[Line] = []
+    for joint in mechanism.joints:
+        for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
+            if owner != name or isinstance(joint, Roll) or not hasattr(joint, attribute):
+                continue
+            point = getattr(joint, attribute)
+            if not (isinstance(joint, Slot) and owner == joint.first) and point not in points:
+                points.append(point)
+        if isinstance(joint, Skate) and joint.second == name:
+            half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
+            centre = np.array(joint.second_point)
+            lines.append(Line("blade", np.array([centre - half, centre + half])))
+            points.append((0.0, 0.0))
+        if isinstance(joint, Roll):
+            for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
+                if owner == name:
+                    outline = curve.point(np.linspace(0.0, curve.length, OUTLINE))
+                    lines += [Line("outline", outline, True), Line("spoke", np.array([(0.0, 0.0), outline[0]]))]
+    lines += [Line("curve", np.array(curve)) for owner, curve in take.curves if owner == name]
+    unique = sorted(dict.fromkeys(points))
+    if len(unique) > 1:
+        lines.append(Line("bar", np.array(unique)))
+    elif len(unique) == 1 and np.hypot(*unique[0]) > 1e-9 * size:
+        lines.append(Line("bar", np.array([unique[0], (0.0, 0.0)])))
+    elif not lines:
+        half = BLOCK * size * np.array([1.0, 0.6])
+        lines.append(Line("outline", half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]), True))
+    return lines
+
+
+def body_shape(mechanism: Mechanism, take: Take, name: str) -> str:
+    """The same as SVG, with its pins."""
+    radius = number(PIN * mechanism.length_scale)
+    pins = [
+        f'<circle class="pin" cx="{number(x)}" cy="{number(y)}" r="{radius}"/>' for x, y in pins_of(mechanism, name)
+    ]
+    return "".join([line.svg() for line in body_lines(mechanism, take, name)] + pins)
+
+
+def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
+    """The points of a body at which it is pinned [m]."""
+    sides = [
+        (owner, point)
+        for joint in mechanism.joints
+        if isinstance(joint, Pin)
+        for owner, point in ((joint.first, joint.first_point), (joint.second, joint.second_point))
+    ]
+    return list(dict.fromkeys(point for owner, point in sides if owner == name))
+
+
+def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Line]:
+    """What does not move: supports, lines of slots, curves that are rolled on; `pose` (times, bodies, 3), the truth."""
+    size = mechanism.length_scale
+    lines = []
+    for joint in mechanism.joints:
+        if isinstance(joint, Pin) and None in (joint.first, joint.second):
+            x, y = joint.first_point if joint.first is None else joint.second_point
+            half = SUPPORT * size
+            corners = [(x, y), (x - half, y - 1.6 * half), (x + half, y - 1.6 * half)]
+            lines.append(Line("support", np.array(corners), True))
+        if isinstance(joint, Slot) and joint.first is None:
+            along = np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
+            origin = np.array(joint.first_point)
+            reach = (pose[:, mechanism.body_index(str(joint.second)), :2] - origin) @ along
+            ends = (reach.min() - 0.2 * size, reach.max() + 0.2 * size)
+            lines.append(Line("rail", np.array([origin + along * end for end in ends])))
+        if isinstance(joint, Roll) and joint.first is None:
+            lines.append(Line("rail", rolled_on(joint, pose, mechanism)))
+    return [*lines, *(Line("curve fixed", np.array(curve)) for owner, curve in take.curves if owner is None)]
+
+
+def ground(mechanism: Mechanism, take: Take, pose: Array) -> str:
+    """The same as SVG."""
+    return "".join(line.svg() for line in ground_lines(mechanism, take, pose))
+
+
+def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
+    """The part of the ground's curve on which a body rolls (points, 2) [m], or all of a closed one."""
+    curve = joint.rolling.ground
+    low, high = curve.limits
+    if np.isfinite(curve.length):
+        return curve.point(np.linspace(max(low, 0.0), min(high, curve.length), OUTLINE))
+    travelled = np.ptp(pose[:, mechanism.body_index(str(joint.second)), :2], axis=0).max()
+    reach = travelled + joint.rolling.body.length / 2
+    return curve.point(np.linspace(joint.rolling.ground_arc - reach, joint.rolling.ground_arc + reach, OUTLINE))
+
+
+def point_path(pose: Array, point: Point) -> Array:
+    """Where a point of a body is (times, 2) [m], for its poses (times, 3)."""
+    cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+    x, y = point
+    return pose[:, :2] + np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
+
+
+def box(mechanism: Mechanism, take: Take, pose: Array) -> tuple[float, float, float, float]:
+    """Left, bottom, width and height [m] of what the truth passes through, with a margin."""
+    corners = []
+    for index, body in enumerate(mechanism.bodies):
+        points: list[Point] = [(0.0, 0.0), *take.ends.get(body.name, ())]
+        for joint in mechanism.joints:
+            for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
+                if owner == body.name and hasattr(joint, attribute):
+                    points.append(getattr(joint, attribute))
+            if isinstance(joint, Roll):
+                for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
+                    if owner == body.name:
+                        points += [tuple(each) for each in curve.point(np.linspace(0, curve.length, 24))]
+        corners += [point_path(pose[:, index], point) for point in points]
+    fixed = [
+        joint.first_point if joint.first is None else joint.second_point
+        for joint in mechanism.joints
+        if isinstance(joint, Pin) and None in (joint.first, joint.second)
+    ]
+    fixed += [point for owner, curve in take.curves if owner is None for point in curve]
+    everything = np.concatenate([*corners, np.array(fixed, dtype=float).reshape(-1, 2)])
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    margin = 0.09 * float((high - low).max())
+    width, height = high - low + 2 * margin
+    least = 0.32 * width  # a picture that is a thin strip shows nothing
+    lift = max(0.0, least - height) / 2
+    return float(low[0] - margin), float(low[1] - margin - lift), float(width), float(max(height, least))

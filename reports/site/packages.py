@@ -1,0 +1,67 @@
+"""Packages of npm: fetched by version when the site is built, checked by their digest, and unpacked as far as needed.
+
+Nothing is fetched when a page is read. Without npm, or without a network, the site is built without what needs them.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import shutil
+import subprocess
+import tarfile
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+PATIENCE = 180  # s for one package
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package of npm: its version, the digest that its archive must have, its licence, the files that are taken.
+
+    files: path in the archive -> name in the site; a name that ends in "/" is no file of the site, only for its build.
+    """
+
+    name: str
+    version: str
+    sha512: str  # base64, as npm writes it
+    licence: str
+    use: str
+    files: tuple[tuple[str, str], ...]
+
+
+class NotFetched(Exception):
+    """Why a package is not there, in a sentence."""
+
+
+def fetched(package: Package, cache: Path) -> dict[str, bytes]:
+    """The package's files by their path in the archive, fetched once into `cache`. Raises NotFetched."""
+    path = cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
+    if not path.is_file():
+        _fetch(package, path)
+    digest = base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode()
+    if digest != package.sha512:
+        path.unlink()
+        raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
+    with tarfile.open(path) as archive:
+        return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
+
+
+def _fetch(package: Package, path: Path) -> None:
+    npm = shutil.which("npm")
+    if npm is None:
+        raise NotFetched("npm is not installed")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        words = [npm, "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
+        try:
+            ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
+        found = list(Path(folder).glob("*.tgz"))
+        if ended.returncode or not found:
+            told = (ended.stderr.strip().splitlines() or ["no reason was given"])[-1]
+            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({told})")
+        found[0].replace(path)

@@ -1,0 +1,126 @@
+"""Pictures that move: what they show is what was computed, they stand alone, and bad words are refused in a line."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from engines import mujoco, pymunk
+from reference.four_bar import FreeFourBar
+from reports.cli.commands import invoke
+from reports.grid.ending import BadInput, FileTrouble
+from reports.grid.tasks import answered
+from reports.site.animated import PAUSE, animation, decades
+from reports.site.embed import Shown, shown
+from reports.site.film import film
+from reports.site.lessons import LESSONS, take_like
+
+ROOT = Path(__file__).parents[1]
+ENGINES = (("pymunk default", pymunk.DEFAULT, 1), ("mujoco tuned", mujoco.TUNED, 1))
+
+
+@pytest.fixture(scope="module")
+def falling() -> Shown:
+    take = take_like(FreeFourBar(), ENGINES)
+    return shown(take, {motion: answered(motion) for motion in take.motions().values()})
+
+
+def keys(text: str, label: str) -> np.ndarray:
+    """(instants, 4): share of the round, x, y [m], angle [degrees] of a body."""
+    rule = re.search(rf"@keyframes {label}{{(.*?)}}}}", text)
+    assert rule is not None
+    pattern = r"([\d.]+)%{transform:translate\(([-\d.]+)px,([-\d.]+)px\) rotate\(([-\d.]+)deg\)"
+    return np.array(re.findall(pattern, rule[1] + "}"), dtype=float)
+
+
+def test_the_truth_and_each_method_pass_through_their_poses(falling):
+    text = animation(falling, "A title")
+    for index, pose in enumerate([*falling.motions.values(), falling.truth.pose]):
+        for body in range(3):
+            found = keys(text, f"m{index}b{body}")[:-1]
+            frames = np.interp(found[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
+            exact = pose[frames.round().astype(int), body] * (1, 1, 180 / np.pi)
+            # Instants are told to a hundredth of a percent, half a frame at worst: what moves in it is small.
+            assert np.abs(found[:, 1:] - exact).max() < 2.0
+            assert np.abs(found[:, 1:3] - exact[:, :2]).max() < 0.02
+
+
+def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
+    text = animation(falling, 'A <title> & "more"')
+    ElementTree.fromstring(text)
+    assert "<script" not in text
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
+    assert "prefers-reduced-motion" in text
+    assert text == animation(falling, 'A <title> & "more"')
+
+
+def test_a_method_that_gave_up_stays_where_it_was(falling):
+    pose = falling.motions["pymunk default"].copy()
+    pose[40:] = np.nan
+    text = animation(Shown(falling.take, falling.mechanism, falling.t, falling.truth, {"one": pose}, {}), "Lost")
+    assert "nan" not in text
+    found = keys(text, "m0b0")
+    assert np.all(found[-5:, 1:] == found[-1, 1:])
+
+
+def test_errors_are_drawn_over_the_decades_that_they_have():
+    assert decades([np.array([1e-5, 2e-5, 3e-5]), np.array([0.0, 0.2, 0.3])]) == (-5, 0)
+    assert decades([np.array([np.nan, 0.0])]) == (-1, 0)
+
+
+def test_a_film_is_written(falling, tmp_path, monkeypatch):
+    monkeypatch.setattr("reports.site.film.FRAMES", 4)
+    film(falling, "A title", tmp_path / "one.gif")
+    from PIL import Image
+
+    with Image.open(tmp_path / "one.gif") as image:
+        assert getattr(image, "n_frames", 1) == 4
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BadInput, match="needs the program ffmpeg"):
+        film(falling, "A title", tmp_path / "one.mp4")
+
+
+def test_the_picture_of_the_readme_is_small_and_moves():
+    (name,) = re.findall(r"!\[[^]]+\]\(([^)]+\.svg)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    text = (ROOT / name).read_text(encoding="utf-8")
+    assert len(text.encode()) < 500_000
+    ElementTree.fromstring(text)
+    take = take_like(FreeFourBar(), (("pymunk default", pymunk.DEFAULT, 1),))
+    again = animation(shown(take, {motion: answered(motion) for motion in take.motions().values()}), "")
+    # The truth is the last of its motions: it stands there as it would be drawn today.
+    last = len(re.findall(r"@keyframes m\d+b0{", text)) - 1
+    assert np.abs(keys(text, f"m{last}b0") - keys(again, "m1b0")).max() < 1e-2
+    assert np.abs(keys(text, "m0b0") - keys(again, "m0b0")).max() < 1e-2
+
+
+def test_a_scene_of_a_lesson_is_drawn_as_there():
+    take = next(take for lesson in LESSONS for take in lesson.takes.values() if take.ends)
+    assert take_like(take.scene, ()).ends == take.ends
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["free_four_bar", "--to", "bmp"], "--to is 'bmp'; there are svg, gif, mp4"),
+        (["free_four_bar", "--every", "0"], "--every is 0; give a whole number from 1 on"),
+        (["free_four_bar", "--engines", "pymunk defautl"], "did you mean 'pymunk default'"),
+        (["four_bar"], "'four_bar' names 3 scenes; give one of"),
+    ],
+)
+def test_bad_words_are_refused_in_a_line(words, told, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput, match=re.escape(told)):
+        invoke(["animate", *words])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "free_four_bar.svg").write_text("mine")
+    with pytest.raises(FileTrouble, match="is there already"):
+        invoke(["animate", "free_four_bar"])
+    assert (tmp_path / "free_four_bar.svg").read_text() == "mine"

@@ -1,0 +1,227 @@
+"""The static site: what its pages carry is the reference's motion, its words are the pages', and no link is dead."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+import pytest
+
+from reference.four_bar import FreeFourBar
+from reports.grid.ending import FileTrouble
+from reports.grid.tasks import answered
+from reports.site import markdown
+from reports.site.build import MARKER, Source, build, tasks
+from reports.site.embed import data, picture, shown
+from reports.site.lesson import Take
+from reports.site.lessons import LESSONS
+from reports.site.markdown import Formulas, html, section
+from reports.site.packages import NotFetched, Package, fetched
+from reports.site.writing import compressed_size, refuse_strangers, write_site
+
+RESULTS = Path(__file__).parents[1] / "reports" / "results"
+TAKES = [(lesson.name, name) for lesson in LESSONS for name in lesson.takes]
+# What a page may differ from the reference by: 13 digits after the point, and rounding.
+HELD = 1e-12
+
+
+def take_of(lesson: str, name: str) -> Take:
+    return next(each for each in LESSONS if each.name == lesson).takes[name]
+
+
+class Page(HTMLParser):
+    """The addresses and anchors of a page, and what stands in its scripts of data."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.anchors: set[str] = set()
+        self.json: dict[str, str] = {}
+        self._inside = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = {name: value or "" for name, value in attrs}
+        self.links += [given[name] for name in ("href", "src") if name in given]
+        self.anchors.add(given.get("id", ""))
+        self._inside = given.get("id", "") if given.get("type") == "application/json" else ""
+
+    def handle_data(self, data):
+        if self._inside:
+            self.json[self._inside] = data
+        self._inside = ""
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """The published pages, no motions, and no packages: npm is not asked."""
+    cache = tmp_path_factory.mktemp("cache")
+    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
+    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.")
+
+
+SUFFIXES = (".md", ".svg", ".csv")
+
+
+@pytest.fixture(scope="module")
+def files(source, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", str(tmp_path_factory.mktemp("nothing")))
+        return build(source)
+
+
+@pytest.mark.parametrize(("lesson", "name"), TAKES)
+def test_a_page_holds_the_motion_of_the_reference(lesson, name):
+    take = take_of(lesson, name)
+    held = json.loads(json.dumps(data(shown(take, {})), allow_nan=False))
+    truth = take.scene.motion(held["t"])
+    pose = np.array(held["truth"]["pose"]).reshape(truth.pose.shape)
+    # The time in the page has been rounded as well: what that moves is the speed times half of its last digit.
+    speed = float(np.abs(truth.twist).max())
+    assert np.abs(pose - truth.pose).max() < HELD + speed * 1e-13
+    assert 2 <= len(held["t"]) <= 152
+
+
+def test_a_changed_length_would_be_noticed_in_a_page():
+    take, scene = take_of("four_bar", "free"), FreeFourBar()
+    assert take.scene == scene
+    held = data(shown(replace(take, scene=replace(scene, coupler=scene.coupler + 1e-9)), {}))
+    truth = scene.motion(held["t"])
+    assert np.abs(np.reshape(held["truth"]["pose"], truth.pose.shape) - truth.pose).max() > 100 * HELD
+
+
+def test_a_method_is_shown_at_the_samples_of_the_truth():
+    take = take_of("four_bar", "free")
+    word, motion = next(iter(take.motions().items()))
+    answer = answered(motion)
+    held = data(shown(take, {motion: answer}))
+    assert [each["name"] for each in held["motions"]] == [word]
+    assert [each["name"] for each in held["lost"]] == [other for other in take.motions() if other != word]
+    pose = np.reshape(held["motions"][0]["pose"], (len(held["t"]), 3, 3))
+    assert np.allclose(pose, answer.array("pose")[take.shown], atol=1e-9, rtol=0)
+    assert np.allclose(held["t"], answer.array("t")[take.shown], atol=1e-12, rtol=0)
+    assert 0.1 < np.abs(pose - np.reshape(held["truth"]["pose"], pose.shape))[..., 2].max() < 10  # as shipped
+
+
+def test_arrows_add_up_to_what_moves_the_bodies():
+    take = take_of("four_bar", "free")
+    given = shown(take, {})
+    held = {each["name"]: np.reshape(each["force"], (-1, 2)) for each in data(given)["forces"]}
+    dense = take.scene.motion(np.array([given.t[50] - 1e-5, given.t[50], given.t[50] + 1e-5]))
+    acceleration = (dense.twist[2] - dense.twist[0]) / 2e-5
+    coupler = given.mechanism.bodies[1]
+    wanted = coupler.mass * (acceleration[1, :2] - np.array(given.mechanism.gravity))
+    # B acts on the coupler, C on the rocker, so its opposite acts on the coupler.
+    assert held["B"][50] - held["C"][50] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_every_lesson_has_five_steps_of_words_and_shows_takes_that_it_has():
+    for lesson in LESSONS:
+        assert len(lesson.words) == len(lesson.steps) == 5
+        for step in lesson.steps:
+            assert {step.take, *(take for _, take, _ in step.broken)} <= set(lesson.takes)
+        used = {step.take for step in lesson.steps} | {take for step in lesson.steps for _, take, _ in step.broken}
+        assert used == set(lesson.takes)
+    assert len(tasks()) == len(set(tasks()))
+
+
+def test_sections_that_lessons_quote_are_on_their_pages():
+    for lesson in LESSONS:
+        for step in lesson.steps:
+            if step.section:
+                page, heading = step.section
+                assert len(section((RESULTS / f"{page}.md").read_text("utf-8"), heading)) > 40
+    with pytest.raises(ValueError, match="no heading 'Nothing'"):
+        section("# A\n\ntext\n", "Nothing")
+
+
+def test_a_picture_stands_without_a_script():
+    drawing = picture(shown(take_of("rolling", "ellipse"), {}), "An ellipse")
+    assert drawing.startswith('<svg class="stage" viewBox="')
+    assert 'aria-label="An ellipse"' in drawing
+    assert drawing.count('class="body" transform="translate(') == 1
+    assert "nan" not in drawing
+
+
+def test_no_link_of_the_site_is_dead(files):
+    pages = {name: Page(text.decode()) for name, text in files.items() if name.endswith(".html")}
+    assert len(pages) > 30
+    dead = []
+    for name, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme in ("http", "https", "data", "mailto"):
+                continue
+            place = (Path("/") / Path(name).parent / unquote(parts.path)).resolve().relative_to("/").as_posix()
+            target = name if not parts.path else place
+            known = target in files
+            if known and parts.fragment and target in pages:
+                known = parts.fragment in pages[target].anchors
+            if not known:
+                dead.append(f"{name}: {link}")
+    assert "\n".join(dead) == ""
+
+
+def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read(files):
+    loading = re.compile(r'(?:src|<link[^>]*href)="(?:https?:)?//|@import|url\(')
+    for name, text in files.items():
+        if name.endswith((".html", ".css")):
+            assert not loading.search(text.decode()), name
+
+
+def test_without_npm_the_site_says_what_is_missing(files):
+    about = files["about.html"].decode()
+    assert "npm is not installed" in about
+    assert "Formulas are shown as TeX, since node is not installed." in about
+    assert '<code class="tex' in files["results/four_bar.html"].decode()
+    assert json.loads(files[MARKER])["troubles"]
+
+
+def test_data_of_a_page_are_json(files):
+    page = Page(files["lessons/four_bar.html"].decode())
+    for text in page.json.values():
+        assert json.loads(text)["bodies"]
+    assert {f"take-{name}" for name in LESSONS[0].takes} <= set(page.json)
+
+
+def test_formulas_are_found_outside_of_code_alone():
+    formulas = Formulas()
+    html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n", formulas)
+    assert set(formulas.found) == {("x^2", False), ("\\frac{a} {b}", True)}
+
+
+def test_formulas_keep_their_place():
+    formulas = Formulas()
+    text = html("$b$ then $a$ then $b$", formulas)
+    assert markdown.with_formulas(text, ["(B)", "(A)"]) == "<p>(B) then (A) then (B)</p>\n"
+
+
+def test_headings_have_the_anchors_of_github():
+    text = html("# A b, `c`\n\n## Twice\n\n## Twice\n", Formulas())
+    assert re.findall('id="([^"]*)"', text) == ["a-b-c", "twice", "twice-1"]
+
+
+def test_a_package_of_another_digest_is_refused(tmp_path):
+    package = Package("some", "1.0", "AAAA", "MIT", "a test", ())
+    path = tmp_path / "some-1.0.tgz"
+    path.write_bytes(b"something else")
+    with pytest.raises(NotFetched, match="another digest"):
+        fetched(package, tmp_path)
+    assert not path.exists()
+
+
+def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
+    (tmp_path / "own.txt").write_text("mine")
+    with pytest.raises(FileTrouble, match="files that no site wrote: give another --output"):
+        refuse_strangers(tmp_path)
+    with pytest.raises(FileTrouble, match="no folder"):
+        refuse_strangers(tmp_path / "own.txt")
+    new = tmp_path / "new"
+    assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
+    write_site(new, {MARKER: b"{}", "c.html": b"two"})
+    assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
