@@ -58,8 +58,8 @@ class Capabilities(Task):
                     held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
                     told[what] = "yes" if held == {"engine"} else "with code of ours"
         run = self.of.build(WORLD["swinging bar"].mechanism, STEP)(4, 1)
-        known = np.isfinite(run.reaction).all(axis=1)
-        told["reactions"] = "yes" if known.all() else "but at the start" if known[1:].all() else "no"
+        known = [bool(np.isfinite(each).all()) for each in run.reaction]
+        told["reactions"] = "yes" if all(known) else "but at the start" if all(known[1:]) else "no"
         velocity = run.twist[1:]
         # Velocities are the engine's own numbers, which poses of a tree or of angles are not.
         told["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"

@@ -14,7 +14,7 @@ LOOKS = (("first", "o", "-"), ("second", "s", "--"))
 def draw_shares(
     found: Mapping[str, Sequence[tuple[float, float]]], shipped: Mapping[str, tuple[float, float]], theme: Theme = LIGHT
 ) -> Figure:
-    """`found`: by name (share, angle error [rad]), by rising share; `shipped`: points that are marked, by what they are."""
+    """`found`: by name (share, angle error [rad]), by rising share; `shipped`: marked points, by what they are."""
     with settings():
         figure = new_figure(3.6, theme, 6.6)
         axes = figure.subplots()

@@ -1,9 +1,9 @@
 """The velocity term of loops, by force: reactions at instants of the exact motion, and the law with it and without.
 
-The mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the tree's
-coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0: in the bodies' coordinates,
-the rows are accelerated as they are where no coordinate of the tree is. Rows that an engine does not declare soft hold
-exactly. Both laws follow from the mechanism alone, and no step is taken.
+The mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the
+tree's coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0: in the coordinates of
+bodies, rows are accelerated as they are where no coordinate of the tree is. Rows that an engine does not declare soft
+hold exactly. Both laws follow from the mechanism alone, and no step is taken.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ def reactions_with(mechanism: Mechanism, soft: tuple[bool, ...], complete: bool)
         _, _, carried = tree.motion(still, tree.start_rates()[None], still)
         bias = np.where(soft, rows @ carried.reshape(-1), bias)
     weight = 1 / mechanism.inertias.reshape(-1)
-    return np.linalg.solve((rows * weight) @ rows.T, bias - rows @ mechanism.free_fall.reshape(-1))
+    right: Array = bias - rows @ mechanism.free_fall.reshape(-1)
+    return np.asarray(np.linalg.solve((rows * weight) @ rows.T, right), dtype=np.float64)
 
 
 @dataclass(frozen=True)
