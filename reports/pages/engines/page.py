@@ -27,6 +27,7 @@ from reports.pages.engines.cells import (
     SUBSTEPPED,
 )
 from reports.pages.engines.chart import draw_shares
+from reports.pages.engines.open_work import OpenWork
 from reports.pages.engines.velocity_term import VelocityTerm
 from reports.pages.page import Failure, Material, Page
 from reports.text.provenance import told_versions
@@ -42,6 +43,12 @@ TERMS = tuple(
     for engine in (*registry.VARIANTS, *registry.OTHERS)
     if engine.variant == "tuned" and (soft := engine.softness(FREE.mechanism(), 1e-3)) is not None and soft.compliance
 )
+# What an open pin costs: as shipped, and with all of a gap closed in every step.
+WORKS = {
+    f"{name}, {share:.2g} of a gap closed in a step": OpenWork(CLOSING[name][share])
+    for name in CLOSING
+    for share in (SHARES[0], SHARES[1], SHARES[-1])
+}
 EXPERIMENTS = (
     Failure(
         title="How much of a gap a step closes",
@@ -178,6 +185,15 @@ def _terms(material: Material) -> str:
     return markdown(header, body) if body else ""
 
 
+def _works(material: Material) -> str:
+    body = [
+        [name, number(answer.number("lost")), number(float(answer.array("work").sum()))]
+        for name, task in WORKS.items()
+        if (answer := material.finished(task)) is not None
+    ]
+    return markdown(["engine", "energy gained [J]", "work of joints at open pins [J]"], body) if body else ""
+
+
 def words(material: Material) -> Mapping[str, Any]:
     """Tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
@@ -193,6 +209,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "substeps": _experiment_table(
             material, SUBSTEPPED, "sub-steps in a millisecond", {count: str(count) for count in SUBSTEPPED}
         ),
+        "works": _works(material),
         "terms": _terms(material),
         "absent": list(registry.ABSENT.values()),
     }
@@ -209,5 +226,5 @@ PAGE = Page(
     failures=EXPERIMENTS,
     figures=figures,
     words=words,
-    tasks=(*MATRIX, *TERMS),
+    tasks=(*MATRIX, *TERMS, *WORKS.values()),
 )
