@@ -59,7 +59,7 @@ _curve = CurveMotion(FourBar(1.0, 2.0, 2.0, (2.0, 0.0)), (1.0, 1.0, 1.0), (0.0, 
 
 # One valid instance of each class that checks its fields.
 INSTANCES: tuple[Any, ...] = (
-    *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES),
+    *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES, *registry.OTHERS),
     *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
     *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),
     *(Slot("s", None, "b", (0.0, 0.5), 0.5, (1.0, 0.0)), Skate("k", None, "b", (0.5, 0.0), 0.5)),
