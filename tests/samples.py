@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import registry
+from engines import Size, registry
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange, stacked
 from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
@@ -17,6 +17,7 @@ from engines.pymunk.engine import Pymunk
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
 from engines.pymunk.reflection import Reflected
+from engines.single_run import Recorded, SingleRun
 from reference import centrodes, shapes
 from reference.andrews import Dyad
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
@@ -57,6 +58,11 @@ _chain = LongPendulum().mechanism()
 _crank = SliderCrank(0.3, 1.0)
 _curve = CurveMotion(FourBar(1.0, 2.0, 2.0, (2.0, 0.0)), (1.0, 1.0, 1.0), (0.0, -9.81))
 
+
+def _nothing_recorded(samples: int, every: int) -> Recorded:
+    raise AssertionError("a run with arguments that can't be was begun")
+
+
 # One valid instance of each class that checks its fields.
 INSTANCES: tuple[Any, ...] = (
     *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES, *registry.OTHERS),
@@ -82,6 +88,7 @@ INSTANCES: tuple[Any, ...] = (
         THIGH,
         Move(0.5, 0.5),
     ),
+    SingleRun(four_bar(), 1e-3, Size(3, 9, 8, 8), _nothing_recorded),
     *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),

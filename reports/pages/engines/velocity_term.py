@@ -1,9 +1,9 @@
 """The velocity term of loops, by force: reactions at instants of the exact motion, and the law with it and without.
 
 The mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the
-tree's coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0: in the
-bodies' coordinates, rows are accelerated as they are where no coordinate of the tree is. Rows that an engine does not declare soft
-hold exactly. Both laws follow from the mechanism alone, and no step is taken.
+tree's coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0. In the coordinates
+of bodies, rows are then accelerated as they are where no coordinate of the tree is. Rows that an engine does not declare
+soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
 """
 
 from __future__ import annotations
