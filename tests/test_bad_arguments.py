@@ -47,7 +47,7 @@ NOT_MADE_BY_USERS = {
     *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.tree.Link"),
     *("engines.tree.Tree", "engines.mujoco.written_rows.WrittenJoint"),
     *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
-    *("engines.single_run.Recorded", "engines.single_run.SingleRun", "engines.conformance.changes.Isometry"),
+    *("engines.single_run.Recorded", "engines.conformance.changes.Isometry"),
     *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
     *("engines.conformance.worlds.world.Motion", "engines.conformance.worlds.world.World"),
 }

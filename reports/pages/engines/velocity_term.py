@@ -2,8 +2,8 @@
 
 The mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the
 tree's coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0. In the coordinates
-of bodies, rows are then accelerated as they are where no coordinate of the tree is. Rows that an engine does not declare
-soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
+of bodies, rows are then accelerated as they are where no coordinate of the tree is. Rows that an engine does not say to
+be soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
 """
 
 from __future__ import annotations
