@@ -63,6 +63,8 @@ def _nothing_recorded(samples: int, every: int) -> Recorded:
     raise AssertionError("a run with arguments that can't be was begun")
 
 
+# A run of engines that need not be installed.
+RUN = SingleRun(four_bar(), 1e-3, Size(3, 9, 8, 8), _nothing_recorded)
 # One valid instance of each class that checks its fields.
 INSTANCES: tuple[Any, ...] = (
     *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES, *registry.OTHERS),
@@ -88,7 +90,6 @@ INSTANCES: tuple[Any, ...] = (
         THIGH,
         Move(0.5, 0.5),
     ),
-    SingleRun(four_bar(), 1e-3, Size(3, 9, 8, 8), _nothing_recorded),
     *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),
