@@ -21,7 +21,7 @@ from reports.site.markdown import Formulas
 from reports.site.munk2d.compiling import compiled
 from reports.site.packages import NotFetched, Package, fetched
 from reports.site.packages_used import D3, KATEX, MUJOCO, PLOT
-from reports.site.rows import stored_rows
+from reports.site.rows import explored, stored_rows
 from reports.site.style import colours
 
 HERE = Path(__file__).parent
@@ -83,6 +83,7 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
             **_lesson(lesson, source, formulas, names),
             **_running(running, missing),
         )
+    write("results/rows.html", "explorer.html", title="All stored rows")
     write("index.html", "index.html", title="How far from ideal?", **_front(lessons, source))
     listed, why = rendered(formulas, source.cache)
     if why:
@@ -96,6 +97,8 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     )
     files |= {path: markdown.with_formulas(text, listed).encode() for path, text in pages.items()}
     files |= {f"results/{name}": text.encode() for name, text in {**source.pictures, **source.tables}.items()}
+    csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
+    files["results/rows.json"] = json.dumps(explored(*csv), separators=(",", ":"), allow_nan=False).encode()
     files[MARKER] = json.dumps({"pages": sorted(pages), "troubles": source.troubles}, indent=1).encode()
     return files
 
