@@ -42,7 +42,8 @@ function draw(rows) {
       ? Plot.plot({
           width: Math.min(960, chart.clientWidth), height: 460, marginLeft: 60, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
-          x: { type: "log", label: unit }, y: { type: "log", label: `error: ${y}` },
+          x: { type: "log", label: unit, tickFormat: ".0e", ticks: 5 },
+          y: { type: "log", label: `error: ${y}`, tickFormat: ".0e" },
           color: { legend: true, scheme: "Tableau10" }, symbol: { legend: false },
           marks: [
             Plot.line(points, { x, y, z: "method", stroke: "method", sort: x, strokeOpacity: 0.6 }),
