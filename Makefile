@@ -1,6 +1,10 @@
 # Everything from a fresh checkout: environment, install, run.
 PYTHON ?= python3
 BIN := .venv/bin
+# A worker of pytest for each processor, with one thread each. A file stays in one worker, so that what its tests share
+# is made once. The grid has a pool of its own, and runs after the others.
+WORKERS := -n auto --dist loadfile
+export OMP_NUM_THREADS ?= 1
 
 .PHONY: report test slow check bench mutants lower clean
 
@@ -9,10 +13,11 @@ report: .venv/installed          ## run the grid into crosscheck-results, publis
 	$(BIN)/crosscheck report --publish
 
 test: .venv/installed            ## the tests, the crosscheck grid included, without those marked slow
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not crosscheck"
+	$(BIN)/python -m pytest -m "crosscheck and not slow"
 
 slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest $(WORKERS) -m slow
 
 check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/ruff check .
@@ -27,7 +32,7 @@ mutants: .venv/installed         ## about 350 deliberate mistakes, and which the
 	$(BIN)/python -m tests.mutants $(ONLY)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
-	.venv-lower/bin/python -m pytest -m "not crosscheck and not slow"
+	.venv-lower/bin/python -m pytest $(WORKERS) -m "not crosscheck and not slow"
 
 .venv-lower/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-lower

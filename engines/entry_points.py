@@ -31,19 +31,27 @@ class Registered:
 
 
 def registered(
-    group: str, kind: Kind, name: Callable[[Any], str], known: Mapping[str, Any] = MappingProxyType({})
+    group: str,
+    kind: Kind,
+    name: Callable[[Any], str],
+    known: Mapping[str, Any] = MappingProxyType({}),
+    extras: bool = False,
 ) -> Registered:
     """All values of a group, no two of one `name`; of two, ours stays, or that of the first distribution.
 
-    `known`: what is registered elsewhere already, by name: another value of such a name is left out too.
+    `known`: what is registered elsewhere already, by name: another value of such a name is left out too. `extras`:
+    those entry points alone that name an extra, as `engines.exudyn:VARIANTS [exudyn]` does; else those that name none.
     """
     values: dict[str, Any] = {}
     owners = dict.fromkeys(known, "another group")
     troubles: list[str] = []
-    for owner, key, reference in (*_ours(group), *_theirs(group)):
+    for owner, key, whole in (*_ours(group), *_theirs(group)):
+        reference, extra, _ = whole.partition("[")
+        if bool(extra) != extras:
+            continue
         about = f"{group}: {key!r} of the distribution {owner}"
         try:
-            found = load(reference, kind)
+            found = load(reference.strip(), kind)
         except ValueError as reason:
             troubles.append(f"{about} is left out: {reason}")
             continue

@@ -21,9 +21,9 @@ def is_prescribed(mechanism: Mechanism) -> bool:
 
 @validated
 def turns_steadily(mechanism: Mechanism) -> bool:
-    """Whether nothing changes any body's rate: without gravity, and with no joint but pins and drives to the ground."""
+    """Whether nothing changes any body's rate: no gravity, no force, and no joint but pins and drives to the ground."""
     grounded = all(isinstance(joint, Pin | Drive) and None in (joint.first, joint.second) for joint in mechanism.joints)
-    return grounded and not any(mechanism.gravity)
+    return grounded and not any(mechanism.gravity) and not mechanism.forces
 
 
 @validated

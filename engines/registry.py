@@ -3,6 +3,9 @@
 A distribution registers under `crosscheck.engines` what shall be run in every scene, and under `crosscheck.methods`
 what more there is of an engine: the methods between its variants, which show what each setting buys. The value of an
 entry point is an engine, or a tuple or list of engines.
+
+An entry point that names an extra, `engines.exudyn:VARIANTS [exudyn]`, is of an engine that few install. Such
+engines are OTHERS: they are compared at a few steps, beside the tables and charts of the engines that everybody has.
 """
 
 from __future__ import annotations
@@ -63,4 +66,20 @@ ENGINES: tuple[Engine, ...] = tuple(
     for engine in dict.fromkeys([*_methods.values, *VARIANTS])
     if engine.name == name
 )
-TROUBLES = (*_variants.troubles, *_methods.troubles)
+
+_optional = registered(
+    "crosscheck.engines", ENGINE, method, {method(engine): engine for engine in ENGINES}, extras=True
+)
+
+
+def missing(engine: Engine) -> str:
+    """One sentence that says how to install what an engine needs; empty where it is there. See `engines.single_run`."""
+    return getattr(engine, "missing", "") or getattr(getattr(engine, "engine", None), "missing", "")
+
+
+# Engines that are extras, installed or not: a row of theirs may have been measured elsewhere.
+OTHERS: tuple[Engine, ...] = _optional.values
+INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not missing(engine))
+# By an engine's name the sentence that says which extra installs it.
+ABSENT: dict[str, str] = {engine.name: missing(engine) for engine in OTHERS if missing(engine)}
+TROUBLES = (*_variants.troubles, *_methods.troubles, *_optional.troubles)

@@ -48,7 +48,7 @@ class JointRows:
             start += joint.size
         groups = tuple(
             JointGroup(
-                joint=_stacked([joint for joint, _ in members]),
+                joint=stacked([joint for joint, _ in members]),
                 first=np.array([index[joint.first] for joint, _ in members]),
                 second=np.array([index[joint.second] for joint, _ in members]),
                 rows=np.array([list(where) for _, where in members]),
@@ -101,8 +101,8 @@ class JointRows:
         return out
 
 
-def _stacked(joints: Sequence[Any]) -> Any:
-    """One joint that stands for several of its kind: every numeric field becomes an array."""
+def stacked(joints: Sequence[Any]) -> Any:
+    """One joint, or force element, that stands for several of its kind: every numeric field becomes an array."""
     if not getattr(joints[0], "stackable", True):
         return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]

@@ -18,17 +18,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.plane import components
+from reference.links import Gear, Rod, Vector, Weld
+from reference.plane import from_body
 from reference.rolling.roll import Roll
 from reference.validation import Name, Valid
-
-Vector = tuple[float, float]
-
-
-def _world(angle: NDArray[Any], point: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """The world components (...) [m] of a body's own vector `point` (..., 2) [m] at the body's angle (...) [rad]."""
-    vector = np.asarray(point)
-    return components(angle, vector[..., 0], vector[..., 1])
 
 
 @dataclass(frozen=True)
@@ -55,8 +48,8 @@ class Pin(Valid):
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the two points, second minus first (..., 2) [m], for the bodies' poses (..., 3)."""
-        first_x, first_y = _world(first[..., 2], self.first_point)
-        second_x, second_y = _world(second[..., 2], self.second_point)
+        first_x, first_y = from_body(first[..., 2], self.first_point)
+        second_x, second_y = from_body(second[..., 2], self.second_point)
         return np.stack(
             [second[..., 0] + second_x - first[..., 0] - first_x, second[..., 1] + second_y - first[..., 1] - first_y],
             axis=-1,
@@ -64,8 +57,8 @@ class Pin(Valid):
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
-        first_x, first_y = _world(first[..., 2], self.first_point)
-        second_x, second_y = _world(second[..., 2], self.second_point)
+        first_x, first_y = from_body(first[..., 2], self.first_point)
+        second_x, second_y = from_body(second[..., 2], self.second_point)
         rows = np.zeros((*first_x.shape, 2, 6), dtype=first_x.dtype)
         rows[..., 0, 0] = rows[..., 1, 1] = -1
         rows[..., 0, 3] = rows[..., 1, 4] = 1
@@ -139,8 +132,8 @@ class Slot(Valid):
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
         line = first[..., 2] + np.asarray(self.line_angle)
-        first_x, first_y = _world(first[..., 2], self.first_point)
-        second_x, second_y = _world(second[..., 2], self.second_point)
+        first_x, first_y = from_body(first[..., 2], self.first_point)
+        second_x, second_y = from_body(second[..., 2], self.second_point)
         across_x = second[..., 0] + second_x - first[..., 0] - first_x
         across_y = second[..., 1] + second_y - first[..., 1] - first_y
         return (np.cos(line) * across_y - np.sin(line) * across_x)[..., None]
@@ -149,7 +142,7 @@ class Slot(Valid):
         """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
         line = first[..., 2] + np.asarray(self.line_angle)
         along, across = np.cos(line), np.sin(line)
-        second_x, second_y = _world(second[..., 2], self.second_point)
+        second_x, second_y = from_body(second[..., 2], self.second_point)
         arm_x = second[..., 0] + second_x - first[..., 0]
         arm_y = second[..., 1] + second_y - first[..., 1]
         rows = np.zeros((*arm_x.shape, 1, 6), dtype=np.result_type(arm_x, along))
@@ -190,7 +183,7 @@ class Skate(Valid):
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity row (..., 1, 6)."""
-        point_x, point_y = _world(second[..., 2], self.second_point)
+        point_x, point_y = from_body(second[..., 2], self.second_point)
         heading = second[..., 2] + np.asarray(self.angle)
         left_x, left_y = -np.sin(heading), np.cos(heading)
         arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]
@@ -204,4 +197,4 @@ class Skate(Valid):
         return rows
 
 
-Joint = Pin | Slot | Skate | Roll | Drive
+Joint = Pin | Slot | Skate | Roll | Drive | Rod | Gear | Weld

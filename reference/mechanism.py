@@ -14,22 +14,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.applied_forces import AppliedForces
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.body import Body
+from reference.forces import ForceElement
 from reference.joint_rows import JointRows
 from reference.joints import Joint, Vector
 from reference.kinds import Floats
 from reference.memory import require_room
 from reference.row_system import rank, reactions
 from reference.scales import length_scale, time_scale
+from reference.start import refuse_a_bad_start
 from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 
 States = AnyComplexes  # (..., bodies, 3)
 
-# A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
-# rounding, far below a mistake.
-START_TOLERANCE = 1e-9
-ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
 # The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
 LARGEST_RANK = 2**28
 
@@ -45,44 +44,29 @@ class Mechanism(Valid):
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     gravity: Vector = (0.0, 0.0)
+    forces: tuple[ForceElement, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.bodies:
             raise InvalidMechanism("mechanism: it has no bodies; give at least one")
-        for kind, names in (("bodies", [b.name for b in self.bodies]), ("joints", [j.name for j in self.joints])):
-            for name, count in Counter(names).items():
+        for kind, members in (("bodies", self.bodies), ("joints", self.joints), ("forces", self.forces)):
+            for name, count in Counter(member.name for member in members).items():
                 if count > 1:
                     raise InvalidMechanism(f"mechanism: two {kind} are called {name!r}; names must differ")
-        for joint in self.joints:
-            for name in (joint.first, joint.second):
-                if name is not None and name not in self._index:
-                    raise self._unknown(f"joint {joint.name!r}", name)
-            if joint.first == joint.second:
-                raise InvalidMechanism(f"joint {joint.name!r}: it joins {joint.first!r} with itself; name two bodies")
-        self._refuse_a_start_off_the_joints()
+        for kind, members in (("joint", self.joints), ("force", self.forces)):
+            for member in members:
+                for name in (member.first, member.second):
+                    if name is not None and name not in self._index:
+                        raise self._unknown(f"{kind} {member.name!r}", name)
+                if member.first == member.second:
+                    raise InvalidMechanism(
+                        f"{kind} {member.name!r}: it joins {member.first!r} with itself; name two bodies"
+                    )
+        self._refuse_a_bad_start()
 
-    def _refuse_a_start_off_the_joints(self) -> None:
-        if not self.joints:
-            return
-        gap = np.nan_to_num(np.abs(self.gap(self.pose, 0.0)))
-        slip = np.abs(self.slip(self.pose, self.twist))
-        size = self.length_scale
-        place, turn = (float(np.abs(part).max()) for part in (self.pose[:, :2], self.pose[:, 2]))
-        speed = float(np.abs(self.twist[:, :2]).max()) + size * float(np.abs(self.twist[:, 2]).max())
-        # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
-        far = ROUNDINGS * np.finfo(float).eps
-        for value, (length, angle), (unit, angular), what in (
-            (gap, (START_TOLERANCE * size + far * place, START_TOLERANCE + far * turn), ("m", "rad"), "open by"),
-            (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
-        ):
-            allowed = np.where(self.turning, angle, length)
-            worst = int(np.argmax(value - allowed))
-            if value[worst] > allowed[worst]:
-                raise InvalidMechanism(
-                    f"mechanism: at t = 0 row {self.row_names[worst]!r} is {what} {value[worst]:.3g} "
-                    f"{angular if self.turning[worst] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
-                )
+    def _refuse_a_bad_start(self) -> None:
+        refuse_a_bad_start(self)
 
     @cached_property
     def _index(self) -> dict[str | None, int]:
@@ -135,8 +119,26 @@ class Mechanism(Valid):
 
     @cached_property
     def free_fall(self) -> NDArray[np.float64]:
-        """Accelerations without any joint (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
+        """Accelerations by gravity alone (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
         return np.array([(*self.gravity, 0.0)] * len(self.bodies), dtype=float)
+
+    @cached_property
+    def applied(self) -> AppliedForces:
+        """The force elements, ready to be evaluated; unchecked, for loops that ask at every step."""
+        return AppliedForces.of(self.forces, self._index)
+
+    def unconstrained(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Accelerations by gravity and forces, without any joint (..., bodies, 3); unchecked, for loops."""
+        return self.free_fall + self.applied.on(pose, twist) / self.inertias if self.forces else self.free_fall
+
+    @validated
+    def potential(self, pose: States) -> NDArray[Any]:
+        """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
+
+        Zero at the world's origin, where springs are at rest, and at equal angles of the bodies that a torque turns.
+        """
+        fallen = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
+        return fallen + self.applied.potential(pose) if self.forces else fallen
 
     @cached_property
     def rate(self) -> NDArray[np.float64]:
@@ -186,25 +188,32 @@ class Mechanism(Valid):
         acceleration: Numbers,
         inertias: Numbers | None = None,
         gravity: Numbers | None = None,
+        twist: Numbers | None = None,
     ) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
 
-        pose and acceleration (..., bodies, 3). This is Newton's law read backwards, so it tells what any engine must
-        have applied. `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an
-        engine gives those of its own model (NaN for what it has none of): then the reactions are the forces that the
-        engine has applied, and a wrong mass in it shows even where the motion is prescribed. Unique when the rows are
-        independent; of redundant rows it gives the smallest.
+        pose, acceleration, and twist, which only dampers ask for, (..., bodies, 3). f is of gravity and forces. This is
+        Newton's law read backwards, so it tells what any engine must have applied. `inertias` (bodies, 3) [kg, kg,
+        kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless an engine gives those of its own model (NaN for
+        what it has none of): then the reactions are the forces that the engine has applied, and a wrong mass in it
+        shows even where the motion is prescribed. Unique when the rows are independent; of redundant rows it gives the
+        smallest.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)
-        return self.forces(pose, np.asarray(acceleration) - falling, inertias)
+        if self.forces:
+            if twist is None and self.applied.dissipate:
+                raise InvalidMechanism("Mechanism.reaction: twist is None; dampers need it: (..., bodies, 3)")
+            twist = np.zeros_like(pose) if twist is None else twist
+            falling = falling + self.applied.on(pose, np.broadcast_to(twist, np.shape(pose))) / inertias
+        return self.reactions_of(pose, np.asarray(acceleration) - falling, inertias)
 
-    def forces(
+    def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Reactions (..., rows) that move masses (bodies, 3) by `excess` (..., bodies, 3) other than in free fall."""
+        """Reactions (..., rows) that give masses (bodies, 3) an `excess` (..., bodies, 3) over what acts without."""
         if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
-            return self.forces(pose[None], excess[None], inertias)[0]
+            return self.reactions_of(pose[None], excess[None], inertias)[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
             found = banded_reaction(self.joint_rows, pose, excess, inertias)
             dependent = np.isnan(found).any(axis=1)
@@ -237,9 +246,9 @@ class Mechanism(Valid):
     @cached_property
     def length_scale(self) -> float:
         """The largest distance between two joint points of one body, or of one and the centre of mass [m]."""
-        return length_scale(self.bodies, self.joints)
+        return length_scale(self.bodies, self.joints, self.forces)
 
     @cached_property
     def time_scale(self) -> float:
         """One radian of the fastest motion that the description promises [s]: see `scales.time_scale`."""
-        return time_scale(self.length_scale, self.gravity, self.bodies, self.joints)
+        return time_scale(self.length_scale, self.gravity, self.bodies, self.joints, self.forces)

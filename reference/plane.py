@@ -20,6 +20,12 @@ def components(angle: Any, x: Any, y: Any) -> tuple[Any, Any]:
     return cosine * x - sine * y, sine * x + cosine * y
 
 
+def from_body(angle: Any, point: Any) -> tuple[Any, Any]:
+    """World components (...) of a body's own vector `point` (..., 2) at the body's angle (...) [rad]."""
+    vector = np.asarray(point)
+    return components(angle, vector[..., 0], vector[..., 1])
+
+
 def rotated(angle: Any, vector: AnyArray) -> AnyArray:
     """The vector (..., 2) turned by `angle` (...) [rad]: a body's own vector in the world."""
     return np.stack(components(angle, vector[..., 0], vector[..., 1]), axis=-1)

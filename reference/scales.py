@@ -3,33 +3,75 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from reference.body import Body
-from reference.joints import Drive, Joint, Vector
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Joint, Rod, Vector
 
 
-def length_scale(bodies: Sequence[Body], joints: Sequence[Joint]) -> float:
-    """The largest distance between two joint points of one body, or of one and the centre of mass [m]; or 1."""
+def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
+    """The largest of rods and of distances between two points of one body at which something is joined or pulls [m].
+
+    The centre of mass is one of these points. Where all of them are one, the largest rest length; or 1.
+    """
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
-    for joint in joints:
+    for joint in (*joints, *forces):
         for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
             if name is not None and hasattr(joint, point):
                 points[name].add(getattr(joint, point))
-    return max((diameter(own) for own in points.values()), default=0.0) or 1.0
+    rods = [joint.length for joint in joints if isinstance(joint, Rod)]
+    rests = [force.rest_length for force in forces if isinstance(force, Spring)]
+    return max((*map(diameter, points.values()), *rods), default=0.0) or max(rests, default=0.0) or 1.0
 
 
-def time_scale(length: float, gravity: Vector, bodies: Sequence[Body], joints: Sequence[Joint]) -> float:
+def time_scale(
+    length: float,
+    gravity: Vector,
+    bodies: Sequence[Body],
+    joints: Sequence[Joint],
+    forces: Sequence[ForceElement] = (),
+) -> float:
     """One radian of the fastest motion that a description promises [s]; 1 when nothing moves or pulls.
 
-    The inverse of the largest of: a body's rotation rate, a drive's rate, speed over length, and the pendulum
-    frequency sqrt(g / length).
+    The inverse of the largest of: a body's rotation rate, a drive's rate, speed over length, the pendulum frequency
+    sqrt(g / length), and what each force alone would do to its bodies: a spring's frequency, a damper's rate of decay,
+    and a constant acceleration's sqrt(a / length).
     """
     rates = [math.sqrt(math.hypot(*gravity) / length)]
     rates += [abs(body.twist[2]) for body in bodies]
     rates += [math.hypot(*body.twist[:2]) / length for body in bodies]
     rates += [abs(joint.turning_rate) for joint in joints if isinstance(joint, Drive)]
+    own = {body.name: body for body in bodies}
+    rates += [_rate(force, length, own) for force in forces]
     return 1 / max(rates) if max(rates) > 0 else 1.0
+
+
+def _rate(force: ForceElement, length: float, bodies: Mapping[str, Body]) -> float:
+    """How fast a force alone would move its bodies [1/s]."""
+    ends = [(bodies[name], point) for name, point in _ends(force) if name is not None]
+    # The inverse of the mass that a force at a point feels, at most, and of the inertia that a torque feels.
+    light = sum(1 / body.mass + (x * x + y * y) / body.inertia for body, (x, y) in ends)
+    turning = sum(1 / body.inertia for body, _ in ends)
+    match force:
+        case Spring():
+            return math.sqrt(force.stiffness * light)
+        case TorsionSpring():
+            return math.sqrt(force.stiffness * turning)
+        case Damper():
+            return force.damping * light
+        case TorsionDamper():
+            return force.damping * turning
+        case Torque():
+            return math.sqrt(abs(force.torque) * turning)
+        case Force():
+            return math.sqrt(math.hypot(*force.force) * light / length)
+
+
+def _ends(force: ForceElement) -> tuple[tuple[str | None, Vector], tuple[str | None, Vector]]:
+    """The bodies between which a force acts, and where; a torque acts anywhere."""
+    first, second = getattr(force, "first_point", (0.0, 0.0)), getattr(force, "second_point", (0.0, 0.0))
+    return (force.first, first), (force.second, second)
 
 
 def diameter(points: Iterable[Vector]) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 
+from reference.andrews import Andrews
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.pendulum.link import BarPendulum, PointPendulum
@@ -58,6 +59,7 @@ SCENES: tuple[Scene, ...] = (
     SwayingOnOneFoot(),
     OneFoot(),
     TwoFeet(),
+    Andrews(),
 )
 
 

@@ -44,10 +44,12 @@ class Trajectory(Valid):
 
 @validated
 def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
-    """Kinetic plus gravitational energy (times,) [J]; zero potential at the world's origin."""
+    """Kinetic energy and the potential (`Mechanism.potential`) of gravity and forces (times,) [J].
+
+    It stays where no drive and no damper takes part.
+    """
     kinetic = 0.5 * np.sum(mechanism.inertias * trajectory.twist**2, axis=(-2, -1))
-    potential = -np.sum(mechanism.inertias * mechanism.free_fall * trajectory.pose, axis=(-2, -1))
-    return kinetic + potential
+    return kinetic + mechanism.potential(trajectory.pose)
 
 
 @validated

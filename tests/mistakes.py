@@ -39,14 +39,19 @@ class Misbuilt(Mechanism):
 
     right: Mechanism = field(kw_only=True)
 
-    def _refuse_a_start_off_the_joints(self) -> None:
+    def _refuse_a_bad_start(self) -> None:
         pass
 
     def reaction(
-        self, pose: Array, acceleration: Array, inertias: Array | None = None, gravity: Array | None = None
+        self,
+        pose: Array,
+        acceleration: Array,
+        inertias: Array | None = None,
+        gravity: Array | None = None,
+        twist: Array | None = None,
     ) -> Array:
         """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
-        return self.right.reaction(pose, acceleration, inertias, gravity)
+        return self.right.reaction(pose, acceleration, inertias, gravity, twist)
 
 
 @dataclass(frozen=True)

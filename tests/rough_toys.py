@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import multiprocessing
 import os
 import re
 import signal
@@ -230,3 +231,12 @@ def helpers() -> tuple[int | None, int | None]:
     server: Any = forkserver._forkserver
     tracker: Any = resource_tracker._resource_tracker
     return server._forkserver_pid, tracker._pid
+
+
+def end_the_supervisor(item: Any) -> str:
+    """End the process that supervises this one, for a cell with more than 900 steps a sample."""
+    if item.every > 900:
+        parent = multiprocessing.parent_process()
+        assert parent is not None
+        os.kill(parent.pid or 0, signal.SIGKILL)
+    return "fine"

@@ -18,12 +18,14 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
 from engines.pymunk.reflection import Reflected
 from reference import centrodes, shapes
+from reference.andrews import Dyad
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.four_bar import OverdrivenFourBar, Parallelogram
 from reference.four_bar.free_motion import CurveMotion
 from reference.four_bar.linkage import FourBar
 from reference.four_bar.moving import MovingFourBar
-from reference.joints import Drive, Pin, Skate, Slot
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body
 from reference.pendulum.chain import Chain
 from reference.pendulum.link import Pendulum
@@ -61,6 +63,11 @@ INSTANCES: tuple[Any, ...] = (
     *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
     *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),
     *(Slot("s", None, "b", (0.0, 0.5), 0.5, (1.0, 0.0)), Skate("k", None, "b", (0.5, 0.0), 0.5)),
+    Dyad(2.0, 1.0, 1),
+    *(Rod("r", None, "b", (0.0, 0.5), (1.0, 0.0), 2.0), Gear("g", "a", "b", 2.0, 0.5)),
+    *(Weld("w", "a", "b", (0.0, 0.5), (1.0, 0.0), 0.5), Spring("s", "a", "b", (0.0, 0.5), (1.0, 0.0), 2.0, 1.0)),
+    *(Damper("d", "a", "b", (0.0, 0.5), (1.0, 0.0), 2.0), TorsionSpring("s", "a", "b", 2.0, 0.5)),
+    *(TorsionDamper("d", "a", "b", 2.0), Torque("t", None, "b", 1.0), Force("f", "b", (0.0, 0.5), (1.0, 2.0))),
     *(Roll("r", None, "b", RollingDisc().motion_law.rolling), RollingDisc().motion_law.rolling),
     *(RollingDisc().motion_law, RollingDisc().motion([0.0, 0.1])),
     *(Cam(1.0, (0.1, 0.05), (0.05, 0.02)), Catenary(1.0), Circle(1.0), Ellipse(2.0, 1.0), Line(), LogSpiral(1.0, 0.5)),

@@ -24,6 +24,9 @@ from reports.grid.quantities import QUANTITIES
 from reports.grid.tasks import Answer, Motion, Task, answered
 from reports.pages.catalogue import PAGES
 from reports.pages.errata import errata_engines as referees
+from reports.pages.faults.equalities import Equalities
+from reports.pages.faults.groove import Grooves, Offsets
+from reports.pages.faults.scripts import Script
 from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
 from reports.pages.page import Material, Page, no_words
@@ -91,10 +94,13 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     text = "\n".join(prose(files[name]) for name in (f"{page}.md", f"{page}_data.md") if name in files)
     sentences = "\n".join(line for line in text.splitlines() if not line.startswith("|"))
     found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
-    found += [match[0] for match in re.finditer(r".*\b(nan|None|Undefined|Unmeasured)\b.*", text)]
-    found += [f"torn sentence: {match[0]}" for match in re.finditer(r".*[\s(][,.;:)](\s.*|$)", sentences)]
-    found += [f"nothing follows: {match[0]}" for match in re.finditer(r".*:\n\n+(#.*|\Z)", sentences)]
-    found += [f"no number: {match[0]}" for match in re.finditer(r".*(?<!\|) - (rad|m|s|ms|N|off)\b.*", sentences)]
+    found += [line for line in text.splitlines() if re.search(r"\b(nan|None|Undefined|Unmeasured)\b", line)]
+    for line in sentences.splitlines():
+        if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
+            found.append(f"torn sentence: {line}")
+        if re.search(r"(?<!\|) - (rad|m|s|ms|N|off)\b", line):
+            found.append(f"no number: {line}")
+    found += [f"nothing follows: {match[0]}" for match in re.finditer(r":\n\n+(#.*|\Z)", sentences)]
     shown = set(re.findall(r"\]\((\w+\.svg)\)", text))
     drawn = {name for name in files if name.endswith(".svg")}
     found += [f"picture without file: {name}" for name in shown - drawn]
@@ -252,6 +258,12 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
         case Neighbours():
             values = {"growth": np.ones(len(task.times))}
+        case Offsets():
+            values = {"across": np.full(len(task.offsets), -0.1)}
+        case Grooves() | Equalities():
+            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
+        case Script():
+            values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case Softened():
             values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:

@@ -68,7 +68,7 @@ def test_two_pins_a_micrometre_apart_fall_back_to_the_dense_system_which_keeps_t
     # The band's factorisation would end, with pivots of 1e-12: the product J M^-1 J^T has the rows' condition squared.
     assert np.isnan(banded_reaction(nearly.joint_rows, pose, pull / nearly.inertias, nearly.inertias)).any(axis=1).all()
     # The rows' own condition is 6e7: that many roundings are 1e-8, and the product would leave no digit at all.
-    assert np.abs(nearly.forces(pose, pull / nearly.inertias, nearly.inertias) - given).max() < 1e-6
+    assert np.abs(nearly.reactions_of(pose, pull / nearly.inertias, nearly.inertias) - given).max() < 1e-6
 
 
 def test_two_pins_closer_than_the_rank_can_tell_share_the_force() -> None:

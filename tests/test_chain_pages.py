@@ -122,7 +122,7 @@ def test_a_ring_hardened_too_far_goes_wrong_with_its_joints_closed_and_without_a
     scene = SpinningRing(duration=0.5, horizon=0.5)
     wrong = measure(Cell(scene, hardened("too far", 1e-8, "dense"), 1, "failure"), repeat=False)
     right = measure(Cell(scene, hardened("far enough", 1e-6, "dense"), 1, "failure"), repeat=False)
-    assert right.energy < 1e-8  # our adapter makes it softer again, about 1e-3
+    assert right.energy < 1e-9
     # The energy is wrong by a large part of itself, the joint open by less than a thousandth of a link.
     assert wrong.energy > 0.1
     assert wrong.gap < 1e-3 * scene.length

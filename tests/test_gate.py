@@ -46,6 +46,7 @@ JUDGE = Prediction(
     acceleration=10.0,
     changing=(1.0, 1.0),
     soft={((True, True), True): dict.fromkeys(NAMES, 1e-3)},
+    gapped=(True, True),
 )
 FINE = 1e-3
 
@@ -124,11 +125,11 @@ def test_no_bound_is_above_what_the_outcome_refuses():
 
 
 def test_a_methods_own_coarser_steps_bound_its_finest():
-    coarse = row(every=1, angle=1e-7)
-    found = theory(JUDGE, Promise(2), None, row(angle=2e-9), [coarse])
+    coarse = (row(every=1, angle=1e-7), row(every=3, angle=1e-8))
+    found = theory(JUDGE, Promise(2), None, row(angle=2e-9), coarse)
     assert of(found, "angle").bound == pytest.approx(ROOM_OWN * 1e-9 + 1e-11)
     assert of(found, "angle").passed
-    assert not of(theory(JUDGE, Promise(2), None, row(angle=3e-9), [coarse]), "angle").passed
+    assert not of(theory(JUDGE, Promise(2), None, row(angle=3e-9), coarse), "angle").passed
 
 
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():

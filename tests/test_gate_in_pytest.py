@@ -47,6 +47,13 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
     assert "toy one" not in (suite.path / "out.md").read_text()
 
 
+def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
+    pytest.importorskip("xdist")
+    found = suite.runpytest_subprocess("-n", "1", "-rs", "--baseline", "errors.csv")
+    found.assert_outcomes(skipped=3)
+    found.stdout.fnmatch_lines(["*the grid has workers of its own: pytest -m crosscheck, without -n"])
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from engines import Softness, Unsupported
-from engines.lagrange import METHODS, Lagrange, batch, loading, stacked
+from engines.lagrange import METHODS, VARIANTS, Lagrange, batch, loading, stacked
 from engines.lagrange.compiled_run import Machine
 from engines.lagrange.dynamics import Dynamics
 from engines.lagrange.flat import CHANGE, MATRIX, ROWS, flat
@@ -139,11 +139,28 @@ def test_steps_of_their_own_size_hold_the_tolerance_at_samples_near_and_far(tole
     assert run.warnings == ()
 
 
-def test_a_pendulum_that_no_step_can_follow_is_told_and_ends():
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled):
     # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance asks for every swing.
-    hopeless = Lagrange(tolerance=1e-14).build(replace(pendulum(length=1e-12), gravity=(0.0, -1e6)), 1.0)(2, 1)
+    fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
+    hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
     assert np.isnan(hopeless.pose[-1]).all()
     assert "can't be held beyond" in hopeless.warnings[0]
+
+
+def test_a_run_whose_every_sample_takes_thousands_of_steps_is_told_and_ends():
+    # Masses and lengths five decades apart: some 15000 steps from one sample to the next, which each of them may take.
+    own = random_mechanism(1, 152, decades=5)
+    found = Lagrange(tolerance=1e-13).build(own, own.time_scale / 10)(20, 1)
+    assert np.isnan(found.pose[-1]).all()
+    assert "can't be held beyond" in found.warnings[0]
+
+
+def test_a_step_costs_the_same_whether_numba_is_there_or_not(monkeypatch):
+    mechanism = four_bar()
+    expected = [engine.step_cost(mechanism) for engine in VARIANTS]
+    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+    assert [engine.step_cost(mechanism) for engine in VARIANTS] == expected
 
 
 SOFT = (

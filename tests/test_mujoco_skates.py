@@ -18,8 +18,8 @@ from engines.mujoco.joints import skate as skate_module
 from engines.mujoco.joints.skate import skate_rows
 from engines.mujoco.joints.slot import slot_rows
 from engines.mujoco.methods import SKATES
-from engines.mujoco.tree import spanning_tree
 from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_writer, writing
+from engines.tree import spanning_tree
 from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.skate.sleigh import ChaplyginSleigh

@@ -26,7 +26,9 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
 
     monkeypatch.setattr(metadata, "version", version)
     monkeypatch.setattr(platform, "python_version", lambda: "3.99")
-    assert versions() == "Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed"
+    assert versions() == (
+        "Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed, numba not installed"
+    )
     assert still_installed("Python 3.99, scipy 2.2")
     assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
     assert not still_installed("Python 3.99, scipy 2.3")

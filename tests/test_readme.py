@@ -73,8 +73,9 @@ def clone(tmp_path):
 
 def commands():
     """The commands of the readme, without those that take minutes: make and pytest."""
-    blocks = re.findall(r"```\n(.*?)```", README, re.DOTALL)
-    lines = [shlex.split(line, comments=True) for block in blocks for line in block.splitlines()]
+    blocks = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
+    plain = [block for language, block in blocks if not language]
+    lines = [shlex.split(line, comments=True) for block in plain for line in block.splitlines()]
     return [words[1:] for words in lines if words and words[0] == "crosscheck"]
 
 

@@ -63,9 +63,13 @@ def test_an_overwritten_crank_stays_wrong_on_the_loop_as_shipped_and_a_servo_lag
         assert all(row.angle > 100 * other.angle for row, other in zip(rows, found["mujoco tuned"], strict=True))
 
 
-def test_more_than_a_third_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop() -> None:
-    rows = [row for own in methods(four_bar_failures.FAILURES, "Steps far too large").values() for row in own]
-    assert outcomes(rows).count(Outcome.TORN) > len(rows) / 3
+def test_about_half_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop_and_the_one_that_estimates_says_so() -> None:
+    found = methods(four_bar_failures.FAILURES, "Steps far too large")
+    # Where its runs are no series in the step the extrapolation keeps its finest one, which holds together.
+    estimating = found.pop("pymunk extended")
+    assert all("unresolved" in f"{row.outcome} {row.sentence}" for row in estimating)
+    rows = [row for own in found.values() for row in own]
+    assert 0.4 < outcomes(rows).count(Outcome.TORN) / len(rows) < 0.6
 
 
 def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_the_smallest_step() -> None:
@@ -135,7 +139,7 @@ def test_a_groove_at_a_rods_end_is_wrong_at_every_step_and_of_first_order_with_t
 def test_a_ring_hardened_too_far_has_its_joint_shut_and_more_energy_than_there_was() -> None:
     found = methods(pendulum_failures.FAILURES, "A ring of a hundred links, closed by one joint")
     assert stays(found["mujoco default"])
-    assert found["mujoco Newton, softening 1e-6"][0].angle < 1e-7  # our adapter makes it softer again, about 1e-3
+    assert found["mujoco Newton, softening 1e-6"][0].angle < 1e-10
     lost = found["mujoco Newton, softening 1e-8"][0]
     assert lost.energy > 1
     assert lost.gap < 1e-3

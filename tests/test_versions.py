@@ -81,7 +81,7 @@ def test_a_worse_build_is_told_and_what_it_prints_and_leaves_behind_is_contained
         "import os\nprint('noise')\nos.write(1, b'noise')\nopen('left.txt', 'w').write('x')\ndef error(): return 50.0\n"
     )
     toy(here, "2.0", loud)
-    with pytest.raises(Broken, match=r"2\.0 .* is worse than 1\.0 .* in 3 numbers"):
+    with pytest.raises(Broken, match=r"2\.0 .*is worse than toyengine 1\.0 .*in 3 numbers"):
         invoke(["compare", "1.0", "2.0", "--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"])
     out = capfd.readouterr().out
     assert "noise" not in out

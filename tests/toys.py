@@ -115,6 +115,17 @@ class Toy(Plain):
 
 
 @dataclass(frozen=True)
+class SlowToy(Toy):
+    """Takes its time [s] without using the processor."""
+
+    seconds: float = 0.02
+
+    def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
+        time.sleep(self.seconds)
+        return super().build(mechanism, dt)
+
+
+@dataclass(frozen=True)
 class FailingToy(Toy):
     """Fails as its variant, a key of FAILURES, says; "blind" loses its velocities alone."""
 

@@ -26,6 +26,7 @@ from engines.lagrange.flat import (
     SOFT,
     START_POSE,
     START_TWIST,
+    STEPS,
     STIFF,
     STIFFNESS,
     STOPPED,
@@ -44,6 +45,14 @@ from reference.mechanism import Mechanism
 Array = NDArray[np.float64]
 STEP_SHARE, LEAST_TOLERANCE = 0.1, 2e-15
 MOST_MOVES = 8  # of windows, for one sample
+
+
+def not_held(tolerance: float, t: float) -> str:
+    """What a run says that stopped at t [s]."""
+    return (
+        f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
+        "steps become too small or too many; give a larger tolerance, or end the run there"
+    )
 
 
 @dataclass
@@ -89,10 +98,7 @@ class Machine:
         """What the control of steps has to say after a run."""
         found = []
         if not np.isnan(self.told(STOPPED)):
-            found.append(
-                f"lagrange: the tolerance {tolerance:g} can't be held beyond {self.told(STOPPED):.6g} s: "
-                "steps become too small or too many; give a larger tolerance, or end the run there"
-            )
+            found.append(not_held(tolerance, self.told(STOPPED)))
         if not np.isnan(self.told(STIFF)):
             found.append(f"lagrange: stiff from {self.told(STIFF):.6g} s on: stability and not accuracy sets the steps")
         if self.told(ROUNDED) > 10 * tolerance:
@@ -126,6 +132,7 @@ class Machine:
         A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
         """
         tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
+        self.arrays.real[self.arrays.whole[TOLD] + STEPS] = 0.0  # a batch has one machine for many mechanisms
         return self._repeated(
             lambda at: self._call(
                 CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
+from scipy.integrate import DOP853
 from scipy.linalg import get_lapack_funcs
 
 from engines.lagrange.tableaus import Tableau
@@ -20,6 +20,9 @@ PROJECTION_ITERATIONS = 8
 # Newton's method is quadratic: after a correction this small, in parts of the mechanism's length, the next would be
 # lost in rounding.
 CLOSED = 1e-9
+# Steps that are accepted between two samples, some seconds for a few bodies, and what each sample adds to these for the
+# whole run. Compiled code, which is faster, allows ten times as many.
+MOST_STEPS, EACH_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
 
@@ -31,7 +34,6 @@ class Dynamics:
         self.mechanism = mechanism
         self.baumgarte = baumgarte  # 1/s; 0 for none
         self.weight = 1 / mechanism.inertias.reshape(-1)
-        self.free_fall = mechanism.free_fall.reshape(-1)
         self.holonomic = mechanism.holonomic
         self.unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
         # Redundant rows (two wheels on one axle) make the row system singular; then the smallest reactions are taken.
@@ -49,19 +51,20 @@ class Dynamics:
         return solve_symmetric(matrix, right)
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
-        """Accelerations (bodies, 3) under gravity and the joints' reactions."""
+        """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
         if not self.mechanism.row_count:
-            return self.mechanism.free_fall
+            return self.mechanism.unconstrained(pose, twist)
         if not np.all(np.isfinite(pose)):  # curves have no contact there
             return np.full_like(pose, np.nan)
         rows, reaction = self.reaction(pose, twist, t)
-        return (self.free_fall + self.weight * (rows.T @ reaction)).reshape(-1, 3)
+        free = self.mechanism.unconstrained(pose, twist).reshape(-1)
+        return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
         """The rows (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
         mechanism = self.mechanism
         rows = mechanism.rows(pose)
-        right = mechanism.bias(pose, twist) - rows @ self.free_fall
+        right = mechanism.bias(pose, twist) - rows @ mechanism.unconstrained(pose, twist).reshape(-1)
         if self.baumgarte:
             slip = rows @ twist.reshape(-1) - mechanism.rate
             gap = np.where(self.holonomic, mechanism.gap(pose, t), 0.0)
@@ -116,8 +119,10 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 
 
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
-    """One interval between samples by DOP853 with steps of its own choice."""
-    allowed = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
+    """One interval between samples by DOP853 with steps of its own choice; NaN where they are too small or too many."""
+    tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # scipy's least
+    left = MOST_STEPS
+    allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         def rates(at: float, state: Array) -> Array:
@@ -125,8 +130,13 @@ def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
             return np.concatenate([state[own_pose.size :], dynamics.acceleration(own_pose, own_twist, at).reshape(-1)])
 
         start = np.concatenate([pose.reshape(-1), twist.reshape(-1)])
-        end: Any = solve_ivp(rates, (t, t + dt), start, "DOP853", t_eval=[t + dt], rtol=tolerance, atol=allowed)
-        state = end.y[:, -1] if end.success else np.full_like(start, np.nan)
+        solver: Any = DOP853(rates, t, start, t + dt, rtol=tolerance, atol=allowed)
+        nonlocal left
+        while solver.status == "running" and left > 0:
+            solver.step()
+            left -= 1
+        left += EACH_SAMPLE
+        state = solver.y if solver.status == "finished" else np.full_like(start, np.nan)
         return state.reshape(2, -1, 3)[0], state.reshape(2, -1, 3)[1]
 
     return step

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
-from engines.lagrange.compiled_run import Machine
+from engines.lagrange.compiled_run import Machine, not_held
 from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, adaptive, runge_kutta, semi_implicit_euler
 from engines.lagrange.loading import installed
 from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
@@ -29,7 +29,7 @@ Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 
 ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
 # Baumgarte's correction dies out over this many steps, the same rule as the tuned MuJoCo variant's time constant.
 BAUMGARTE_STEPS = 5.0
-# About the CPU time of a step of three bodies [s], from how often the rows are evaluated: compiled, and in numpy.
+# About the CPU time of a step of three bodies [s], by `compiled`: in machine code, and in numpy.
 STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
@@ -102,8 +102,10 @@ class Lagrange(Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s], from how often the rows are evaluated; more without numba."""
-        return STEP_COSTS[self.in_machine_code][self.integrator] * over_three(mechanism)
+        """About what a step takes [s] where numba is installed: the same where it is not, as it says what is worth
+        running, and the grid is to have the same cells everywhere.
+        """
+        return STEP_COSTS[self.compiled][self.integrator] * over_three(mechanism)
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -170,7 +172,7 @@ class _LagrangeRun:
                 poses, twists = np.full((2, *shape), np.nan)
                 poses[0], twists[0] = self._mechanism.pose, self._mechanism.twist
                 self._in_numpy(poses, twists, 0, every)
-                stepping, warnings = time.process_time() - started, ()
+                stepping, warnings = time.process_time() - started, self._stopped(t, poses)
             else:
                 columns, fast = self._machine.empty(samples)
                 done = self._in_machine_code(self._machine, columns, fast, every)
@@ -179,7 +181,15 @@ class _LagrangeRun:
                     self._in_numpy(poses, twists, done, every)
                 stepping = time.process_time() - started
                 warnings = self._machine.warnings(self._engine.tolerance) if self._engine.tolerance is not None else ()
+                warnings = warnings or self._stopped(t, poses)
             return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping, warnings)
+
+    def _stopped(self, t: Array, poses: Array) -> tuple[str, ...]:
+        """What is to be said of a run with a tolerance that did not come to its end."""
+        ended = np.all(np.isfinite(poses), axis=(1, 2))
+        if self._engine.tolerance is None or ended[-1]:
+            return ()
+        return (not_held(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
 
     def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
         """Fill samples; gives the last that is done."""
@@ -217,12 +227,12 @@ class _LagrangeRun:
             reactions[:last], accelerations = self._machine.reactions(float(t[1]), columns, fast)
             if not self._machine.left_to_numpy:
                 if self._machine.dependent:
-                    reactions[:last] = mechanism.reaction(poses[:last], accelerations)
+                    reactions[:last] = mechanism.reaction(poses[:last], accelerations, twist=twists[:last])
                 return reactions
         states = zip(t[alive], poses[alive], twists[alive], strict=True)
         if self.dynamics.redundant:
             accelerations = np.array([self.dynamics.acceleration(pose, twist, at) for at, pose, twist in states])
-            reactions[alive] = mechanism.reaction(poses[alive], accelerations)
+            reactions[alive] = mechanism.reaction(poses[alive], accelerations, twist=twists[alive])
         else:
             reactions[alive] = [self.dynamics.reaction(pose, twist, at)[1] for at, pose, twist in states]
         return reactions

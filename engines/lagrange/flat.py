@@ -20,7 +20,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from engines.lagrange.rolls import CONSTANTS, form_of
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.row_system import rank
@@ -28,37 +29,48 @@ from reference.row_system import rank
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-PIN, SLOT, SKATE, ROLL, DRIVE = range(5)
-KINDS: dict[type, int] = {Pin: PIN, Slot: SLOT, Skate: SKATE, Roll: ROLL, Drive: DRIVE}
+PIN, SLOT, SKATE, ROLL, DRIVE, ROD, GEAR, WELD = range(8)
+KINDS: dict[type, int] = {
+    **{Pin: PIN, Slot: SLOT, Skate: SKATE, Roll: ROLL, Drive: DRIVE},
+    **{Rod: ROD, Gear: GEAR, Weld: WELD},
+}
+SPRING, DAMPER, TORSION_SPRING, TORSION_DAMPER, TORQUE, FORCE = range(6)
+FORCE_KINDS: dict[type, int] = {
+    **{Spring: SPRING, Damper: DAMPER, TorsionSpring: TORSION_SPRING, TorsionDamper: TORSION_DAMPER},
+    **{Torque: TORQUE, Force: FORCE},
+}
 MOST_ROWS = 400  # beyond, their rank takes longer than the run
 
 MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
 
 # Records, in whole numbers. A body is the place of its x among the columns, 3 for each, an end that of its 3 numbers.
 JOINT = 5  # kind, first body, second body, first row, which of the rolls
+FORCED = 3  # of a force element: kind, first body, second body
 ROW = 5  # first body, second body, whether it limits a position, first column of its envelope, where that begins
 TERM = 4  # entry of the envelope; two ends of rows, and the body on which they meet: the entry gets their product
 ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells, where they begin
 # Records, in real numbers.
-PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], its angle [rad], rate, offset
+PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], its angle or length, rate or ratio, offset
+FORCE_PARAMETERS = 6  # of a force: its point on the first body, on the second [m], and two that its kind makes sense of
 STAGES = 16  # of the largest tableau, with those for dense output
 
 # How many; whether rows are dependent; whether some are soft, 1 by springs and dampers, 2 by a compliance too; which
-# rows are asked for.
-(JOINTS, ROWS, COLUMNS, TERMS, HOLONOMIC_ROWS, DEPENDENT, SOFT, WHICH) = range(8)
-(JOINT_AT, ROW_AT, TERM_AT, ROLL_AT) = range(8, 12)  # records among the whole numbers
+# rows are asked for; how many forces.
+(JOINTS, ROWS, COLUMNS, TERMS, HOLONOMIC_ROWS, DEPENDENT, SOFT, WHICH, FORCES) = range(9)
+(JOINT_AT, ROW_AT, TERM_AT, FORCE_AT, ROLL_AT) = range(9, 14)  # records among the whole numbers
 # What a mechanism is made of: 1/kg, 1/kg, 1/(kg m^2) of every column, m/s^2, parameters, the rates of rows, the units
-# of a pose and of a twist, constants of rolls, the softness of rows and what part of their bias they lack, the start.
-_NUMBERS = range(12, 25)
+# of a pose and of a twist, constants of rolls, the softness of rows and what part of their bias they lack, parameters
+# of forces, the start.
+_NUMBERS = range(14, 28)
 (MOBILITY, GRAVITY, PARAMETER_AT, RATE, POSE_UNIT, TWIST_UNIT, ROLL_NUMBERS) = _NUMBERS[:7]
-(STIFFNESS, DAMPING, COMPLIANCE, LACKING, START_POSE, START_TWIST) = _NUMBERS[7:]
+(STIFFNESS, DAMPING, COMPLIANCE, LACKING, FORCE_NUMBERS, START_POSE, START_TWIST) = _NUMBERS[7:]
 # Room to work in: cosine and sine of every body; ends of rows, 6 for each; gap, bias, right side, what is left of it,
 # inverse pivot, reaction and inverse inertia felt of every row; the factor; and columns: M^-1 J^T reaction, the state,
 # that of a stage, that after a step, and velocities and accelerations of all stages.
-_ROOM = range(25, 45)
+_ROOM = range(28, 48)
 (TURNED, ENDS, GAP, BIAS, RIGHT, LEFT, PIVOT, REACTION, FELT, MATRIX, CHANGE, POSE, TWIST) = _ROOM[:13]
 (STAGE_POSE, STAGE_TWIST, NEW_POSE, NEW_TWIST, VELOCITY, ACCELERATION, TOLD) = _ROOM[13:]
-HEADER = 45
+HEADER = 48
 
 # What is told, among the real numbers from TOLD on: the smallest pivot; the roll and the angle without a cell; accepted
 # steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if never; and how
@@ -96,6 +108,7 @@ def flat(mechanism: Mechanism) -> Flat:
     index: dict[str | None, int] = {body.name: i for i, body in enumerate(mechanism.bodies)} | {None: bodies}
     ends = np.array([(index[joint.first], index[joint.second]) for joint in joints], dtype=np.int64)
     ends = ends.reshape(-1, 2)
+    forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
     size = np.array([joint.size for joint in joints], dtype=np.int64)
     begin = _places(ends, size, bodies)
     place = np.array([row for at, count in zip(begin, size, strict=True) for row in range(at, at + count)], dtype=int)
@@ -110,10 +123,12 @@ def flat(mechanism: Mechanism) -> Flat:
         np.column_stack([kind, 3 * ends, begin, which]),
         np.column_stack([3 * ends[owner], holonomic, start, offset[:-1]]),
         terms,
+        forced,
         np.array([(form_of(rolling)[0], 0, 0, 0) for rolling in rolls], dtype=np.int64),
     )
     columns, rows = 3 * bodies + 3, len(place)
-    counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), int(_dependent(mechanism)), 0, 0)
+    dependent, forces = int(_dependent(mechanism)), len(mechanism.forces)
+    counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), dependent, 0, 0, forces)
     numbers = _numbers(mechanism, place)
     room = [2 * bodies + 2, 6 * rows, *[rows] * 7, int(offset[-1]), *[columns] * 7, *[STAGES * columns] * 2, TOLDS]
     header = (
@@ -147,6 +162,7 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
         unit / time,
         np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
         *(np.zeros_like(rate),) * 4,
+        np.array([_force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
         np.append(mechanism.pose, ground),
         np.append(mechanism.twist, ground),
     )
@@ -210,4 +226,26 @@ def _parameters(joint: Joint) -> tuple[float, ...]:
             return (0.0, 0.0, *joint.second_point, joint.angle, 0.0, 0.0)
         case Drive():
             return (0.0, 0.0, 0.0, 0.0, 0.0, joint.turning_rate, joint.offset)
+        case Rod():
+            return (*joint.first_point, *joint.second_point, joint.length, 0.0, 0.0)
+        case Gear():
+            return (0.0, 0.0, 0.0, 0.0, 0.0, joint.ratio, joint.phase)
+        case Weld():
+            return (*joint.first_point, *joint.second_point, joint.angle, 0.0, 0.0)
     return (0.0,) * PARAMETERS
+
+
+def _force_parameters(force: ForceElement) -> tuple[float, ...]:
+    match force:
+        case Spring():
+            return (*force.first_point, *force.second_point, force.stiffness, force.rest_length)
+        case Damper():
+            return (*force.first_point, *force.second_point, force.damping, 0.0)
+        case TorsionSpring():
+            return (0.0, 0.0, 0.0, 0.0, force.stiffness, force.rest_angle)
+        case TorsionDamper():
+            return (0.0, 0.0, 0.0, 0.0, force.damping, 0.0)
+        case Torque():
+            return (0.0, 0.0, 0.0, 0.0, force.torque, 0.0)
+        case Force():
+            return (0.0, 0.0, *force.second_point, *force.force)

@@ -12,8 +12,8 @@ from typing import Any
 import mujoco
 
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.tree import Tree
 from engines.mujoco.written_rows import WrittenJoint
+from engines.tree import Tree
 from reference.mechanism import Mechanism
 
 Callback = Callable[[Any, Any], None]  # (mujoco.MjModel, mujoco.MjData)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import dataclass, field
 from typing import Literal
@@ -15,15 +16,17 @@ from engines import Holder, Promise, Size, Softness, Unpromised
 from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
+from engines.mujoco.joints.rod_gear_weld import RodBy
 from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
-from engines.mujoco.joints.skate import STEPWISE, SkateBy
+from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.joints.slot import SlotBy
 from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
-from engines.mujoco.solver_check import choose_solver
-from engines.mujoco.stiffness import Shipped, Stiffness, TiedToStep
-from engines.mujoco.tree import Tree, spanning_tree
-from reference.joints import Joint, Skate
+from engines.mujoco.solver_check import choose_solver, ease
+from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
+from engines.mujoco.written_file import as_text
+from engines.tree import Tree, spanning_tree
+from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
@@ -42,11 +45,12 @@ class MuJoCo(Valid):
     it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
     beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
     `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver is not told
-    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at
-    the start in this order, and the first that solves it is taken. `rolls`: what holds a rolling contact. `skates`: see
-    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the
-    integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a second run
-    with half as many steps tells the error of the first, if that falls with the fourth power of the step.
+    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this order, and
+    the first that solves it is taken. `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see
+    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever
+    the integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a
+    second run with half as many steps tells the error of the first, if that falls with the fourth power of the
+    step.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -67,6 +71,7 @@ class MuJoCo(Valid):
     euler_for_skates: bool = True
     rolls: RollBy = field(default_factory=RollContact)
     estimates: bool = False
+    rods: RodBy = "tendon"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -115,7 +120,12 @@ class MuJoCo(Valid):
         lacking = rolling and isinstance(self.rolls, RollContact | RollEquality)
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
         lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
+        lacking |= self.rods == "tendon" and any(isinstance(joint, Rod) for joint in mechanism.joints)
         gain, damping = stiffness.gains(mechanism, dt)
+        if self.skates == "rows" and all(
+            isinstance(joint, Skate) for joint in itertools.compress(mechanism.joints, soft)
+        ):
+            damping = slip_damping(mechanism)  # which such a row brings along, whatever the springs of loops have
         # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * stiffness.softening
         rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
@@ -139,6 +149,17 @@ class MuJoCo(Valid):
     @validated
     def model(self, mechanism: Mechanism, dt: Positive) -> Model:
         """The compiled model alone."""
+        return self._model(mechanism, dt, as_text=False)
+
+    @validated
+    def text(self, mechanism: Mechanism, dt: Positive) -> str:
+        """MJCF that runs without this suite, in kg, with the start as its keyframe.
+
+        Raises Unsupported where rows are written, or compliances changed, while or before it is stepped.
+        """
+        return as_text(self._model(mechanism, dt, as_text=True), self.stiffness.softening)
+
+    def _model(self, mechanism: Mechanism, dt: float, as_text: bool) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
         options = {
@@ -158,9 +179,13 @@ class MuJoCo(Valid):
             self.slots,
             self.skates,
             self.rolls,
+            self.rods,
+            as_text,
         )
         model = build_model(mechanism, dt, settings)
-        choose_solver(model, self.solvers, self.stiffness.softening)
+        choose_solver(model, self.solvers)
+        if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
+            ease(model, self.stiffness.softening)
         return model
 
 

@@ -27,7 +27,7 @@ TUNED = MuJoCo(
 EXTENDED = MuJoCo(
     "extended",
     "RK4",
-    Hardened(),
+    Hardened(eased=True),
     armature=1e12,
     solvers=("Newton", "PGS", "CG"),
     iterations=100,
@@ -38,6 +38,7 @@ EXTENDED = MuJoCo(
     skates="rows",
     rolls=RollRows(),
     estimates=True,
+    rods="rows",
 )
 VARIANTS = (DEFAULT, TUNED, EXTENDED)
 METHODS = (

@@ -17,15 +17,16 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
+from engines.mujoco.forces import add_forces, lighter
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
 from engines.mujoco.joints.pin import add_pins
+from engines.mujoco.joints.rod_gear_weld import RodBy, add_gears, add_rods, add_welds
 from engines.mujoco.joints.roll import RollBy
 from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.tree import Tree, spanning_tree
-from engines.mujoco.written_model import new_specification
+from engines.mujoco.written_model import Written, new_specification
 from engines.mujoco.written_rows import (
     add_placeholders,
     equality_rows,
@@ -35,7 +36,8 @@ from engines.mujoco.written_rows import (
     writing,
     writing_free,
 )
-from reference.joints import Drive, Pin, Skate, Slot
+from engines.tree import Tree, spanning_tree
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
@@ -56,6 +58,8 @@ class Settings:
     slots: SlotBy
     skates: SkateBy
     rolls: RollBy
+    rods: RodBy
+    as_text: bool = False  # write it as text with all digits, masses in kg
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,7 @@ class Model:
     start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
+    written_as: Written | None = None  # the model as text, where that was asked for
 
     def hooked(self) -> AbstractContextManager[None]:
         """The callbacks in place while this is entered: every step and every reading needs them."""
@@ -109,15 +114,17 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    whole, unit = mechanism, _unit_of_mass(mechanism)
+    whole, unit = mechanism, 1.0 if settings.as_text else _unit_of_mass(mechanism)
     mechanism = _lighter(mechanism, unit)
     drives: list[Drive] = []
     skating: list[Skate] = []
     rolling: list[Roll] = []
     for joint in mechanism.joints:
         match joint:
-            case Pin() | Slot():
+            case Pin() | Slot() | Weld():
                 pass  # in the tree, or one of its loops
+            case Rod() | Gear():
+                pass  # a row beside the tree
             case Drive():
                 drives.append(joint)
             case Skate():
@@ -135,6 +142,10 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     building = Building(spec, mechanism, tree, dt, settings.stiffness, tuple(one.column for one in driven))
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)
+    add_welds(building, [joint for joint in tree.loops if isinstance(joint, Weld)])
+    add_rods(building, [joint for joint in mechanism.joints if isinstance(joint, Rod)], settings.rods)
+    add_gears(building, [joint for joint in mechanism.joints if isinstance(joint, Gear)])
+    add_forces(building)
     clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
     add_skates(building, skating, settings.skates)
     if rolling:
@@ -169,6 +180,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         rates,
         unit,
         tuple(building.halves),
+        spec if settings.as_text else None,
     )
 
 
@@ -183,12 +195,12 @@ def _unit_of_mass(mechanism: Mechanism) -> float:
 def _lighter(mechanism: Mechanism, unit: float) -> Mechanism:
     """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
     bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
-    return replace(mechanism, bodies=tuple(bodies))
+    return replace(mechanism, bodies=tuple(bodies), forces=tuple(lighter(force, unit) for force in mechanism.forces))
 
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:
     """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
-    spec = new_specification()
+    spec = Written() if settings.as_text else new_specification()
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]

@@ -92,7 +92,7 @@ class MuJoCoRun:
         pose, twist, change = self.model.tree.motion(*(self._ordered(x) for x in (position, velocity, acceleration)))
         reaction = np.full((samples + 1, self.model.mechanism.row_count), np.nan)
         read = np.all(np.isfinite(change), axis=(1, 2))
-        reaction[read] = self.model.mechanism.reaction(pose[read], change[read], *self.model.loads())
+        reaction[read] = self.model.mechanism.reaction(pose[read], change[read], *self.model.loads(), twist[read])
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
         warnings += marks()

@@ -85,25 +85,27 @@ def _lost(compiled: Any, data: Any) -> float:
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 
-def _soften(model: Model, softening: float) -> None:
+def ease(model: Model, softening: float) -> None:
     """Let every row give way tenfold, up to as shipped, until Newton's iterations lose no more than LOST in rounding.
 
-    A compliance of 1e-12 of a row's own inverse inertia is too little where a light body carries a heavy one.
+    `softening` is by how much they are harder than as shipped. A compliance of 1e-12 of a row's own inverse inertia is
+    too little where a light body carries a heavy one. Other solvers, which build no such matrix, keep what they have.
     """
     compiled = model.compiled
+    if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, model.start()) < SOLVED:
+        return
     while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, model.start()) > LOST:
         softening *= 10
         for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
             scale[:] *= 10
 
 
-def choose_solver(model: Model, solvers: Sequence[str], softening: float) -> None:
+def choose_solver(model: Model, solvers: Sequence[str]) -> None:
     """Set the first of the solvers that solves the start; the one that comes nearest if none does.
 
     Newton is the fastest and as exact as any on a few loops and on many short ones, and loses the compliance in
     rounding on long chains; there the dual solver (PGS) is better, which fails for bodies of very different mass and
-    takes hundreds of sweeps for many loops. CG is slower than either, and stands in for both. Rows that are made harder
-    than as shipped, by this factor `softening`, are made softer again where Newton would lose them in rounding.
+    takes hundreds of sweeps for many loops. CG is slower than either, and stands in for both.
     Raises Unsupported if none of the solvers can serve.
     """
     missed = {}
@@ -113,8 +115,6 @@ def choose_solver(model: Model, solvers: Sequence[str], softening: float) -> Non
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
         missed[solver] = unsolved(model.compiled, model.start())
         if missed[solver] < SOLVED:
-            if solver == "Newton":
-                _soften(model, softening)
             return
     if not missed:
         raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")

@@ -86,12 +86,14 @@ class Hardened(Valid):
 
     The estimate in R comes from fields of the model that can be written after it is compiled. With R near zero the loop
     needs no stiff spring, so its time constant can be `share` of the mechanism's time scale, and at least `steps`
-    steps: the Runge-Kutta integrator then keeps its order 4.
+    steps: the Runge-Kutta integrator then keeps its order 4. `eased`: where Newton's solver would lose so small a
+    compliance in rounding it is made larger again (`engines.mujoco.solver_check`); otherwise it is what was asked for.
     """
 
     softening: Positive = 1e-8
     share: Positive = 0.2
     steps: Positive = 5.0
+    eased: bool = False
 
     @validated
     def time_constant(self, mechanism: Mechanism, dt: Positive) -> float:

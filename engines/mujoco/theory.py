@@ -10,8 +10,8 @@ from engines.mujoco.joints.roll import RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE
 from engines.mujoco.joints.slot import resting_line
 from engines.mujoco.stiffness import TiedToStep
-from engines.mujoco.tree import Tree
-from reference.joints import Drive, Joint, Roll, Skate, Slot
+from engines.tree import Tree
+from reference.joints import Drive, Joint, Rod, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def promise(engine: MuJoCo, mechanism: Mechanism, tree: Tree) -> Promise | Unpro
             if engine.drive == "servo"
             else "a state that is overwritten between steps obeys no equation of which an order is known"
         )
-    looped = tree.loops or tree.geared
+    looped = tree.closed
     order = 4 if engine.integrator == "RK4" else 1
     # A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it.
     if rolling and isinstance(engine.rolls, RollContact):
@@ -68,6 +68,8 @@ def holder(engine: MuJoCo, joint: Joint, tree: Tree) -> Holder:
         case Drive() if joint not in tree.kept and engine.drive == "overwrite":
             return "ours"
         case Slot() if tree.closes_by(joint) and engine.slots == "rows" and resting_line(joint, tree) is None:
+            return "engine, our rows"
+        case Rod() if engine.rods == "rows":
             return "engine, our rows"
         case Skate() if engine.skates in ("force", "passive"):
             return "ours"

@@ -9,7 +9,7 @@ digits; options are set in the compiled model, where their names are the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree as xml
@@ -24,6 +24,7 @@ NAMES: dict[str, str | None] = {
     "type": None,
     "trntype": None,
     "target": None,
+    "biastype": None,
     "solref_friction": "solreffriction",
     "solimp_friction": "solimpfriction",
     "geomname1": "geom1",
@@ -53,30 +54,39 @@ class Element:
 
 
 class Tendon(Element):
-    """A fixed tendon: a sum of joints' coordinates."""
+    """A fixed tendon: a sum of joints' coordinates; or a spatial one, between sites."""
 
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
-        self._wraps: list[tuple[str, float]] = []
+        self._wraps: list[tuple[str, dict[str, str]]] = []
 
     def wrap_joint(self, joint: str, coefficient: float) -> None:
-        self._wraps.append((joint, coefficient))
+        self._wraps.append(("joint", {"joint": joint, "coef": _text(coefficient)}))
+
+    def wrap_site(self, site: str) -> None:
+        self._wraps.append(("site", {"site": site}))
 
     def write(self, parent: xml.Element) -> None:
-        added = xml.SubElement(parent, "fixed", self.attributes())
-        for joint, coefficient in self._wraps:
-            xml.SubElement(added, "joint", {"joint": joint, "coef": _text(coefficient)})
+        kinds = {kind for kind, _ in self._wraps}
+        added = xml.SubElement(parent, "spatial" if kinds == {"site"} else "fixed", self.attributes())
+        for kind, wrap in self._wraps:
+            xml.SubElement(added, kind, wrap)
 
 
 class Actuator(Element):
-    """A velocity servo."""
+    """A velocity servo, or what pushes by a constant bias."""
+
+    kv: float | None = None
 
     def set_to_velocity(self, gain: float) -> None:
         self.kv = gain
 
     def write(self, parent: xml.Element) -> None:
-        kind = "site" if self.trntype == mujoco.mjtTrn.mjTRN_SITE else "joint"
-        xml.SubElement(parent, "velocity", {kind: self.target, **self.attributes()})
+        kind = {mujoco.mjtTrn.mjTRN_SITE: "site", mujoco.mjtTrn.mjTRN_TENDON: "tendon"}.get(self.trntype, "joint")
+        told = self.attributes()
+        if self.kv is None:
+            told["biastype"] = "affine"
+        xml.SubElement(parent, "general" if self.kv is None else "velocity", {kind: self.target, **told})
 
 
 class Body(Element):
@@ -155,10 +165,14 @@ class Written:
     def joint(self, name: str) -> Element:
         return next(joint for joint in self.worldbody.all("joint") if joint.name == name)
 
-    def text(self) -> str:
-        """The model as MJCF."""
-        root = xml.Element("mujoco")
+    def text(self, option: Mapping[str, str] | None = None, flags: Sequence[str] = (), name: str = "") -> str:
+        """The model as MJCF; `option`: attributes of its options, `flags`: what it disables."""
+        root = xml.Element("mujoco", {"model": name} if name else {})
         xml.SubElement(root, "compiler", {"angle": "radian", "autolimits": "true"})
+        if option:
+            told = xml.SubElement(root, "option", dict(option))
+            if flags:
+                xml.SubElement(told, "flag", dict.fromkeys(flags, "disable"))
         self.worldbody.write(xml.SubElement(root, "worldbody"))
         for section, elements in self._parts.items():
             parent = xml.SubElement(root, section)

@@ -24,7 +24,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.tree import Tree
+from engines.tree import Tree
 
 # x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]; the ground's are all zero. Angles are never wrapped.
 State = tuple[float, float, float, float, float, float]
@@ -238,7 +238,7 @@ def _columns(tree: Tree, index: int, address: Sequence[int]) -> tuple[int | None
     if link.kind == "free":
         return columns[0], columns[1], None, columns[2]
     if link.kind == "hinge":
-        return None, 0, None, columns[0]
+        return None, 0, None, columns[0] if columns else None  # none: welded
     return None, 0, columns[0], columns[1] if len(columns) > 1 else None
 
 

@@ -27,6 +27,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
@@ -40,6 +41,9 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
+# What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no
+# part of rho: five sweeps leave a disc on a plane without half of its force, ten leave nothing to be seen.
+CONTACT_CONVERGED = 1000
 
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
@@ -82,7 +86,7 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
 
 
 def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
-    """A, without the rows that are prescribed motions here, and where each joint's block begins."""
+    """A, without the rows that are prescribed motions here, and where the block of each constraint begins."""
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
         weights[mechanism.body_index(name), 2] = 0
@@ -91,13 +95,18 @@ def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
     rows = mechanism.rows(pose)
     matrix = (rows * weights.reshape(-1)) @ rows.T
     kept, starts, row = [], [], 0
-    for joint in mechanism.joints:
-        block = list(range(row, row + joint.size))
-        row += joint.size
+    for size in (part for joint in mechanism.joints for part in _parts(joint)):
+        block = list(range(row, row + size))
+        row += size
         if np.any(matrix[block, block] > 0):
             starts.append(len(kept))
             kept += block
     return matrix[np.ix_(kept, kept)], starts
+
+
+def _parts(joint: Joint) -> tuple[int, ...]:
+    """How many rows pymunk solves at once: a weld is a pivot, and then a gear."""
+    return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 
 def _smallest(matrix: Array, lower: Array) -> float:

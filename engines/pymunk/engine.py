@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import pymunk
@@ -11,7 +11,7 @@ from pymunk.constraints import PivotJoint
 from engines import Holder, Promise, Softness, Unpromised
 from engines.motions import over_three
 from engines.pymunk import theory
-from engines.pymunk.contraction import FEWEST, Sweeping, Whole, sweeping, swept_by
+from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
 from engines.pymunk.expected import worst_contraction
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstruction
 from engines.pymunk.joints.skate import SkateConstruction
@@ -136,7 +136,10 @@ class Pymunk(Valid):
         rho = worst_contraction(mechanism, duration)
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
-        return sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
+        found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
+        if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
+            found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
+        return found
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:

@@ -14,10 +14,10 @@ from reference.validation import Name, Positive, Valid, validated
 
 @dataclass(frozen=True)
 class Extended(Valid):
-    """An engine in the sense of `engines.Engine` that takes one of three others, by the mechanism's joints alone.
+    """An engine in the sense of `engines.Engine` that takes one of three others, by the mechanism's joints and forces.
 
-    `single`: bodies each on one skate or contact of their own. `skates`: skates among other joints, held at the end of
-    a step instead of around it, so of first order. `pins`: all others.
+    `single`: bodies each on one skate or contact of their own. `skates`: skates among other joints, or dampers, which
+    act at the end of a step instead of around it, so of first order. `pins`: all others.
     """
 
     variant: Name
@@ -61,7 +61,7 @@ class Extended(Valid):
         """The engine that this one takes for a mechanism."""
         if reflectable(mechanism):
             return self.single
-        if any(isinstance(joint, Skate) for joint in mechanism.joints):
+        if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
             return self.skates
         return self.pins
 

@@ -10,20 +10,22 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
-from pymunk.constraints import Constraint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
+from pymunk.constraints import Constraint, GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
 
 from engines import Size, Unsupported
+from engines.pymunk.forces import applied, spring
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
 from engines.pymunk.joints.pin import pin
+from engines.pymunk.joints.rod_gear_weld import gear, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
-from reference.joints import Drive, Joint, Pin, Skate, Slot, Vector
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 # Scalar constraints of each kind of pymunk constraint; its solver has no others.
-ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1}
+ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1, GearJoint: 1}
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,7 @@ class _Builder:
                 self.space.add(constraint)
                 self.rows += ROWS[type(constraint)]
                 self.solver_rows += ROWS[type(constraint)]
+        self._add_forces()
         count = len(self.bodies)
         size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
         origins = np.array([self._origin(name) for name in self.bodies])
@@ -148,6 +151,15 @@ class _Builder:
         return Model(
             self.space, tuple(self.bodies.values()), origins, size, unit, tuple(self.aims), tuple(self.repairs)
         )
+
+    def _add_forces(self) -> None:
+        unit, ground = self.settings.unit, self.space.static_body
+        for element in self.mechanism.forces:
+            first, second = (ground if name is None else self.bodies[name] for name in (element.first, element.second))
+            constraint = spring(element, first, second, self._own, unit)
+            if constraint is not None:
+                self.space.add(constraint)
+        self.aims += applied(self.mechanism.forces, self.bodies, self._own, unit)
 
     def _origin(self, name: str | None) -> Vector:
         return self.cranks[name].own_point if name in self.cranks else (0.0, 0.0)
@@ -171,6 +183,12 @@ class _Builder:
                 return [pin(joint, first, second, self._own)]
             case Drive():
                 return [motor(joint, first, second, settings.unit)]
+            case Rod():
+                return [rod(joint, first, second, self._own)]
+            case Gear():
+                return [gear(joint, first, second)]
+            case Weld():
+                return weld(joint, first, second, self._own)
             case Slot():
                 points = self._own(joint.first, joint.first_point), self._own(joint.second, joint.second_point)
                 scale = self.mechanism.length_scale
@@ -209,10 +227,9 @@ class _Builder:
         return []
 
     def _refuse_prescribed(self, joint: Joint, first: pymunk.Body, second: pymunk.Body) -> None:
-        if isinstance(joint, Drive):
-            free = any(name is not None and name not in self.turned for name in (joint.first, joint.second))
-        else:
-            free = pymunk.Body.DYNAMIC in (first.body_type, second.body_type)
+        turns = any(name is not None and name not in self.turned for name in (joint.first, joint.second))
+        moves = pymunk.Body.DYNAMIC in (first.body_type, second.body_type)
+        free = (moves or isinstance(joint, Drive | Gear)) and (turns or not isinstance(joint, Drive | Gear | Weld))
         if not free:
             raise Unsupported(
                 f"joint {joint.name!r} joins two bodies whose motion is already prescribed; "

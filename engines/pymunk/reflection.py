@@ -23,10 +23,10 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported, refuse_forces
 from engines.motions import over_three
 from engines.pymunk.joints.skate import along_blade
-from engines.pymunk.running import reactions
+from engines.read_reactions import reactions
 from engines.rolling_table import rolled
 from reference.joints import Joint, Skate, Vector
 from reference.mechanism import Body, Mechanism
@@ -43,10 +43,10 @@ Reflector = Callable[[Any], tuple[Triple, Triple]]
 
 @validated
 def reflectable(mechanism: Mechanism) -> bool:
-    """Whether every joint is a Skate or Roll of a body on the ground that has no other joint."""
+    """Whether every joint is a Skate or Roll of a body on the ground that has no other joint; and no forces."""
     held = [joint.second for joint in mechanism.joints]
     kinds = all(isinstance(joint, Skate | Roll) and joint.first is None for joint in mechanism.joints)
-    return bool(held) and kinds and len(set(held)) == len(held)
+    return bool(held) and kinds and not mechanism.forces and len(set(held)) == len(held)
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,7 @@ class Reflected(Valid):
     def build(self, mechanism: Mechanism, dt: Positive) -> ReflectedRun:
         """Raises Unsupported for any other joint, ValueError for a bad dt."""
         if not reflectable(mechanism):
+            refuse_forces(mechanism, "a reflection")
             raise Unsupported(
                 "a reflection is known in closed form only for one skate or contact of a body on the ground"
             )
@@ -137,7 +138,7 @@ class ReflectedRun:
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         mechanism = self._mechanism
         # The reflection makes its impulses with these masses.
-        reaction = reactions(mechanism, pose, acceleration, mechanism.inertias, mechanism.gravity)
+        reaction = reactions(mechanism, pose, twist, acceleration, mechanism.inertias, mechanism.gravity)
         return Trajectory(t, pose, twist, reaction, stepping, (stopped,) if stopped else ())
 
     def _stepped(self, sense: float, samples: int, every: int) -> tuple[Array, Array, Array, float, str]:

@@ -17,6 +17,7 @@ from pymunk.batch import BodyFields, Buffer, get_space_bodies
 from engines import Size
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
+from engines.read_reactions import reactions
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
@@ -162,19 +163,6 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
     return out
 
 
-def reactions(
-    mechanism: Mechanism, pose: Array, acceleration: Array, inertias: Array, gravity: tuple[float, float]
-) -> Array:
-    """`Mechanism.reaction` where the motion is finite, NaN elsewhere."""
-    out = np.full((len(pose), mechanism.row_count), np.nan)
-    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
-    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
-    if mechanism.row_count and np.any(sane):
-        with np.errstate(all="ignore"):
-            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity))
-    return out
-
-
 def loads(model: Model) -> tuple[Array, tuple[float, float]]:
     """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] that the engine's objects hold.
 
@@ -234,7 +222,7 @@ class PymunkRun:
         reaction = np.concatenate(
             [
                 self._start_reaction(sweeping)[None],
-                reactions(self._mechanism, recording.pose[1:], acceleration, *loads(model)),
+                reactions(self._mechanism, recording.pose[1:], twist[1:], acceleration, *loads(model)),
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
@@ -254,7 +242,8 @@ class PymunkRun:
         with np.errstate(all="ignore"):
             acceleration = accelerations(model, recording, self._dt)
             held = loads(model)
-            third, fourth = reactions(self._mechanism, recording.pose[3:], acceleration[2:], *held)
+            twist = (recording.before + recording.after[1:]) / 2 if self._leapfrog else recording.after[1:]
+            third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
 
 

@@ -61,6 +61,8 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
         return STEPPED
     if rolling and engine.roll == "stale pivot":
         return STALE_PRESCRIBED if is_prescribed(mechanism) else STALE_PIVOT
+    if mechanism.applied.dissipate:
+        return CLOSING
     if engine.leapfrog:
         return LEAPFROG
     if is_prescribed(mechanism):

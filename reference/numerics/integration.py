@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,9 @@ Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 TOLERANCE = 3e-14
 COARSER = 10.0
 MOST_STEPS = 20_000  # a motion that needs more is creeping up to a singularity
+# Of the time in which the start changes by itself and its unit: short for any motion, and a step may grow tenfold in
+# one. What scipy would choose has seconds in it.
+FIRST_STEP = 1e-3
 
 
 class IntegrationFailed(ArithmeticError):
@@ -49,14 +53,21 @@ class Integrated:
         return state + step * np.tensordot(DOP853.B, slopes, axes=1)
 
 
-def integrate(rates: Rates, start: ArrayLike, until: float, tolerance: float = TOLERANCE) -> Integrated:
-    """Integrate from `start` (states,) at t = 0 to `until` [s]; the tolerance is relative, and to the largest of 1 or
-    |y|.
+def integrate(
+    rates: Rates, start: ArrayLike, until: float, tolerance: float = TOLERANCE, unit: ArrayLike = 1.0
+) -> Integrated:
+    """Integrate from `start` (states,) at t = 0 to `until` [s]. The error let pass in a step is `tolerance` of
+    |y| + `unit` (states,), in which each state is counted: 1 for radians, `units_of_motion` for rates too.
 
     Raises IntegrationFailed when the step vanishes or a number is no longer finite.
     """
     state = np.asarray(start, dtype=float)
-    solver = DOP853(lambda _, y: rates(y), 0.0, state, until, rtol=tolerance, atol=tolerance)
+    units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)
+    with np.errstate(invalid="ignore", over="ignore"):
+        pace = float(np.max(np.abs(rates(state)) / (np.abs(state) + units), initial=0.0))  # 1/s
+    first = min(until, FIRST_STEP / pace) if math.isfinite(pace) and pace > 0 else until
+    passed: Any = tolerance * units  # scipy's types have a number only
+    solver = DOP853(lambda _, y: rates(y), 0.0, state, until, first_step=first, rtol=tolerance, atol=passed)
     times, states = [0.0], [state]
     while solver.status == "running":
         message = solver.step() if len(times) < MOST_STEPS else f"it takes more than {MOST_STEPS} steps"
@@ -67,9 +78,25 @@ def integrate(rates: Rates, start: ArrayLike, until: float, tolerance: float = T
     return Integrated(rates, np.array(times), np.array(states))
 
 
-def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = TOLERANCE) -> Array:
+def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> Array:
+    """The unit of each state (states,) of a motion whose states are coordinates and then, as many, their rates.
+
+    A coordinate's is given: 1 rad, or its start where that is near a rest that it will leave. The rates' is the fastest
+    of the start, or of an oscillation of one unit that has the start's largest acceleration, once round in a period. It
+    scales with the second: an error let pass in rad/s would be none in nanoseconds, and all of them in years.
+    """
+    state = np.asarray(start, dtype=float)
+    half = len(state) // 2
+    fastest, hardest = np.abs(state[half:]).max(), np.abs(rates(state)[half:]).max()
+    turning = float(max(fastest, math.sqrt(hardest * coordinate))) / (2 * math.pi)
+    return np.repeat([coordinate, turning or 1.0], half)  # at rest for ever, any unit will do
+
+
+def error_of(
+    rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = TOLERANCE, unit: ArrayLike = 1.0
+) -> Array:
     """How far the motion moves (times,) when its tolerance is made 10 times coarser: a bound on its own error."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(t.max()), math.ulp(1.0))
-    fine, coarse = (integrate(rates, start, until, factor * tolerance)(t) for factor in (1.0, COARSER))
+    fine, coarse = (integrate(rates, start, until, factor * tolerance, unit)(t) for factor in (1.0, COARSER))
     return np.abs(fine - coarse).max(axis=-1)

@@ -11,6 +11,7 @@ J.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
 from reference.memory import require_room
-from reference.numerics.integration import error_of, integrate
+from reference.numerics.integration import error_of, integrate, units_of_motion
 from reference.pendulum.link import direction_of
 from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
 from reference.validation import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -32,6 +33,8 @@ TENFOLD = 10.0
 # Beyond this ratio of masses the forces are refined: a light link passes a heavy one's force on as a small difference.
 UNEVEN = 10.0
 REFINEMENTS = 3  # each removes about as many digits as the first solution has: enough up to a ratio of 1e9
+# A correction this small, in parts of the forces, is the last: the next would be its square, below extended rounding.
+CORRECTED = 3e-10
 
 
 @dataclass(frozen=True)
@@ -107,9 +110,15 @@ class Chain(Valid):
             return solution.reshape(*leading, self.links, 2)
         factor = cholesky_banded(banded.reshape(4, -1), overwrite_ab=True, check_finite=False)
         forces = np.zeros((*leading, self.links, 2), dtype=np.longdouble)
+        parting = self._parting(angle, rate)
         for _ in range(1 + REFINEMENTS):
-            missing = self._parting(angle, rate, forces).astype(float)
-            forces -= cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False).reshape(forces.shape)
+            missing = parting(forces).astype(float)
+            correction = cho_solve_banded((factor, False), missing.reshape(-1), check_finite=False)
+            forces -= correction.reshape(forces.shape)
+            each = (-1, 2 * self.links)
+            small = CORRECTED * np.abs(forces.reshape(each)).max(axis=1)
+            if np.all(np.abs(correction.reshape(each)).max(axis=1) <= small):
+                break
         return forces
 
     def _alike(self, *given: ArrayLike) -> list[Array]:
@@ -123,18 +132,25 @@ class Chain(Valid):
             )
         return states
 
-    def _parting(self, angle: Array, rate: Array, forces: Any) -> Any:
-        """How fast the joints would part under these forces (..., links, 2) [m/s^2], in extended precision."""
+    def _parting(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
+        """How fast the joints would part under forces (..., links, 2) [m/s^2], in extended precision: a function."""
         half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
-        below = np.zeros_like(forces)
-        below[..., :-1, :] = forces[..., 1:, :]
-        centre = (forces - below) / self._mass[:, None]
-        alpha = -np.sum(perpendicular(half) * (forces + below), axis=-1) / self.inertia
-        lever = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), alpha, half)
-        out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
-        out[..., 1:, :] -= (centre + lever)[..., :-1, :]
-        out[..., 0, 1] -= self.gravity
-        return out
+        normal = perpendicular(half)
+        centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
+        turned, light = normal / self.inertia[:, None], 1 / self._mass.astype(np.longdouble)[:, None]
+
+        def parting(forces: Any) -> Any:
+            below = np.zeros_like(forces)
+            below[..., :-1, :] = forces[..., 1:, :]
+            centre = (forces - below) * light
+            alpha = -(turned * (forces + below)).sum(axis=-1)
+            lever = centripetal + alpha[..., None] * normal
+            out = centre - lever  # the upper end's acceleration, but for gravity, which all links share
+            out[..., 1:, :] -= (centre + lever)[..., :-1, :]
+            out[..., 0, 1] -= self.gravity
+            return out
+
+        return parting
 
     @validated
     def accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:
@@ -160,7 +176,8 @@ class Chain(Valid):
         From any start, an angle [rad] and a rate [rad/s] a link (links,); integrated, see `truth_error`.
         """
         times, start = sample_times("chain", t), self._start(angle, rate)
-        state = integrate(self.rates, start, max(float(times.max(initial=0.0)), math.ulp(1.0)))(times)
+        until, unit = max(float(times.max(initial=0.0)), math.ulp(1.0)), units_of_motion(self.rates, start)
+        state = integrate(self.rates, start, until, unit=unit)(times)
         angles, rates = state[:, : self.links], state[:, self.links :]
         return angles, rates, self._accelerations(angles, rates)
 
@@ -240,13 +257,14 @@ class Chain(Valid):
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
         tolerance = NUDGE * 1e-4  # its error stays far below the difference that is measured
-        motion = integrate(self.rates, start, until, tolerance)(t)
+        unit = units_of_motion(self.rates, start)
+        motion = integrate(self.rates, start, until, tolerance, unit)(t)
         growth = np.zeros(len(t))
         generator = np.random.default_rng(0)
         for _ in range(starts):
             move = np.concatenate([generator.uniform(-1, 1, self.links), np.zeros(self.links)])
             move *= NUDGE / np.abs(move).max()
-            neighbour = integrate(self.rates, start + move, until, tolerance)(t)
+            neighbour = integrate(self.rates, start + move, until, tolerance, unit)(t)
             growth = np.maximum(growth, np.abs(neighbour - motion)[:, : self.links].max(axis=-1) / NUDGE)
         return growth
 
@@ -270,7 +288,8 @@ class Chain(Valid):
     @validated
     def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
         """A bound on the integrated motion's own error (times,) [rad, rad/s], from a tolerance 10 times coarser."""
-        return error_of(self.rates, self._start(angle, rate), sample_times("chain", t))
+        start = self._start(angle, rate)
+        return error_of(self.rates, start, sample_times("chain", t), unit=units_of_motion(self.rates, start))
 
     def _start(self, angle: ArrayLike, rate: ArrayLike) -> Array:
         return np.concatenate(self._alike(angle, rate))

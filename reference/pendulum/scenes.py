@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.memory import require_room
-from reference.numerics.integration import Integrated, integrate
+from reference.numerics.integration import Integrated, integrate, units_of_motion
 from reference.pendulum.chain import Chain
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 @lru_cache(maxsize=8)
 def _integrated(chain: Chain, angle: float, rate: float, until: float) -> Integrated:
     start = np.concatenate([np.full(chain.links, angle), np.full(chain.links, rate)])
-    return integrate(chain.rates, start, until)
+    return integrate(chain.rates, start, until, unit=units_of_motion(chain.rates, start))
 
 
 @dataclass(frozen=True)

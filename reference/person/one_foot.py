@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, error_of, integrate
+from reference.numerics.integration import Integrated, error_of, integrate, units_of_motion
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH, Segment
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -154,7 +154,11 @@ class OneFoot(Scene):
 
     def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) in u and u', by two tolerances."""
-        return error_of(self.rates, np.concatenate([self.start, np.zeros(len(self.start))]), self.times(t))
+        return error_of(self.rates, self._at_rest, self.times(t), unit=units_of_motion(self.rates, self._at_rest))
+
+    @property
+    def _at_rest(self) -> Array:
+        return np.concatenate([self.start, np.zeros(len(self.start))])
 
     def mechanism(self) -> Mechanism:
         pose, _ = self.tangent(np.array(self.start))
@@ -198,4 +202,5 @@ class OneFoot(Scene):
 
 @lru_cache(maxsize=8)
 def _integrated(person: OneFoot, until: float) -> Integrated:
-    return integrate(person.rates, np.concatenate([person.start, np.zeros(len(person.start))]), until)
+    start = person._at_rest
+    return integrate(person.rates, start, until, unit=units_of_motion(person.rates, start))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from reference.curves.curve import Array, Vector
-from reference.numerics.integration import TOLERANCE, Integrated, error_of, integrate
+from reference.numerics.integration import Integrated, error_of, integrate, units_of_motion
 from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
@@ -71,6 +71,10 @@ class RollingBody(Valid):
         return np.stack([state[..., 1], self.angular_acceleration(state[..., 0], state[..., 1])], axis=-1)
 
     @cached_property
+    def _units(self) -> Array:
+        return units_of_motion(self._rates, self.start)
+
+    @cached_property
     def _known(self) -> list[tuple[float, Integrated]]:
         return []
 
@@ -80,13 +84,13 @@ class RollingBody(Valid):
         until = float(t.max(initial=0.0)) or math.ulp(1.0)
         # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
         if not self._known or self._known[0][0] < until:
-            self._known[:] = [(until, integrate(self._rates, self.start, until, TOLERANCE))]
+            self._known[:] = [(until, integrate(self._rates, self.start, until, unit=self._units))]
         states = self._known[0][1](t)
         return states[:, 0], states[:, 1]
 
     def truth_error(self, t: ArrayLike) -> Array:
         """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
-        return error_of(self._rates, self.start, sample_times("rolling body", t))
+        return error_of(self._rates, self.start, sample_times("rolling body", t), unit=self._units)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""

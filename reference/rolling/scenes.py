@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -52,11 +52,10 @@ class RollingScene(Scene):
     def inertia(self) -> float:
         """kg m^2 about the centre of mass."""
 
-    @cached_property
+    @property
     def motion_law(self) -> RollingBody:
         """The body in its one coordinate: forces, friction, hop, slip, small oscillations."""
-        rolling = Rolling.at_angle(self.body_curve(), self.ground_curve(), self.start_angle, self.ground_arc)
-        return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
+        return _motion_law(self)
 
     @cached_property
     def hop(self) -> float | None:
@@ -66,8 +65,7 @@ class RollingScene(Scene):
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
         """Up to where a contact of this friction slips, or hops: beyond, an engine is right to disagree [s]."""
-        slip = self.motion_law.slip(self.friction, self.duration)
-        return math.inf if slip is None else slip
+        return _until_slip(self)
 
     @cached_property
     def horizon(self) -> float:  # type: ignore[override]
@@ -91,6 +89,19 @@ class RollingScene(Scene):
             twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
             reaction=np.stack([tangent, normal], axis=-1),
         )
+
+
+@lru_cache(maxsize=64)
+def _motion_law(scene: RollingScene) -> RollingBody:
+    """Kept for all equal scenes, because it keeps its motion."""
+    rolling = Rolling.at_angle(scene.body_curve(), scene.ground_curve(), scene.start_angle, scene.ground_arc)
+    return RollingBody(rolling, scene.mass, scene.inertia, scene.start_rate, scene.gravity)
+
+
+@lru_cache(maxsize=64)
+def _until_slip(scene: RollingScene) -> float:
+    slip = scene.motion_law.slip(scene.friction, scene.duration)
+    return math.inf if slip is None else slip
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, error_of, integrate
+from reference.numerics.integration import Integrated, Rates, error_of, integrate, units_of_motion
 from reference.scene import Poses, Scene
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.trajectory import Trajectory
@@ -25,14 +25,18 @@ from reference.validation import Positive, Sign, validated
 Array = NDArray[np.float64]
 
 
-def _rates(moving: MovingSliderCrank, state: Array) -> Array:
-    theta, rate = state[..., 0], state[..., 1]
-    return np.stack([rate, moving.acceleration(theta, rate)], axis=-1)
+def _rates_of(moving: MovingSliderCrank) -> Rates:
+    def rates(state: Array) -> Array:
+        theta, rate = state[..., 0], state[..., 1]
+        return np.stack([rate, moving.acceleration(theta, rate)], axis=-1)
+
+    return rates
 
 
 @lru_cache(maxsize=8)
-def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float) -> Integrated:
-    return integrate(lambda state: _rates(moving, state), [angle, rate], until)
+def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float, unit: float) -> Integrated:
+    rates = _rates_of(moving)
+    return integrate(rates, [angle, rate], until, unit=units_of_motion(rates, [angle, rate], unit))
 
 
 @dataclass(frozen=True)
@@ -141,11 +145,17 @@ class FreeSliderCrank(DrivenSliderCrank):
     duration: Positive = 2.0
     horizon: Positive = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
 
+    @property
+    def angle_unit(self) -> float:
+        """What the crank's angle is counted in while it is integrated [rad]."""
+        return 1.0
+
     def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
         until = max(self.duration, float(t.max(initial=0.0)))
-        state = _integrated(self.moving, self.angle, self.rate, until)(t)
+        state = _integrated(self.moving, self.angle, self.rate, until, self.angle_unit)(t)
         return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
 
     def truth_error(self, t: ArrayLike) -> Array:
         """A bound on the truth's own error (times,) [rad, rad/s], by two tolerances."""
-        return error_of(lambda state: _rates(self.moving, state), [self.angle, self.rate], self.times(t))
+        rates, start = _rates_of(self.moving), [self.angle, self.rate]
+        return error_of(rates, start, self.times(t), unit=units_of_motion(rates, start, self.angle_unit))

@@ -77,6 +77,11 @@ class SliderAtDeadCentre(FreeSliderCrank):
     duration: Positive = 1.5
     horizon: Positive = 1.5
 
+    @property
+    def angle_unit(self) -> float:
+        """The start's distance from the dead centre [rad]: an error in it grows as it does, and stays that part."""
+        return min(1.0, abs(self.angle)) or 1.0
+
     @cached_property
     def moving(self) -> MovingSliderCrank:
         shape = SliderCrank(self.crank, self.rod, self.offset, self.branch)

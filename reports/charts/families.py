@@ -18,12 +18,12 @@ VARIANTS = ("default", "tuned", "extended")
 
 def family_of(engine: str) -> str:
     """The family of an engine by its name; of one that is not registered (any more) the name itself."""
-    return next((each.family for each in registry.ENGINES if each.name == engine), engine)
+    return next((each.family for each in (*registry.ENGINES, *registry.OTHERS) if each.name == engine), engine)
 
 
 def places(engines: Iterable[str] = ()) -> dict[str, int]:
     """Family -> its place in the palette: the registry's first, then those of other engines by name."""
-    registered = [each.family for each in registry.ENGINES]
+    registered = [each.family for each in (*registry.ENGINES, *registry.OTHERS)]
     return {
         family: place for place, family in enumerate(dict.fromkeys([*registered, *sorted(map(family_of, engines))]))
     }

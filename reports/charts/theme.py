@@ -71,7 +71,7 @@ DARK = Theme(
     eighth="#b9c3ce",
     good="#1c4130",
     middling="#6b5617",
-    bad="#b04a33",
+    bad="#ac4831",
     worse="#55437f",
 )
 

@@ -119,7 +119,9 @@ def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
         held = ", ".join([*versions, *modules_in(place)][:5]) or "no package"
         raise BadInput(f"{word} holds {held}, which no engine needs; name the engine with --engine")
     told = ", ".join(f"{each} {number}" for each, number in versions.items())
-    return Side(f"{Path(word).name} ({told})" if told else Path(word).name, engine or known or "", place, False)
+    # A wheel's name repeats what is in it, with forty letters of platforms.
+    name = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
+    return Side(f"{told} ({name})" if told else name, engine or known or "", place, False)
 
 
 def _column(

@@ -8,7 +8,7 @@ from reports.cli.terminal import Terminal, print_table
 
 def list_command(scene: Scenes = None, engine: EngineName = None, variant: VariantName = None) -> None:
     """Scenes, engines and variants, and what is unsupported, with the reason."""
-    from engines.registry import ENGINES, method
+    from engines.registry import ENGINES, INSTALLED, method
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_engines, choose_scenes
     from reports.grid.cells import Cell
@@ -17,7 +17,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
 
     known, names, given = with_words(registered(), scene or (), engine)
     scenes = choose_scenes(names, known.scenes, known.pages)
-    named = given or (ENGINES if engine is None else known.engines)
+    named = given or ((*ENGINES, *INSTALLED) if engine is None else known.engines)
     engines = choose_engines(None if given else engine, variant, named)
     console = Terminal(140)
     taught = {one: page.name if (page := page_of(one, known.pages)) else "" for one in scenes}

@@ -25,6 +25,10 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Another value for a number of the scene (repeatable)."),
 ]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", help="Run on a Dask cluster: tcp://HOST:PORT of its scheduler, or local:N workers."),
+]
 
 
 def with_folder(command: str, results: Path) -> str:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, EngineName, Folder, Scenes, Settings, VariantName, with_folder
+from reports.cli.options import FOLDER, STORE, EngineName, Folder, Scenes, Scheduler, Settings, VariantName, with_folder
 from reports.grid.ending import BadInput
 
 if TYPE_CHECKING:
+    from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
     from reports.grid.cells import Cell
     from reports.grid.measure import Measurement
@@ -31,9 +32,11 @@ def run(
     every: Annotated[list[int] | None, typer.Option(help="Only this many steps between samples (repeatable).")] = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
+    scheduler: Scheduler = None,
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
+    from reports.cli.elsewhere import elsewhere
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal
@@ -48,29 +51,38 @@ def run(
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     console = Terminal(140)
-    with Store(results / STORE) as store:
+    with elsewhere(scheduler) as crew, Store(results / STORE) as store:
         if store.notice:
             print(f"crosscheck: {store.notice}", file=sys.stderr)
         store.remember(each.text() for each in known.given)
-        count = run_interruptible(console, store, items, fresh, limit)
+        count = run_interruptible(console, store, items, fresh, limit, crew)
         print_summary(console, list(store.get(cells).values()))
     following = with_folder("crosscheck report", results)
     console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
 
 
-def run_interruptible(console: Terminal, store: Store, items: Sequence[Cell | Task], fresh: bool, limit: float) -> int:
-    """Run cells and tasks with a bar of progress; how many were run.
+def run_interruptible(
+    console: Terminal,
+    store: Store,
+    items: Sequence[Cell | Task],
+    fresh: bool,
+    limit: float,
+    crew: Workforce | None = None,
+) -> int:
+    """Run cells and tasks with a bar of progress, by this machine's pool or by `crew`; how many were run.
 
     Raises KeyboardInterrupt, having said what is stored.
     """
     from reports.cli.terminal import progress
     from reports.grid.running import missing, run_into
+    from reports.grid.supervisor import supervise
 
+    by = crew.supervise if crew else supervise
     with kept() as check:
         waiting = len(items) if fresh else len(missing(items, store, limit))
         try:
             with progress(console, waiting, check) as (done, watch):
-                count = run_into(store, items, fresh, limit, done=done, watch=watch)
+                count = run_into(store, items, fresh, limit, done=done, watch=watch, supervised=by)
             check()
         except KeyboardInterrupt:
             stored = len(items) - len(missing(items, store, limit))

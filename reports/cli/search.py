@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, SEARCH, STORE, EngineName, Folder, VariantName, with_folder
+from reports.cli.options import FOLDER, SEARCH, STORE, EngineName, Folder, Scheduler, VariantName, with_folder
 from reports.grid.ending import BadInput
 
 if TYPE_CHECKING:
+    from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
     from reports.grid.store import Store
     from reports.grid.tasks import Answer
@@ -40,9 +41,11 @@ def search(
         str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
     ] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")] = None,
+    scheduler: Scheduler = None,
     results: Folder = FOLDER,
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
+    from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.terminal import Terminal
     from reports.grid.store import Store
     from reports.search.chunk import as_words, asked, chunks
@@ -57,12 +60,12 @@ def search(
     pieces = chunks(subjects, seed, cases, wanted, decades, listed("--oracles", oracles, ORACLES))
     folder = results / SEARCH
     terminal = Terminal(150)
-    with Store(folder / STORE) as store:
+    with elsewhere(scheduler) as crew, Store(folder / STORE) as store:
         store.remember(as_words(piece) for piece in pieces)
-        run_pieces(terminal, store, pieces, seconds, workers)
+        run_pieces(terminal, store, pieces, seconds, crew or pool(workers))
         told = list(asked(stored(store, pieces)))
         print_summary(terminal, told)
-        shrink_and_write(terminal, store, told, folder, workers)
+        shrink_and_write(terminal, store, told, folder, crew or pool(workers))
     terminal.say(f"{len(told)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
 
 
@@ -77,7 +80,7 @@ def listed(option: str, words: str, known: Sequence[str]) -> tuple[str, ...]:
 def chosen(engine: str | None, variant: str | None) -> list[Subject]:
     """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
     from engines.loading import is_reference
-    from engines.registry import ENGINES, VARIANTS, load
+    from engines.registry import ENGINES, INSTALLED, VARIANTS, load
     from reports.cli.selection import choose_engines
     from reports.search.subjects import Adapted, Alone
 
@@ -88,7 +91,8 @@ def chosen(engine: str | None, variant: str | None) -> list[Subject]:
             return [Adapted(one) for one in choose_engines(None, variant, load(engine))]
         except ValueError as error:
             raise BadInput(str(error)) from None
-    engines = choose_engines(engine, variant, VARIANTS if variant is None else ENGINES)
+    known = (*(VARIANTS if variant is None else ENGINES), *(INSTALLED if engine is not None else ()))
+    engines = choose_engines(engine, variant, known)
     alone: list[Subject] = [Alone()] if variant is None and engine in (None, "mujoco") else []
     return [*(Adapted(one) for one in engines), *alone]
 
@@ -117,25 +121,23 @@ def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
 
 
 def run_pieces(
-    terminal: Terminal, store: Store, pieces: Sequence[Chunk], seconds: float | None, workers: int | None
+    terminal: Terminal, store: Store, pieces: Sequence[Chunk], seconds: float | None, crew: Workforce
 ) -> None:
     """Run what is not stored, in waves, until the time is over; a case that ends its process is found and kept."""
     from reports.cli.terminal import progress
-    from reports.grid.pool import worker_count
     from reports.grid.running import missing, run_into
     from reports.search.chunk import lost
 
-    crew = workers or worker_count(timed=False)
     begin = monotonic()
     waiting = list(missing(pieces, store, LIMIT))
     with kept() as check:
         try:
             with progress(terminal, len(waiting), check) as (done, watch):
                 while waiting and (seconds is None or monotonic() - begin < seconds):
-                    wave, waiting = waiting[: WAVE * crew], waiting[WAVE * crew :]
-                    run_into(store, wave, limit=LIMIT, workers=crew, done=done, watch=watch)
+                    wave, waiting = waiting[: WAVE * crew.threads], waiting[WAVE * crew.threads :]
+                    run_into(store, wave, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
                     singles = missing(lost(stored(store, wave)), store, LIMIT)
-                    run_into(store, singles, limit=LIMIT, workers=crew, watch=watch)
+                    run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)
             check()
         except KeyboardInterrupt:
             left = len(missing(pieces, store, LIMIT))
@@ -151,13 +153,10 @@ def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
     print_table(terminal, "Errors, each relative to the largest of what it is an error of", HEADER, summary(told), 2)
 
 
-def shrink_and_write(
-    terminal: Terminal, store: Store, told: Sequence[Asked], folder: Path, workers: int | None
-) -> None:
+def shrink_and_write(terminal: Terminal, store: Store, told: Sequence[Asked], folder: Path, crew: Workforce) -> None:
     """Make some findings of each check smaller, and write them as recipes and scripts."""
     from reports.cli.terminal import progress
     from reports.grid.files import write_whole
-    from reports.grid.pool import worker_count
     from reports.grid.running import missing, run_into
     from reports.search.shrunk import Shrink, files_of, line_of, worst_of
 
@@ -167,7 +166,7 @@ def shrink_and_write(
         return
     with kept() as check:
         with progress(terminal, len(missing(tasks, store, LIMIT)), check) as (done, watch):
-            run_into(store, tasks, limit=LIMIT, workers=workers or worker_count(timed=False), done=done, watch=watch)
+            run_into(store, tasks, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
         check()
     texts = {}
     answers = store.answers(tasks)

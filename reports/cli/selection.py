@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from engines import Engine
 from reference.scene import Scene
-from reports.grid.cells import FULL, QUICK, Cell, estimated_cost, sweep_cells
+from reports.grid.cells import FULL, QUICK, Cell, beside_cells, estimated_cost, sweep_cells
 from reports.grid.ending import BadInput
 from reports.grid.tasks import Task
 from reports.grid.usual_steps import usual_cells
@@ -47,7 +47,9 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
     if engine is not None:
         chosen = tuple(e for e in chosen if e.name == engine)
         if not chosen:
-            raise nearest("engine", engine, (e.name for e in engines))
+            from engines.registry import ABSENT
+
+            raise BadInput(ABSENT[engine]) if engine in ABSENT else nearest("engine", engine, (e.name for e in engines))
     if variant is not None:
         found = tuple(e for e in chosen if e.variant == variant)
         if not found:
@@ -73,11 +75,11 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
-    from engines.registry import ENGINES
+    from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
     kept = (task.engine for page in pages for task in page.all_tasks() if task.engine is not None)
-    return tuple(dict.fromkeys([*ENGINES, *compared, *kept]))
+    return tuple(dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept]))
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
@@ -86,6 +88,13 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
 
     compared = next((page.engines_of(scene) for page in pages if page.teaches(scene)), VARIANTS)
     return tuple(engine for engine in engines if engine in compared)
+
+
+def _beside(engines: Sequence[Engine]) -> tuple[Engine, ...]:
+    """Of these engines those that are extras."""
+    from engines.registry import OTHERS
+
+    return tuple(engine for engine in engines if engine in OTHERS)
 
 
 def choose_cells(
@@ -108,14 +117,16 @@ def choose_cells(
     if every or steps:
         chosen: dict[Cell, None] = {}
         for scene in scenes:
+            compared = (*grid_engines(scene, engines, pages), *_beside(engines))
             for count in dict.fromkeys([*every, *(steps_per_sample(scene, step) for step in steps)]):
-                chosen.update((Cell(scene, engine, count), None) for engine in grid_engines(scene, engines, pages))
+                chosen.update((Cell(scene, engine, count), None) for engine in compared)
         return tuple(chosen)
     cells: list[Cell] = []
     for scene in scenes:
         compared = grid_engines(scene, engines, pages)
         cells += sweep_cells((scene,), compared, FULL if full else QUICK)
         cells += usual_cells((scene,), compared) if full else ()
+        cells += beside_cells((scene,), _beside(engines))
     for page in pages:
         if any(page.is_run_with(scene) for scene in scenes):
             cells += [
@@ -151,13 +162,18 @@ def _quick(cell: Cell) -> bool:
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell that a page asks for; those that it borrows are asked for by other pages."""
+    from engines.registry import INSTALLED
+
     cells: list[Cell] = []
     for scene in page.scenes:
         compared = page.engines_of(scene)
         cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
+        cells += beside_cells((scene,), INSTALLED)
     return tuple(dict.fromkeys([*cells, *page.extra_cells()]))
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:
-    """Every cell whose row a page may tell: its own, and those that it borrows."""
-    return tuple(dict.fromkeys([*page_cells(page), *page.borrowed]))
+    """Every cell whose row a page may tell: its own, those of engines that are not installed here, what it borrows."""
+    from engines.registry import OTHERS
+
+    return tuple(dict.fromkeys([*page_cells(page), *beside_cells(page.scenes, OTHERS), *page.borrowed]))

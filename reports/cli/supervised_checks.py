@@ -17,7 +17,7 @@ from pathlib import Path
 from engines import Engine
 from engines.conformance import Case, Result, cases
 from engines.loading import is_reference
-from engines.registry import ENGINES, load
+from engines.registry import ENGINES, INSTALLED, load
 from reports.cli.selection import choose_engines
 from reports.grid.ending import BadInput
 from reports.grid.outcomes import Loss, Outcome
@@ -40,7 +40,7 @@ class Named:
     def engines(self) -> tuple[Engine, ...]:
         """Raises BadInput where nothing has this name."""
         if not is_reference(self.word):
-            return choose_engines(self.word, self.variant, ENGINES)
+            return choose_engines(self.word, self.variant, (*ENGINES, *INSTALLED))
         try:
             return choose_engines(None, self.variant, load(self.word, Path(self.folder)))
         except ValueError as error:

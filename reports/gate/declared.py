@@ -12,6 +12,7 @@ from engines import Engine
 from reference.scene import Scene
 from reports.gate.judge import QUANTITY_NAMES
 from reports.gate.prediction import DAMPING, Kind, given, kinds, softened
+from reports.grid.cells import mechanism_of
 from reports.grid.tasks import Answer, Task, Values
 
 # The judge's own steps take minutes for more bodies than this: of those only the gate asks it.
@@ -44,14 +45,15 @@ class Softened(Task):
 
 def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...]:
     """What the judge has to run once to tell what these engines declare in a scene; none where it has many bodies."""
-    if len(scene.mechanism().bodies) > MOST_BODIES:
+    if len(mechanism_of(scene).bodies) > MOST_BODIES:
         return ()
     return tuple(Softened(scene, *kind) for kind in sorted(kinds(scene, engines)))
 
 
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
     """What the engine's declared softness alone costs at this step [s]; 0 where it declares none, NaN if not known."""
-    softness = engine.softness(scene.mechanism(), step)
+    mechanism = mechanism_of(scene)
+    softness = engine.softness(mechanism, step)
     soft: dict[Kind, dict[str, float]] = {}
     for complete in (True, False):
         rows = softness.rows if softness is not None else ()
@@ -59,6 +61,6 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
         if answer is not None and answer.finished:
             soft[rows, complete] = {name: answer.number(name) for name in QUANTITY_NAMES}
     try:
-        return given(soft, quantity, softness)
+        return given(soft, quantity, softness, mechanism.holonomic.tolist())
     except KeyError:  # the judge was not asked, or failed
         return math.nan

@@ -70,21 +70,22 @@ def multipliers(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None
 ) -> tuple[Array, Array]:
     """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones; drives are never soft."""
+    free = mechanism.unconstrained(pose, twist)
     if not mechanism.row_count:
-        return mechanism.free_fall, np.zeros(0)
+        return free, np.zeros(0)
     rows = mechanism.rows(pose)
     weighted = rows / mechanism.inertias.reshape(-1)
     matrix = weighted @ rows.T
-    right = mechanism.bias(pose, twist) - rows @ mechanism.free_fall.reshape(-1)
+    right = mechanism.bias(pose, twist) - rows @ free.reshape(-1)
     if soft is not None:
         gives = np.array(soft.rows) & ~np.isnan(mechanism.rate) & (mechanism.rate == 0)
         if not soft.complete:
-            right = np.where(gives, -rows @ mechanism.free_fall.reshape(-1), right)
+            right = np.where(gives, -rows @ free.reshape(-1), right)
         gap = np.nan_to_num(mechanism.gap(pose, t))
         right = right - gives * (soft.damping * mechanism.slip(pose, twist) + soft.stiffness * gap)
         matrix = matrix + soft.compliance * np.diag(gives * own_inertia(matrix, gives))
     reaction = solved(matrix, right)
-    return mechanism.free_fall + (weighted.T @ reaction).reshape(-1, 3), reaction
+    return free + (weighted.T @ reaction).reshape(-1, 3), reaction
 
 
 def projected(mechanism: Mechanism, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ they are, so one softness tells of all.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -37,12 +37,18 @@ MOST_STEPS = 20_000
 DIFFERENCES = 1000
 
 
+# What the judge's fourth order leaves of these is not of the motion alone: of a position it is how far rows that are
+# left alone drift, and energy it keeps an order better than the motion. Below both orders the angle's own time scale
+# counts.
+OTHERWISE = ("position", "energy")
+
+
 @dataclass(frozen=True)
 class Prediction:
     """What order and softness cost in a scene: errors by quantity of ideal methods of order 2 and 4 at `step` [s], and
     the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
     themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
-    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE.
+    kind of softness, at STIFFNESS, DAMPING and COMPLIANCE. `gapped`: which rows of the mechanism have a gap to close.
     """
 
     step: float
@@ -53,6 +59,7 @@ class Prediction:
     acceleration: float
     changing: tuple[float, float]
     soft: Mapping[Kind, Mapping[str, float]]
+    gapped: tuple[bool, ...]
 
     def error(self, quantity: str, order: float, step: float) -> float:
         """A (step / tau)^order, A and tau from the two ideal methods; infinite where those failed, NaN if unknown.
@@ -80,11 +87,14 @@ class Prediction:
         if second == 0 or fourth == 0:
             return 0.0
         # At the judge's step the error falls by (step / tau)^2 from order 2 to order 4: by its root for each order.
-        return second * (fourth / second) ** ((order - 2) / 2) * (step / self.step) ** order
+        fall = fourth / second
+        if order < 2 and quantity in OTHERWISE and 0 < self.fourth["angle"] < math.inf:
+            fall = min(fall, self.fourth["angle"] / self.second["angle"])
+        return second * fall ** ((order - 2) / 2) * (step / self.step) ** order
 
     def give(self, quantity: str, softness: Softness | None) -> float:
         """What this softness costs, in proportion to what the judge's own does."""
-        return given(self.soft, quantity, softness)
+        return given(self.soft, quantity, softness, self.gapped)
 
     def closing(self, quantity: str, gap: float, softness: Softness | None) -> float:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
@@ -110,18 +120,24 @@ class Prediction:
         return scales.get(quantity, math.inf)
 
 
-def given(soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None) -> float:
-    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`)."""
+def given(
+    soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None, gapped: Sequence[bool]
+) -> float:
+    """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`).
+
+    A row that has a gap (`gapped`, (rows,)) gives way by its spring, one that has none by its damper.
+    """
     if softness is None:
         return 0.0
-    stiff = STIFFNESS / softness.stiffness
+    stiff, damped = STIFFNESS / softness.stiffness, DAMPING / softness.damping
     found = 0.0
     if softness.compliance > 0:
-        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * stiff
+        yielding = {stiff if gap else damped for gives, gap in zip(softness.rows, gapped, strict=True) if gives}
+        found += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * max(yielding, default=0.0)
         # However stiff the spring, this share of a force is not felt by what gives it.
         found += softness.compliance if quantity == "reaction" else 0.0
     if not softness.complete:
-        lag = stiff if quantity == "gap" else max(DAMPING / softness.damping, stiff)
+        lag = stiff if quantity == "gap" else max(damped, stiff)
         found += soft[softness.rows, False][quantity] * lag
     return found
 
@@ -159,13 +175,18 @@ def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
         second, fourth = (_judged(scene, order, every) for order in (2, 4))
         if second["angle"] <= REACH:
             break
+    if not max(second["angle"], fourth["angle"]) <= SATURATED:
+        # Of a motion that is lost nothing follows for another order.
+        second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
+    mechanism = scene.mechanism()
     return Prediction(
         scene.spacing / every,
         second,
         fourth,
-        scene.mechanism().length_scale,
+        mechanism.length_scale,
         *_motion(scene),
         {kind: softened(scene, *kind) for kind in soft},
+        tuple(mechanism.holonomic.tolist()),
     )
 
 

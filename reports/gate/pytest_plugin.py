@@ -118,7 +118,12 @@ def _wanted(case: Case | None, scenes: Sequence[str], engines: Sequence[str]) ->
 
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[Case, Verdict]:
-    """What came of every case that is selected in this session; theirs alone are run."""
+    """What came of every case that is selected in this session; theirs alone are run.
+
+    The grid has a pool on all processors. Below `pytest -n` every worker would run the whole grid, so it is skipped.
+    """
+    if hasattr(request.config, "workerinput"):
+        pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
     found = walk(chosen, request.config.stash[KNOWN])
     request.config.stash[VERDICTS] = found

@@ -33,6 +33,8 @@ ROOM_SOFT = 2.0
 # the next power of the step, and that a largest error over samples is met at another one. It is below the three of half
 # a decade, so that an error that stays is seen between the two finest steps even at first order.
 ROOM_OWN = 2.5
+# Coarser steps that tell what a method costs: at a single one two errors may cancel by luck.
+ENOUGH = 2
 
 
 def terms(
@@ -43,7 +45,9 @@ def terms(
     if quantity in ("rate", "velocity", "slip", "energy"):
         rounding *= promise.amplified
     if quantity == "reaction" and promise.differences:
-        rounding += ROUNDING["velocity"] * promise.differences / step / prediction.acceleration
+        # A change of velocity: a combination of runs carries its rounding as it carries that of velocities.
+        carried = ROUNDING["velocity"] * promise.amplified
+        rounding += carried * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
         return 0.0, 0.0, rounding
     cost = prediction.error(quantity, promise.step(quantity), step)
@@ -62,7 +66,8 @@ def theory(
 ) -> tuple[Check, ...]:
     """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
 
-    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too.
+    `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too
+    where they are ENOUGH, or where the judge itself has lost the motion.
     Where no order is promised the outcome alone is held.
     """
     outcome = Outcome(row.outcome)
@@ -80,7 +85,7 @@ def theory(
             cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step)
             cost, soft = ROOM * cost, ROOM_SOFT * soft
             order = promise.of(quantity)
-            if usable and order < EXACT:
+            if order < EXACT and len(usable) >= (ENOUGH if math.isfinite(cost + soft) else 1):
                 known = [getattr(other, quantity) * (row.step / other.step) ** order for other in usable]
                 own = ROOM_OWN * max(known)
                 # Where the judge's soft run lost the motion, the method's own steps are all that is known.

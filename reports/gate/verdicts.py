@@ -11,7 +11,7 @@ from reports.gate.checks import Check, Deviation
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.gate.theory import theory
-from reports.grid.cells import QUICK, Cell, sweep_cells
+from reports.grid.cells import QUICK, Cell, mechanism_of, sweep_cells
 from reports.grid.measure import Measurement
 from reports.pages.page import Page
 
@@ -53,7 +53,7 @@ def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
 def _case(page: Page, scene: Scene, engine: Engine) -> Case:
     method = f"{engine.name} {engine.variant}"
     known = {check: value for (name, own, check), value in page.known.items() if (name, own) == (scene.name, method)}
-    promise = page.orders.get((scene.name, method)) or engine.order(scene.mechanism())
+    promise = page.orders.get((scene.name, method)) or engine.order(mechanism_of(scene))
     return Case(scene, engine, promise, tuple(known.items()))
 
 
@@ -73,6 +73,6 @@ def checks(case: Case, rows: Sequence[Measurement], judge: Prediction | None = N
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]
-    softness = case.engine.softness(case.scene.mechanism(), finest.step)
+    softness = case.engine.softness(mechanism_of(case.scene), finest.step)
     found = theory(judge, case.promise, softness, finest, rows[:-1])
     return (*found, *order(case.promise, rows)) if found else ()

@@ -14,7 +14,7 @@ from reference.scene import Scene
 from reference.validation import Count, Valid
 from reports.grid.fingerprint import fingerprint
 
-Purpose = Literal["sweep", "usual", "failure", "growth", "large", "map"]
+Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
 # Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
 # they are about 1e-2, 3e-3, 1e-3 ... 1e-5 s. Three points are the fewest that can tell a slope from a plateau.
@@ -81,11 +81,12 @@ def estimated_cost(cell: Cell) -> float:
 
 @lru_cache(maxsize=4096)
 def _step_cost(scene: Scene, engine: Engine) -> float:
-    return engine.step_cost(_mechanism(scene))
+    return engine.step_cost(mechanism_of(scene))
 
 
-@lru_cache(maxsize=128)
-def _mechanism(scene: Scene) -> Mechanism:
+@lru_cache(maxsize=512)
+def mechanism_of(scene: Scene) -> Mechanism:
+    """The scene's mechanism, made once: cells, tables and pictures ask for it hundreds of times."""
     return scene.mechanism()
 
 
@@ -99,6 +100,24 @@ def sweep_cells(
     """
     engines, scenes = tuple(engines), tuple(scenes)
     return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
+
+
+# Of engines that are extras: no finer step, and no cell that takes longer than this [s], building included.
+BESIDE_LIMIT = 0.5
+# A model that takes as long as this to build [s] is run where a page asks for it, and in no grid.
+SLOW_TO_BUILD = 1.0
+
+
+def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
+    """The QUICK steps of engines that are no part of a scene's grid and stand beside it on its page."""
+    engines = tuple(engine for engine in engines if getattr(engine, "building", 0.0) < SLOW_TO_BUILD)
+    return tuple(
+        cell
+        for scene in scenes
+        for engine in engines
+        for every in QUICK
+        if estimated_cost(cell := Cell(scene, engine, every, "beside")) <= BESIDE_LIMIT
+    )
 
 
 def _sweep(

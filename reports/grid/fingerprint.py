@@ -177,19 +177,26 @@ def _folder(distribution: str) -> Path:
 
 
 @cache
-def _digest(modules: frozenset[str]) -> str:
+def _behind(modules: frozenset[str]) -> tuple[frozenset[tuple[str, Path]], frozenset[str]]:
+    """(files by the names of their modules, distributions) behind these modules."""
     files: set[tuple[str, Path]] = set()
     packages: set[str] = set()
     for module in modules:
         own_files, own_packages = _closure(module)
         files |= own_files
         packages |= own_packages
+    distributions = {name for package in packages for name in _providing(package)}
+    return frozenset(files), frozenset(with_required(distributions))
+
+
+@cache
+def _digest(modules: frozenset[str]) -> str:
+    files, distributions = _behind(modules)
     digest = hashlib.sha256(f"Python=={platform.python_version()}\0".encode())
     # By name, not by place: a checkout in another folder has the same results.
     for name, path in sorted(files):
         digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
-    distributions = {name for package in packages for name in _providing(package)}
-    for distribution in sorted(with_required(distributions)):
+    for distribution in sorted(distributions):
         digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
     return digest.hexdigest()
 
@@ -197,3 +204,11 @@ def _digest(modules: frozenset[str]) -> str:
 def fingerprint(*values: Any) -> str:
     """A digest of the sources and package versions behind these scenes and engines, and behind the measuring."""
     return _digest(frozenset({*modules_behind(*values), *MEASURING}))
+
+
+def versions_behind(*values: Any) -> dict[str, str]:
+    """What differs where `fingerprint` does: versions by distribution, that of Python, a digest of all source files."""
+    files, distributions = _behind(frozenset({*modules_behind(*values), *MEASURING}))
+    sources = hashlib.sha256(b"".join(name.encode() + b"\0" + path.read_bytes() for name, path in sorted(files)))
+    own = {"Python": platform.python_version(), "our source files": sources.hexdigest()[:12]}
+    return {**{name: metadata.version(name) for name in sorted(distributions)}, **own}

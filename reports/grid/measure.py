@@ -13,7 +13,7 @@ from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
+from reports.grid.cells import Cell, mechanism_of
 from reports.grid.errors import branch_flips, constraint_errors, motion_errors, usable_samples
 from reports.grid.outcomes import Outcome
 from reports.grid.timing import process_seconds, repeated_stepping
@@ -21,7 +21,7 @@ from reports.grid.timing import process_seconds, repeated_stepping
 NAN = float("nan")
 
 # Experiments and maps are about what becomes of a run; only what is charted against its cost is timed with care.
-TIMED = ("sweep", "growth", "large")
+TIMED = ("sweep", "beside", "growth", "large")
 
 TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
 BLOWN = 1e3  # of the mechanism's length
@@ -121,7 +121,7 @@ def _motion(scene: Scene, instants: bytes) -> Trajectory:
 
 @lru_cache(maxsize=128)
 def _own_freedoms(scene: Scene) -> int:
-    return scene.mechanism().degrees_of_freedom()[0]
+    return mechanism_of(scene).degrees_of_freedom()[0]
 
 
 def measure(cell: Cell, repeat: bool = True) -> Measurement:
@@ -132,7 +132,7 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
     row = blank(cell)
     with np.errstate(all="ignore"):
         try:
-            mechanism = cell.scene.mechanism()
+            mechanism = mechanism_of(cell.scene)
             build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
             row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
             trajectory = run(cell.sample_count, cell.every)

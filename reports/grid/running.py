@@ -10,7 +10,7 @@ from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import TIME_LIMIT, run_cells, worker_count
 from reports.grid.store import Store
-from reports.grid.supervisor import WorkersLost, supervise
+from reports.grid.supervisor import Supervise, WorkersLost, supervise
 from reports.grid.task_pool import run_tasks
 from reports.grid.tasks import Answer, Task
 
@@ -46,6 +46,7 @@ def run_into(
     done: Callable[[Measurement | Answer], None] = lambda result: None,
     watch: Callable[[list[Any]], None] | None = None,
     timed: bool = True,
+    supervised: Supervise = supervise,
 ) -> int:
     """Run what is missing (everything if fresh), cells first; store each result as it arrives; how many were run.
 
@@ -54,13 +55,13 @@ def run_into(
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
-    for row in run_cells(_cells(waiting), limit, workers, watch, timed):
+    for row in run_cells(_cells(waiting), limit, workers, watch, timed, supervised=supervised):
         if row.outcome == Outcome.LOST:
             lost.append(f"{row.scene} in {row.method} at {row.step:.1e} s: {row.sentence}")
         else:
             store.put(row)
         done(row)
-    for task, answer in run_tasks(_tasks(waiting), limit, workers, watch):
+    for task, answer in run_tasks(_tasks(waiting), limit, workers, watch, supervised):
         if answer.outcome == Outcome.LOST:
             lost.append(f"{task.label}: {answer.sentence}")
         else:

@@ -25,6 +25,7 @@ import tempfile
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,7 @@ MOST_WORKERS = 60  # Windows waits for 63 things at most
 
 Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
+Supervise = Callable[..., Iterator[Answer]]  # `supervise`, and what does the same with workers elsewhere
 
 
 class WorkersLost(Broken):
@@ -75,32 +77,33 @@ def supervise(
     for one that does not use its CPU time, `wall_limit` if None. `watch` is told a few times a second which items are
     running. Raises WorkersLost when no worker can be started. Leaving the iterator ends the workers.
     """
+    with crew(limit, workers, wall) as own:
+        own.give(function, items)
+        yield from own.answers(watch)
+
+
+@contextmanager
+def crew(limit: float, workers: int, wall: float | None = None) -> Iterator[Crew]:
+    """Workers for one function after another; see `supervise`. Leaving it ends them."""
     # CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting.
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
         wall = wall_limit(limit) if wall is None else wall
-        crew = Crew(function, items, limit, wall, min(workers, MOST_WORKERS), Path(folder))
+        own = Crew(limit, wall, min(workers, MOST_WORKERS), Path(folder))
         try:
-            yield from crew.answers(watch)
+            yield own
         finally:
-            crew.end()
+            own.end()
 
 
 class Crew:
-    """The workers of one `supervise`, and the jobs that they have not answered yet."""
+    """Workers, and the jobs that they have not answered yet."""
 
-    def __init__(
-        self,
-        function: Callable[[Any], Any],
-        items: Iterable[Any],
-        limit: float,
-        wall: float,
-        most: int,
-        folder: Path,
-    ) -> None:
-        self._function, self._limit, self._wall, self._most, self._folder = function, limit, wall, most, folder
-        self._waiting = deque(Job(item) for item in items)
+    def __init__(self, limit: float, wall: float, most: int, folder: Path) -> None:
+        self._limit, self._wall, self._most, self._folder = limit, wall, most, folder
+        self._function: Callable[[Any], Any] | None = None
+        self._waiting: deque[Job] = deque()
         self._again: deque[Job] = deque()  # each for a worker that has run nothing yet
         self._workers: list[Worker] = []
         self._failed_starts = 0
@@ -108,6 +111,11 @@ class Crew:
         self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         if "forkserver" in methods:
             self._context.set_forkserver_preload(["reports.grid.measure", "engines.registry"])
+
+    def give(self, function: Callable[[Any], Any], items: Iterable[Any]) -> None:
+        """What `answers` will answer; only when it has answered all that was given before."""
+        self._function = function
+        self._waiting.extend(Job(item) for item in items)
 
     def answers(self, watch: Watch | None) -> Iterator[Answer]:
         """Every item's answer."""

@@ -15,7 +15,7 @@ from reports.grid.quantities import QUANTITIES, quantity
 from reports.pages.page import Failure, Material, Observation
 from reports.text import tables
 from reports.text.lookups import nearest_step
-from reports.text.templates import environment
+from reports.text.templates import template
 from reports.text.unmeasured import UNMEASURED
 
 
@@ -41,7 +41,7 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
     grid = tables.cell_table(rows, failure.columns, held) if failure.columns else tables.outcome_grid(rows, held)
     return ToldExperiment(
         failure.title,
-        environment().from_string(failure.expected).render(**failure.words(material)),
+        template(failure.expected).render(**failure.words(material)),
         happened(rows, seen, failure.columns[0] if failure.columns else "angle"),
         tables.markdown(["method", "setting", "outcome"], [[o.method, o.setting, o.outcome] for o in seen], left=3)
         if seen
@@ -62,7 +62,7 @@ def told_remark(failure: Failure, rows: Sequence[Measurement], material: Materia
     def count(*outcomes: str) -> Any:
         return sum(not outcomes or row.outcome in outcomes for row in rows) if rows else UNMEASURED
 
-    return environment().from_string(failure.remark).render(at=at, count=count, **failure.words(material))
+    return template(failure.remark).render(at=at, count=count, **failure.words(material))
 
 
 def compared_only(cell: Cell, row: Measurement) -> Measurement:

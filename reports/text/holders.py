@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 
-from reports.grid.cells import Cell
+from engines import Engine
+from reference.scene import Scene
+from reports.grid.cells import Cell, mechanism_of
 from reports.grid.holding import held_by
+
+
+@cache
+def held_in(scene: Scene, engine: Engine) -> str:
+    """Who holds a scene's joints; kept, because a method asks its whole model about each of a hundred joints."""
+    return held_by(engine, mechanism_of(scene))
 
 
 def holders(cells: Iterable[Cell]) -> dict[str, str]:
@@ -13,5 +22,5 @@ def holders(cells: Iterable[Cell]) -> dict[str, str]:
     found: dict[str, dict[str, None]] = {}
     for cell in cells:
         method = f"{cell.engine.name} {cell.engine.variant}"
-        found.setdefault(method, {}).setdefault(held_by(cell.engine, cell.scene.mechanism()))
+        found.setdefault(method, {}).setdefault(held_in(cell.scene, cell.engine))
     return {method: " or ".join(told) for method, told in found.items()}

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
 
-from engines import Engine
-from reference.scene import Scene
 from reports.grid.convergence import Sweep, Verdict, by_method, sweeps
-from reports.grid.holding import held_by
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.quantities import quantity
 from reports.grid.usual_steps import USUAL_STEPS, is_step, usual_variants
 from reports.pages.page import Page
+from reports.text.holders import held_in
 from reports.text.tables import NOTHING, markdown, number
 
 Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
@@ -94,18 +91,12 @@ def _step(step: float) -> str:
     return f"{number(1e3 * step)} ms"
 
 
-@cache
-def _held(method: Engine, scene: Scene) -> str:
-    """Kept, because a method asks its whole model about each of a hundred joints."""
-    return held_by(method, scene.mechanism())
-
-
 def _holder(page: Page, scene: str, engine: str, variant: str) -> str:
     """Who holds the scene's joints; empty for a method that is no longer in the page's list."""
     for known in page.scenes:
         for method in page.engines:
             if (known.name, method.name, method.variant) == (scene, engine, variant):
-                held = _held(method, known)
+                held = held_in(known, method)
                 # An engine as shipped has no joint that our code holds: that is what a user puts in its place.
                 return f"{held}, a user's trick" if variant == "default" and "ours" in held.split(": ") else held
     return ""

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.scene import Scene
+from reports.grid.cells import mechanism_of
 from reports.grid.measure import Measurement
 from reports.pages.page import Page
 from reports.text.page_tables import Advice
@@ -64,7 +65,7 @@ def _setting(
     if body is None or end is None:
         raise ValueError(f"{scene.name}: the program of {method} lacks its duration or does not print a place")
     duration = float(end[1])
-    index = scene.mechanism().body_index(body[1])
+    index = mechanism_of(scene).body_index(body[1])
     x, y, angle = scene.motion([duration]).pose[0, index]
     exact = f"x = {x:.10f} m, y = {y:.10f} m, angle = {angle:.10f} rad"
     counts = [round(duration / scene.spacing) * row.every for row, _ in rows]

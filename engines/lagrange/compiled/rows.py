@@ -15,12 +15,14 @@ from engines.lagrange.flat import (
     DRIVE,
     ENDS,
     GAP,
+    GEAR,
     JOINT,
     JOINT_AT,
     JOINTS,
     PARAMETER_AT,
     PARAMETERS,
     PIN,
+    ROD,
     ROLL,
     ROLL_AT,
     ROLL_NUMBERS,
@@ -30,6 +32,7 @@ from engines.lagrange.flat import (
     TURNED,
     WANTED_ANGLE,
     WANTED_ROLL,
+    WELD,
 )
 from engines.lagrange.rolls import CONSTANTS, ON_LINE, ON_ROUND
 
@@ -52,6 +55,12 @@ def rows(whole, real, cells, pose, twist, t):
             real[gap] = real[pose + second + 2] - real[pose + first + 2] - (real[number + 6] + real[number + 5] * t)
             real[bias] = 0.0
             continue
+        if kind == GEAR:
+            ratio = real[number + 5]
+            real[e + 2], real[e + 5] = -ratio, 1.0
+            real[gap] = real[pose + second + 2] - ratio * real[pose + first + 2] - real[number + 6]
+            real[bias] = 0.0
+            continue
         if kind == ROLL:
             rolled(whole, real, cells, record, pose, twist)
             continue
@@ -61,12 +70,29 @@ def rows(whole, real, cells, pose, twist, t):
         bx, by = g * real[number + 2] - h * real[number + 3], h * real[number + 2] + g * real[number + 3]
         arm_x = real[pose + second] + bx - real[pose + first]
         arm_y = real[pose + second + 1] + by - real[pose + first + 1]
-        if kind == PIN:
+        if kind in (PIN, WELD):
             real[e], real[e + 2], real[e + 3], real[e + 5] = -1.0, ay, 1.0, -by
             real[e + 7], real[e + 8], real[e + 10], real[e + 11] = -1.0, -ax, 1.0, bx
             real[gap], real[gap + 1] = arm_x - ax, arm_y - ay
             real[bias] = spin * spin * bx - omega * omega * ax
             real[bias + 1] = spin * spin * by - omega * omega * ay
+            if kind == WELD:
+                real[e + 14], real[e + 17] = -1.0, 1.0
+                real[gap + 2] = real[pose + second + 2] - real[pose + first + 2] - real[number + 4]
+                real[bias + 2] = 0.0
+            continue
+        if kind == ROD:
+            x, y = arm_x - ax, arm_y - ay
+            length = math.sqrt(x * x + y * y)
+            x, y = x / length, y / length
+            fast_x = real[twist + second] - spin * by - real[twist + first] + omega * ay
+            fast_y = real[twist + second + 1] + spin * bx - real[twist + first + 1] - omega * ax
+            across = x * fast_y - y * fast_x
+            real[e], real[e + 1], real[e + 2] = -x, -y, x * ay - y * ax
+            real[e + 3], real[e + 4], real[e + 5] = x, y, y * bx - x * by
+            real[gap] = length - real[number + 4]
+            inward = spin * spin * (x * bx + y * by) - omega * omega * (x * ax + y * ay)
+            real[bias] = inward - across * across / length
             continue
         # A slot's line turns with the first body, a blade with the second: its direction (x, y), its normal (-y, x).
         angle = real[number + 4] + (real[pose + first + 2] if kind == SLOT else real[pose + second + 2])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from engines.lagrange.compiled.forces import free
 from engines.lagrange.compiled.inner import inner
 from engines.lagrange.compiled.rows import rows
 from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, solved
@@ -14,7 +15,6 @@ from engines.lagrange.flat import (
     COLUMNS,
     DAMPING,
     GAP,
-    GRAVITY,
     HOLONOMIC_ROWS,
     LACKING,
     POSE,
@@ -38,16 +38,9 @@ CLOSED = 1e-9
 
 
 @inner
-def free(whole, real, pose, twist, t, out):
-    """Accelerations of all forces but those of joints, to `out`: gravity. Springs and dampers belong here."""
-    for body in range(out, out + whole[COLUMNS] - 3, 3):
-        real[body], real[body + 1], real[body + 2] = real[whole[GRAVITY]], real[whole[GRAVITY] + 1], 0.0
-
-
-@inner
 def accelerated(whole, real, cells, pose, twist, t, out):
     """Accelerations under all forces and the joints' reactions, to `out`; the rows and reactions there stay too."""
-    free(whole, real, pose, twist, t, out)
+    free(whole, real, pose, twist, out)
     if whole[ROWS] == 0:
         return
     rows(whole, real, cells, pose, twist, t)

@@ -28,7 +28,7 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import Tree
+from engines.tree import Tree
 from reference.joints import Drive
 from reference.mechanism import Mechanism
 

@@ -1,6 +1,6 @@
 """A Pin in MuJoCo: a hinge of the tree, or a `connect` where it closes a loop.
 
-The hinges are made with the tree (`engines.mujoco.tree`). `connect` has three rows; out of the plane nothing can move,
+The hinges are made with the tree (`engines.tree`). `connect` has three rows; out of the plane nothing can move,
 so the third row is empty and harmless.
 """
 
@@ -14,11 +14,11 @@ from collections.abc import Sequence
 import mujoco
 
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import world_offset
-from reference.joints import Pin
+from engines.tree import world_offset
+from reference.joints import Pin, Weld
 
 
-def add_pins(building: Building, pins: Sequence[Pin]) -> None:
+def add_pins(building: Building, pins: Sequence[Pin | Weld]) -> None:
     """Add a `connect` each, bound by MuJoCo in the assembled start pose; its force acts on `name1`: the second body."""
     for pin in pins:
         names = ["world" if name is None else f"body {building.index(name)}" for name in (pin.first, pin.second)]

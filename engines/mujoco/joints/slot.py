@@ -20,8 +20,8 @@ import mujoco
 import numpy as np
 
 from engines.mujoco.construction import Building
-from engines.mujoco.tree import Link, Tree, world_offset
 from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.tree import Link, Tree, world_offset
 from reference.joints import Slot
 from reference.plane import rotation_velocity
 

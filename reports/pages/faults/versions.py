@@ -6,15 +6,14 @@ python -m reports.pages.faults.versions    # installs each version in the user's
 from __future__ import annotations
 
 import csv
-import os
 import subprocess
 import sys
-import sysconfig
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from reports.pages.faults.scripts import FOLDER
+from reports.versions.installed import environment, installed
 
 RECORDED = Path(__file__).parent / "versions.csv"
 FIELDS = ("script", "package", "version", "expected", "found")
@@ -55,37 +54,18 @@ def recorded() -> tuple[Found, ...]:
         )
 
 
-def _place(package: str, version: str) -> Path:
-    base = os.environ.get("PLANAR_CROSSCHECK_CACHE") or Path.home() / ".cache" / "planar-crosscheck"
-    python = f"{sys.implementation.cache_tag}-{sysconfig.get_platform()}"
-    return Path(base) / "versions" / python / f"{package}-{version}" / "site-packages"
-
-
-def _installed(package: str, version: str) -> Path:
-    """The version's own folder, filled by pip at the first time. Raises SystemExit, in one line, if pip can't."""
-    folder = _place(package, version)
-    if not folder.is_dir():
-        aside = folder.with_name("part")
-        command = ["pip", "install", "--quiet", "--no-deps", "--only-binary", ":all:", "--target", str(aside)]
-        run = subprocess.run(
-            [sys.executable, "-m", *command, f"{package}=={version}"], capture_output=True, text=True, check=False
-        )
-        if run.returncode:
-            raise SystemExit(f"{package} {version} can't be installed: {run.stderr.strip().splitlines()[-1]}")
-        aside.rename(folder)
-    return folder
-
-
 def found_with(package: str, version: str, scripts: Iterable[str]) -> list[Found]:
-    """Each script in a process of its own that imports this version. Raises SystemExit if the script fails."""
-    folder = _installed(package, version)
-    # Older MuJoCo would import its windows together with itself.
-    environment = {**os.environ, "PYTHONPATH": str(folder), "MUJOCO_GL": "disable", "PYTHONDONTWRITEBYTECODE": "1"}
+    """Each script in a process of its own that imports this version.
+
+    Raises BadInput if the version can't be installed, SystemExit if a script fails.
+    """
+    folder = installed((package,), version)
+    own = environment(folder)
     out = []
     for name in scripts:
         text = (FOLDER / f"{name}.py").read_text(encoding="utf-8") + TOLD
         run = subprocess.run(
-            [sys.executable, "-c", text], capture_output=True, text=True, env=environment, cwd=folder, check=False
+            [sys.executable, "-c", text], capture_output=True, text=True, env=own, cwd=folder, check=False
         )
         words = run.stdout.split()[-3:]
         if run.returncode or words[:1] != ["told"]:

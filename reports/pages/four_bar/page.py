@@ -14,7 +14,7 @@ from reports.charts import drawings
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
-from reports.pages.four_bar.expectations import KNOWN, ORDERS
+from reports.pages.four_bar.expectations import KNOWN
 from reports.pages.four_bar.experiments import FAILURES, MAPS
 from reports.pages.page import Material, Page
 from reports.text.lookups import told
@@ -72,7 +72,6 @@ PAGE = Page(
     maps=MAPS,
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
     tasks=tuple(map(Motion, POSED.values())),
 )

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from reports.gate.checks import Deviation
 
-EULER = "ours: beyond the bound at a step that is new in the grid; the cause is not traced"
+# At any step: an angle 1.2 to 1.3 times its bound from 3e-4 s down to 1e-5 s.
+EULER = (
+    "ours: what order 1 costs is drawn from the judge's orders 2 and 4, and comes out 1.3 times too low for this motion"
+)
 SOFT = "by design: as shipped every equality is a spring of 0.02 s, and their softness adds up along the chain"
 LONG = (
     "by design: the grid's steps over 2000 s are a tenth of a second or larger, too large for 845 periods; the page "
@@ -17,9 +20,7 @@ SPRING = "by design: with every joint a spring, its own motion adds to the link'
 KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("pendulum_1", "mujoco extended, free, sparse Newton", "error"): Deviation(SPRING, 4.1),
     ("pendulum_2", "mujoco default, free coordinates", "order"): Deviation(SOFT, 2.5),
-    ("pendulum_10", "mujoco default", "energy"): Deviation(EULER, 1.9),
     ("pendulum_100", "pymunk tuned", "energy"): Deviation(HUNDRED, 2.6),
-    ("pendulum_100", "mujoco default", "energy"): Deviation(EULER, 1.2),
     ("pendulum_100", "mujoco default, free coordinates", "error"): Deviation(SOFT, 2.3),
     ("point_pendulum", "pymunk default", "outcome"): Deviation(LONG),
     ("point_pendulum", "pymunk tuned", "outcome"): Deviation(LONG),
@@ -30,15 +31,8 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("point_pendulum", "lagrange rk4 projection", "outcome"): Deviation(LONG),
     ("point_pendulum", "mujoco default, free coordinates", "outcome"): Deviation(LONG),
     ("point_pendulum", "mujoco extended, free, sparse Newton", "outcome"): Deviation(LONG),
-    ("pendulum_1", "lagrange euler projection", "error"): Deviation(EULER, 6.9),
-    ("pendulum_1", "lagrange euler projection", "rate"): Deviation(EULER, 1.4),
-    ("pendulum_1", "lagrange euler projection", "energy"): Deviation(EULER, 2.7),
+    ("pendulum_1", "lagrange euler projection", "error"): Deviation(EULER, 1.3),
+    ("pendulum_1", "lagrange euler projection", "rate"): Deviation(EULER, 1.3),
     ("pendulum_1", "lagrange euler projection", "reaction"): Deviation(EULER, 1.4),
-    ("pendulum_10", "lagrange euler projection", "energy"): Deviation(EULER, 1.7),
-    ("pendulum_100", "lagrange euler projection", "energy"): Deviation(EULER, 1.7),
     ("pendulum_100", "pymunk extended", "outcome"): Deviation(HUNDRED),
-    ("point_pendulum", "lagrange dop853 projection", "error"): Deviation(LONG, 260000.0),
-    ("point_pendulum", "lagrange dop853 projection", "rate"): Deviation(LONG, 87000.0),
-    ("point_pendulum", "lagrange dop853 projection", "energy"): Deviation(LONG, 260),
-    ("point_pendulum", "lagrange dop853 projection", "reaction"): Deviation(LONG, 2400),
 }

@@ -169,10 +169,10 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=_cells(SpinningRing(), RING, (1, 10)),
         remark=(
-            "As shipped the ring is soft: its error does not fall with the step. Asked for one a million times "
-            "harder, our adapter stops where the solver's rounding begins, and its angles are "
-            'right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number }} rad{% '
-            "endfilter %}. Asked for a hundred times more, the same solver gives accelerations that are no solutions. "
+            "As shipped the ring is soft: its error does not fall with the step. Made a million times harder, its "
+            'angles are right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number '
+            "}} rad{% endfilter %}. A hundred times harder again, the same solver gives accelerations that are no "
+            "solutions. "
             "At 0.01 s the joint stays shut and the angles look right, but the error of the energy is more than all "
             'there was{% filter if_measured %} ({{ at("mujoco Newton, softening 1e-8", 1e-2).energy | number }} times '
             "as much){% endfilter %}. There is no warning. This is no fault of a model that MuJoCo documents: its "

@@ -24,10 +24,10 @@ def figures(material: Material) -> dict[str, str]:
     driven = DrivenSliderCrank()
     offset = DrivenSliderCrank(offset=0.4, crank=0.4)
     strips = (
-        Strip(driven, "Driven", 13),
-        Strip(FreeSliderCrank(), "Let go", 13, end=0.6),
-        Strip(offset, "Slot 0.4 m above the pivot", 13),
-        Strip(DrivenSliderCrank(branch=-1), "The other branch", 13),
+        Strip(driven, "Driven", 9),
+        Strip(FreeSliderCrank(), "Let go", 7, end=0.6),
+        Strip(offset, "Slot 0.4 m above the pivot", 9),
+        Strip(DrivenSliderCrank(branch=-1), "The other branch", 9),
     )
     return {"stroboscope": svg(stroboscope(strips), "Slider-cranks in motion")}
 

@@ -58,7 +58,7 @@ def casters() -> Figure:
         ("pushed back, from 0.05 and -0.001 rad", -0.5, (0.05, -0.001)),
     ):
         angles, _ = own.swing(start, speed, 0.0, t)
-        lines, curves = [], []
+        lines, curves = [Path(_cart(own, speed * t[-1]), "cart, at the end", "ink", "-", 1.2)], []
         for index, (colour, dashes) in enumerate((("second", "-"), ("first", "--"))):
             x, y = own.places[index]
             place = np.column_stack([x + speed * t, np.full_like(t, y)])
@@ -73,6 +73,13 @@ def casters() -> Figure:
         panels.append(Panel(title, lines))
         panels.append(Panel("angles against the cart [rad]", curves, plane=False, across="time [s]"))
     return paths(panels, columns=2, height=1.9)
+
+
+def _cart(casters: Casters, travelled: float) -> np.ndarray:
+    """The cart's outline (points, 2) [m]: from its fixed axle, which has come so far [m], to the kingpins."""
+    places = np.array(casters.places)
+    corners = np.array([[0.0, places[0, 1]], places[0], places[1], [0.0, places[1, 1]], [0.0, places[0, 1]]])
+    return corners + np.array([travelled, 0.0])
 
 
 def reversing() -> Figure:

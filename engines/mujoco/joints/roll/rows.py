@@ -17,9 +17,9 @@ import mujoco
 
 from engines import Unsupported
 from engines.mujoco.construction import Binder, Building, Hooks
-from engines.mujoco.tree import Link
 from engines.mujoco.written_rows import Row, State, WrittenJoint, equality_rows
 from engines.rolling_table import Rolled, rolled
+from engines.tree import Link
 from reference.rolling.roll import Roll
 from reference.validation import Valid
 

@@ -1,6 +1,6 @@
 """MuJoCo's shapes for the curves of a Roll: planes, spheres or cylinders, ellipsoids.
 
-Each body's frame is parallel to the world's at t = 0 (see `engines.mujoco.tree`), so a shape is turned by the body's
+Each body's frame is parallel to the world's at t = 0 (see `engines.tree`), so a shape is turned by the body's
 start angle. In the plane a sphere is a circle, and it touches in one point where a cylinder touches in two.
 """
 

@@ -12,6 +12,7 @@ from engines.mujoco.joints.skate.rows import skate_rows
 from engines.mujoco.joints.skate.tendons import add_friction_tendons, add_leapfrog, add_tendons
 from engines.mujoco.written_rows import WrittenJoint
 from reference.joints import Skate
+from reference.mechanism import Mechanism
 
 SkateBy = Literal[
     "rows", "tendon", "predicted tendon", "tendon friction", "leapfrog", "force", "passive", "servo", "blade", "wheel"
@@ -19,6 +20,15 @@ SkateBy = Literal[
 # These change once a step, so an integrator of several stages gains nothing and costs four times as much.
 STEPWISE: tuple[SkateBy, ...] = ("tendon", "predicted tendon", "tendon friction", "leapfrog", "force")
 assert set(STEPWISE) < set(get_args(SkateBy))
+
+
+def slip_damping(mechanism: Mechanism) -> float:
+    """How fast a written row lets slip die out [1/s].
+
+    There is no gap to close, only slip that rounding leaves: it may take the motion's own time to die out, and a faster
+    damping would cost accuracy. What turns sets that time; speed over a short arm would be far too fast.
+    """
+    return max(abs(body.twist[2]) for body in mechanism.bodies) or 1 / mechanism.time_scale
 
 
 def add_skates(building: Building, skates: Sequence[Skate], by: SkateBy) -> None:
@@ -35,10 +45,7 @@ def add_skates(building: Building, skates: Sequence[Skate], by: SkateBy) -> None
     if by in ("servo", "blade", "wheel"):
         {"servo": add_servos, "blade": add_blades, "wheel": add_wheels}[by](building, skates)
         return
-    # There is no gap to close, only slip that rounding leaves: it may take the motion's own time to die out, and a
-    # faster damping would cost accuracy. What turns sets that time; speed over a short arm would be far too fast.
-    turning = max(abs(body.twist[2]) for body in building.mechanism.bodies)
-    damping = turning or 1 / building.mechanism.time_scale
+    damping = slip_damping(building.mechanism)
     joints = [
         WrittenJoint(building.index(skate.first), building.index(skate.second), 1, skate_rows(skate, damping))
         for skate in skates

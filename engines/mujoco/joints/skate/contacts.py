@@ -19,7 +19,7 @@ import numpy as np
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, read_by_step
 from engines.mujoco.stiffness import Shipped
-from engines.mujoco.tree import world_offset
+from engines.tree import world_offset
 from reference.joints import Skate
 
 # Along and across the blade. A capsule on a plane, because there the frame of the contact lies along the capsule: so

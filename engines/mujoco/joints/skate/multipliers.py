@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 def refuse_loops(building: Building, what: str) -> None:
     """Raise Unsupported where the rows are not the only ones that share the accelerations."""
-    if building.tree.loops or building.tree.geared or building.driven:
+    if building.tree.closed or building.driven:
         raise Unsupported(f"{what} takes no loops and no drives: their forces would have to be solved for together")
 
 
@@ -73,6 +73,8 @@ def add_forces(building: Building, joints: Sequence[WrittenJoint]) -> None:
 def add_passive_forces(building: Building, joints: Sequence[WrittenJoint]) -> None:
     """The reaction in every stage, as a passive force."""
     refuse_loops(building, "a multiplier applied as a force")
+    if building.mechanism.forces:
+        raise Unsupported("a multiplier as a passive force is found before the forces of actuators are known")
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
         rows = row_writer(building.tree, address, joints, compiled.nv)

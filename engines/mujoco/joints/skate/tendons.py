@@ -15,6 +15,7 @@ from typing import Any
 
 import mujoco
 
+from engines import Unsupported
 from engines.mujoco.construction import Building, Callback, Hooks, read_by_step
 from engines.mujoco.joints.skate.multipliers import refuse_loops, without_slip
 from engines.mujoco.stiffness import STIFFEST
@@ -56,6 +57,8 @@ def add_leapfrog(building: Building, joints: Sequence[WrittenJoint]) -> None:
     acceleration as the mean of the two beside it, in which it cancels.
     """
     refuse_loops(building, "the leapfrog of reflected slips")
+    if building.mechanism.forces:
+        raise Unsupported("the leapfrog of reflected slips takes no forces but gravity: none were tried with it")
     for number in range(len(joints)):
         _add_equality(building, number, 2 / building.dt)
     _add_rewritten(building, joints)

@@ -15,7 +15,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Drive, Joint, Pin, Slot
+from engines.contract import Unsupported
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
 
@@ -25,6 +26,8 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Link:
     """A body in the tree: hinged on its parent by a pin, sliding in it by a slot, or moving freely if it has neither.
+
+    A weld is a hinge that doesn't turn.
 
     `parent` is a body's index, or None for the ground. `arm` is the joint seen from the parent's centre of mass (from
     the world's origin if that is the ground), `anchor` the same point from the body's own, and `direction` the slot's
@@ -63,7 +66,7 @@ class Tree:
 
     mechanism: Mechanism
     links: tuple[Link, ...]
-    loops: tuple[Pin | Slot, ...]
+    loops: tuple[Pin | Slot | Weld, ...]
     kept: tuple[Drive, ...] = ()  # drives of rate zero that hold because the tree has no rotation there
 
     @cached_property
@@ -72,11 +75,17 @@ class Tree:
 
     @cached_property
     def _looping(self) -> frozenset[str]:
-        return frozenset(joint.name for joint in (*self.loops, *self.geared))
+        rows = (joint for joint in self.mechanism.joints if isinstance(joint, Rod | Gear))
+        return frozenset(joint.name for joint in (*self.loops, *self.geared, *rows))
 
     def closes_by(self, joint: Joint) -> bool:
-        """Whether the joint is one of the loops, or a drive that is held like one."""
+        """Whether the joint is one of the loops, or a drive, rod or gear, which are held like one."""
         return joint.name in self._looping
+
+    @property
+    def closed(self) -> bool:
+        """Whether any joint is held by a row of the solver: skates and rolls not counted."""
+        return bool(self._looping)
 
     def turning(self, first: str | None, second: str | None) -> dict[int, float]:
         """The tree coordinates whose sum, with these signs, is the rotation of the second body against the first."""
@@ -157,11 +166,11 @@ class Tree:
 
 
 def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
-    """The tree that grows breadth first from the ground along pins and slots; what they don't reach moves freely.
+    """The tree that grows breadth first from the ground along welds, pins and slots; all it doesn't reach moves freely.
 
-    Not `hanging`, every body moves freely. Every pin and slot that holds no link is a loop. A slot holds a link where
-    its slotted body comes first; pins are preferred. A drive of rate zero across it keeps the angle. The trees of the
-    last mechanisms are kept: a report asks for one once a joint.
+    Not `hanging`, every body moves freely. Every one of them that holds no link is a loop. A slot holds a link
+    where its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the
+    angle. The trees of the last mechanisms are kept: a report asks for one once a joint.
     """
     return _tree_of(_Same(mechanism), hanging)
 
@@ -182,10 +191,10 @@ class _Same:
 @lru_cache(maxsize=8)
 def _tree_of(same: _Same, hanging: bool) -> Tree:
     mechanism = same.mechanism
-    loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+    loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot | Weld)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
-    usable: dict[str | None, list[Pin | Slot]] = {}
-    for joint in sorted(loops if hanging else (), key=lambda joint: isinstance(joint, Slot)):
+    usable: dict[str | None, list[Pin | Slot | Weld]] = {}
+    for joint in sorted(loops if hanging else (), key=lambda joint: (Weld, Pin, Slot).index(type(joint))):
         for end in (joint.first, joint.second):
             usable.setdefault(end, []).append(joint)
     links: list[Link] = []
@@ -194,7 +203,7 @@ def _tree_of(same: _Same, hanging: bool) -> Tree:
     placed: dict[str | None, int | None] = {None: None}
     frontier: deque[str | None] = deque([None])
 
-    def place(name: str, parent: str | None, joint: Pin | Slot | None) -> None:
+    def place(name: str, parent: str | None, joint: Pin | Slot | Weld | None) -> None:
         body = mechanism.body_index(name)
         column = links[-1].columns.stop if links else 0
         if joint is None:
@@ -212,14 +221,14 @@ def _tree_of(same: _Same, hanging: bool) -> Tree:
                 direction = (math.cos(angle), math.sin(angle))
                 links.append(Link(body, placed[parent], "slot", column, arm, anchor, direction, not holds))
             else:
-                links.append(Link(body, placed[parent], "hinge", column, arm, anchor))
+                links.append(Link(body, placed[parent], "hinge", column, arm, anchor, turns=isinstance(joint, Pin)))
             holding.add(joint.name)
         placed[name] = body
         frontier.append(name)
 
-    def child_of(joint: Pin | Slot, parent: str | None) -> str | None:
+    def child_of(joint: Pin | Slot | Weld, parent: str | None) -> str | None:
         """The body that the joint hangs on this parent, if it does."""
-        if isinstance(joint, Pin) and joint.second == parent:
+        if isinstance(joint, Pin | Weld) and joint.second == parent:
             return joint.first if joint.first not in placed else None
         return joint.second if joint.first == parent and joint.second not in placed else None
 
@@ -245,3 +254,13 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)
     return float(x), float(y)
+
+
+def refuse_all_but_pins_of_loops(mechanism: Mechanism, tree: Tree, engine: str) -> None:
+    """Raises Unsupported for skates and rolls, and for slots that no coordinate of the tree stands for."""
+    for joint in mechanism.joints:
+        if not isinstance(joint, Pin | Slot | Drive):
+            raise Unsupported(f"joint {joint.name!r}: {engine} has no constraint of a {type(joint).__name__.lower()}")
+    for joint in tree.loops:
+        if isinstance(joint, Slot):
+            raise Unsupported(f"joint {joint.name!r}: a slot closes a loop, and {engine} closes loops at points alone")

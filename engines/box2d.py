@@ -1,0 +1,201 @@
+"""Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by sub-steps of impulses.
+
+A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
+no contact is the subject. A Pin is a revolute joint, a Slot a wheel joint without its spring (a point on a line that is
+free to turn), or a prismatic joint where a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or Slot
+between the same two bodies, with more torque than it can need. There is no joint that holds a velocity across a blade,
+and rolling is contact with friction; both are refused.
+
+What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
+velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
+So a state is read at its instant, and the motion is that of a semi-implicit Euler method of step h.
+
+Joints are springs of 60 Hz with a damping ratio of 2, solved implicitly (b2MakeSoft in its solver.h): frequency w and
+ratio z give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push
+is taken back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower,
+while what opens it falls with h too. So no order can be promised. pyb2d3 sets the frequency of contacts, which is
+another; that of joints stays as shipped, and sub-steps are the only lever.
+
+Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
+speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and
+3e-5 rad, so both are worked out here; whole turns, which a rotation does not keep, are taken back. Nothing is printed,
+and no threads are started unless a pool is given.
+"""
+
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# (the package is an extra, and its bindings are compiled.)
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
+from engines.motions import over_three
+from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_own_models, unwrapped
+from reference.joints import Drive, Joint, Pin, Slot
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reference.validation import Count, Name, Positive, validated
+
+STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
+SUBSTEP_COST = 0.8e-6  # s
+ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
+FASTEST = 1e6  # m/s, which the engine would cut to 400
+
+
+@dataclass(frozen=True)
+class Box2D(Optional):
+    """An engine in the sense of `engines.Engine`.
+
+    `substeps` in a step, 4 as in the engine's manual.
+    """
+
+    extra: ClassVar[str] = "box2d"
+    modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
+    distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
+
+    variant: Name
+    substeps: Count = 4
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """None: see the module."""
+        return Unpromised("a joint of box2d closes its gap the more slowly the shorter the sub-step is")
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]."""
+        return (STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Every joint is the engine's own."""
+        return "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        refuse_own_models(mechanism, "box2d")
+        self.require()
+        world = _World(mechanism)
+        return SingleRun(
+            mechanism, dt, world.size, lambda samples, every: world.record(dt, self.substeps, samples, every)
+        )
+
+
+class _World:
+    """The engine's objects for one mechanism."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        import pyb2d3
+
+        self.mechanism, self.box2d = mechanism, pyb2d3
+        self.drives = {
+            frozenset((joint.first, joint.second)): joint for joint in mechanism.joints if isinstance(joint, Drive)
+        }
+        self._refuse()
+        self.world = pyb2d3.World(gravity=mechanism.gravity, maximum_linear_speed=FASTEST)
+        self.world.continuous_enabled = False
+        self.ground = self.world.create_static_body(position=(0.0, 0.0))
+        self.bodies = [self._body(body) for body in mechanism.bodies]
+        self.joints = [self._join(joint) for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+        count, rows = len(self.bodies), mechanism.row_count
+        self.size = Size(count, 3 * count, rows, rows)
+
+    def _refuse(self) -> None:
+        """Raises Unsupported for what the engine has no joint for."""
+        joints = self.mechanism.joints
+        held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
+        drives = [joint for joint in joints if isinstance(joint, Drive)]
+        for joint in joints:
+            if not isinstance(joint, Pin | Slot | Drive):
+                what = (
+                    "a disc rolls by contact and friction"
+                    if isinstance(joint, Roll)
+                    else "nothing stops a slip across a line"
+                )
+                raise Unsupported(f"joint {joint.name!r}: in box2d {what}, there is no joint for it")
+        for drive in drives:
+            if frozenset((drive.first, drive.second)) not in held:
+                raise Unsupported(
+                    f"drive {drive.name!r}: a motor of box2d belongs to a joint between the same two bodies"
+                )
+        if len(self.drives) < len(drives):
+            raise Unsupported("two drives between the same two bodies: a joint of box2d has one motor")
+
+    def _body(self, body: Any) -> Any:
+        x, y, angle = body.pose
+        vx, vy, rate = body.twist
+        rotation = self.box2d.Rot()
+        rotation.c, rotation.s = math.cos(angle), math.sin(angle)
+        made = self.world.create_dynamic_body(
+            position=(x, y),
+            rotation=rotation,
+            linear_velocity=(vx, vy),
+            angular_velocity=rate,
+            enable_sleep=False,
+        )
+        masses = self.box2d.MassData()
+        masses.mass, masses.center, masses.rotational_inertia = body.mass, (0.0, 0.0), body.inertia
+        made.mass_data = masses
+        return made
+
+    def _named(self, name: str | None) -> Any:
+        return self.ground if name is None else self.bodies[self.mechanism.body_index(name)]
+
+    def _join(self, joint: Pin | Slot) -> Any:
+        pair = frozenset((joint.first, joint.second))
+        drive = self.drives.pop(pair, None)  # of two joints between two bodies the first has the motor
+        ends = {
+            "body_a": self._named(joint.first),
+            "body_b": self._named(joint.second),
+            "local_anchor_a": joint.first_point,
+            "local_anchor_b": joint.second_point,
+        }
+        motor: dict[str, Any] = {}
+        if drive is not None:
+            rate = drive.turning_rate if drive.second == joint.second else -drive.turning_rate
+            motor = {"enable_motor": True, "motor_speed": rate, "max_motor_torque": ENOUGH}
+        if isinstance(joint, Pin):
+            return self.world.create_revolute_joint(**ends, **motor)
+        line = (math.cos(joint.line_angle), math.sin(joint.line_angle))
+        if drive is not None and drive.turning_rate == 0:
+            offset = drive.offset if drive.second == joint.second else -drive.offset
+            angle = math.remainder(offset, 2 * math.pi)
+            return self.world.create_prismatic_joint(**ends, local_axis_a=line, reference_angle=angle)
+        return self.world.create_wheel_joint(**ends, **motor, local_axis_a=line, enable_spring=False)
+
+    def record(self, dt: float, substeps: int, samples: int, every: int) -> Recorded:
+        world, bodies = self.world, self.bodies
+        pose, twist, before = np.full((3, samples + 1, len(bodies), 3), np.nan)
+        step = world.step
+        begin = time.process_time()
+        for sample in range(samples + 1):
+            if sample:
+                for _ in range(every - 1):
+                    step(dt, substeps)
+                for body, place in zip(bodies, before[sample], strict=True):
+                    velocity = body.linear_velocity
+                    place[:] = velocity.x, velocity.y, body.angular_velocity
+                step(dt, substeps)
+            for body, place, speed in zip(bodies, pose[sample], twist[sample], strict=True):
+                at, turned, velocity = body.position, body.rotation, body.linear_velocity
+                place[:] = at.x, at.y, math.atan2(turned.s, turned.c)
+                speed[:] = velocity.x, velocity.y, body.angular_velocity
+        stepping = time.process_time() - begin
+        start = self.mechanism.pose[:, 2]
+        pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], start, dt * every)
+        masses = [body.mass_data for body in bodies]
+        inertias = np.array([(each.mass, each.mass, each.rotational_inertia) for each in masses])
+        gravity = np.array([world.gravity.x, world.gravity.y])
+        return Recorded(pose, twist, differences(twist, before, dt), stepping, inertias, gravity)
+
+
+DEFAULT = Box2D("default")
+TUNED = Box2D("tuned", substeps=32)
+VARIANTS = (DEFAULT, TUNED)

@@ -1,0 +1,255 @@
+"""Exudyn under test: planar rigid bodies in maximal coordinates, joints as algebraic equations, implicit integrators.
+
+A body is a NodeRigidBody2D with an ObjectRigidBody2D, a Pin an ObjectJointRevolute2D, a Slot an ObjectJointPrismatic2D
+that leaves the rotation free, a Drive an ObjectConnectorCoordinate between the two rotations at velocity level. A Skate
+is the engine's own rolling disc (ObjectJointRollingDisc), of which only the velocity along the axle is held: a real
+velocity constraint, as users build wheels with it. Its disc stands on edge in the plane, so the radius does not matter.
+A Roll of a circle on a straight line is the same joint lying in the plane, with the rolling velocity and the velocity
+along the line's normal held; the engine has no contact of other shapes that is an equation.
+
+The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" holds them in positions (index 3),
+"TrapezoidalIndex2" in velocities (index 2); both are of second order. The engine's explicit integrators take only
+equations between single coordinates and the ground, which no joint of ours is.
+
+Accelerations are the engine's own, so that reactions belong to the sampled instant. Both integrators carry them from
+step to step, and those that the engine computes for the start know nothing of constraints between velocities (skates,
+rolling, drives). This error leaves poses and twists alone. In the accelerations GeneralizedAlpha takes about a tenth of
+it back every step, the trapezoidal rule nothing. So as shipped, reactions are NaN where there are such constraints; the
+other variants give the engine consistent accelerations for the start, by its public settings.
+"""
+
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# (the package is an extra, and its bindings are compiled.)
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.extrapolated import Extrapolated
+from engines.lagrange.dynamics import Dynamics
+from engines.motions import is_prescribed, over_three
+from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_own_models
+from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reference.validation import Name, Positive, validated
+
+Integrator = Literal["GeneralizedAlpha", "TrapezoidalIndex2"]
+STEP_COST = 19e-6  # s, with three bodies
+AXIS = [0.0, 0.0, 1.0]  # out of the plane
+DISC = 0.1  # m: the radius of a skate's disc, which stands on edge
+
+
+@dataclass(frozen=True)
+class Exudyn(Optional):
+    """An engine in the sense of `engines.Engine`.
+
+    `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
+    radius of GeneralizedAlpha at infinite frequency, 0.9 as shipped (1 damps nothing). `consistent`: the start's
+    accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as sparse.
+    """
+
+    extra: ClassVar[str] = "exudyn"
+    modules: ClassVar[tuple[str, ...]] = ("exudyn",)
+    distributions: ClassVar[tuple[str, ...]] = ("exudyn",)
+
+    variant: Name
+    integrator: Integrator = "GeneralizedAlpha"
+    relative: Positive = 1e-8
+    absolute: Positive = 1e-10
+    damping: Positive = 0.9
+    consistent: bool = False
+    sparse: bool = False
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """Second, both; what is held as an equation is exact up to Newton's tolerance."""
+        velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
+        if self.integrator == "TrapezoidalIndex2":
+            return Promise(2, slip=EXACT)
+        return Promise(2) if velocities or is_prescribed(mechanism) else Promise(2, gap=EXACT)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]: the cube of many bodies where Newton's matrix is dense."""
+        size = over_three(mechanism)
+        if self.sparse:
+            return STEP_COST * size
+        return STEP_COST * size * max(1.0, size / 5) ** 2
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Every joint is the engine's own."""
+        return "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        refuse_own_models(mechanism, "exudyn")
+        self.require()
+        system = _System(mechanism)
+        return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(self, dt, samples, every))
+
+
+class _System:
+    """The engine's objects for one mechanism."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        import exudyn
+        from exudyn import itemInterface
+
+        self.mechanism, self.exudyn, self.items = mechanism, exudyn, itemInterface
+        self.container = exudyn.SystemContainer()  # owns the system, so it has to stay
+        self.system: Any = self.container.AddSystem()
+        self.ground = self.system.AddObject(itemInterface.ObjectGround())
+        self.point_ground = self.system.AddNode(itemInterface.NodePointGround())
+        self.nodes: dict[str, int] = {}
+        self.bodies: dict[str | None, int] = {None: self.ground}
+        for body in mechanism.bodies:
+            self._add(body)
+        equations = sum(self._join(joint) for joint in mechanism.joints)
+        kinds = exudyn.OutputVariableType
+        self.sensors = [
+            [self._sensor(node, kind) for node in self.nodes.values()]
+            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
+        ]
+        self.system.Assemble()
+        count = len(mechanism.bodies)
+        self.size = Size(count, 3 * count, mechanism.row_count, equations)
+
+    def _add(self, body: Any) -> None:
+        items = self.items
+        node = self.system.AddNode(
+            items.NodeRigidBody2D(referenceCoordinates=list(body.pose), initialVelocities=list(body.twist))
+        )
+        made = self.system.AddObject(items.ObjectRigidBody2D(mass=body.mass, inertia=body.inertia, nodeNumber=node))
+        marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=made))
+        pull = [*self.mechanism.gravity, 0.0]
+        self.system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=pull))
+        self.nodes[body.name], self.bodies[body.name] = node, made
+
+    def _sensor(self, node: int, kind: Any) -> int:
+        return self.system.AddSensor(
+            self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind)
+        )
+
+    def _point(self, name: str | None, point: tuple[float, float], rigid: bool = False) -> int:
+        marker = self.items.MarkerBodyRigid if rigid else self.items.MarkerBodyPosition
+        return self.system.AddMarker(marker(bodyNumber=self.bodies[name], localPosition=[*point, 0.0]))
+
+    def _rotation(self, name: str | None) -> int:
+        node, coordinate = (self.point_ground, 0) if name is None else (self.nodes[name], 2)
+        return self.system.AddMarker(self.items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+    def _join(self, joint: Joint) -> int:
+        """Add what stands for a joint; how many equations it has."""
+        items, system = self.items, self.system
+        match joint:
+            case Pin():
+                ends = [self._point(joint.first, joint.first_point), self._point(joint.second, joint.second_point)]
+                system.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))
+                return 2
+            case Slot():
+                # The line belongs to the joint's second marker.
+                ends = [
+                    self._point(joint.second, joint.second_point, rigid=True),
+                    self._point(joint.first, joint.first_point, rigid=True),
+                ]
+                normal = [-math.sin(joint.line_angle), math.cos(joint.line_angle), 0.0]
+                system.AddObject(
+                    items.ObjectJointPrismatic2D(markerNumbers=ends, normalMarker1=normal, constrainRotation=False)
+                )
+                return 2
+            case Drive():
+                ends = [self._rotation(joint.first), self._rotation(joint.second)]
+                system.AddObject(
+                    items.ObjectConnectorCoordinate(markerNumbers=ends, offset=joint.turning_rate, velocityLevel=True)
+                )
+                return 1
+            case Skate():
+                ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, joint.second_point, True)]
+                axle = [-math.sin(joint.angle), math.cos(joint.angle), 0.0]
+                self._disc(ends, [1, 0, 0], DISC, axle, AXIS)
+                return 3
+            case Roll():
+                return self._roll(joint)
+            case _:
+                raise Unsupported(f"joint {joint.name!r}: exudyn's adapter knows no {type(joint).__name__.lower()}")
+
+    def _disc(self, ends: list[int], held: list[int], radius: float, axle: list[float], normal: list[float]) -> None:
+        """A disc of the second marker on the plane of the first; held: along the axle, forwards, along the normal."""
+        self.system.AddObject(
+            self.items.ObjectJointRollingDisc(
+                markerNumbers=ends, constrainedAxes=held, discRadius=radius, discAxis=axle, planeNormal=normal
+            )
+        )
+
+    def _roll(self, joint: Roll) -> int:
+        ground, body, arc = joint.rolling.ground, joint.rolling.body, joint.rolling.body_arc
+        low, high = body.curvature_range
+        if ground.curvature_range != (0.0, 0.0) or not 0 < low == high:
+            raise Unsupported(f"joint {joint.name!r}: exudyn's rolling joint is a disc on a plane, and this is another")
+        # The material lies to the left of a boundary: the disc rolls on the line's other side, its centre on its left.
+        heading, inward = float(ground.angle(joint.rolling.ground_arc)), float(body.angle(arc)) + math.pi / 2
+        (x, y), radius = joint.second_point, 1 / low
+        centre = (x + radius * math.cos(inward), y + radius * math.sin(inward))
+        ends = [self._point(joint.first, joint.first_point, True), self._point(joint.second, centre, True)]
+        self._disc(ends, [0, 1, 1], radius, AXIS, [math.sin(heading), -math.cos(heading), 0.0])
+        return 3
+
+    def record(self, engine: Exudyn, dt: float, samples: int, every: int) -> Recorded:
+        exudyn = self.exudyn
+        settings = exudyn.SimulationSettings()
+        steps = settings.timeIntegration
+        steps.endTime, steps.numberOfSteps = samples * every * dt, samples * every
+        steps.adaptiveStep = False
+        steps.newton.relativeTolerance, steps.newton.absoluteTolerance = engine.relative, engine.absolute
+        if engine.sparse:
+            settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
+        steps.generalizedAlpha.spectralRadius = engine.damping
+        velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in self.mechanism.joints)
+        if engine.consistent:
+            steps.generalizedAlpha.computeInitialAccelerations = False
+            start = Dynamics(self.mechanism, 0.0).acceleration(self.mechanism.pose, self.mechanism.twist, 0.0)
+            self.system.systemData.SetODE2Coordinates_tt(
+                start.reshape(-1).tolist(), configuration=exudyn.ConfigurationType.Initial
+            )
+        settings.solution.sensors.writePeriod = every * dt
+        settings.solution.file.write = False
+        warnings: list[str] = []
+        begin = time.process_time()
+        try:
+            with quiet():
+                self.system.SolveDynamic(settings, solverType=getattr(exudyn.DynamicSolverType, engine.integrator))
+        except Exception:  # its own report of a Newton iteration that failed is pages long
+            warnings.append("exudyn: the solver gave up before the end, as Newton's method did not converge")
+        stepping = time.process_time() - begin
+        count = len(self.mechanism.bodies)
+        states, last = np.full((3, samples + 1, count, 3), np.nan), 0
+        for kind, sensors in enumerate(self.sensors):
+            for body, sensor in enumerate(sensors):
+                told = np.array(self.system.GetSensorStoredData(sensor)).reshape(-1, 4)[: samples + 1, 1:]
+                states[kind, : len(told), body], last = told, len(told) - 1
+        states[0] += self.mechanism.pose  # coordinates count from where a node stands at the start
+        if warnings:
+            states[:, max(1, last) :] = np.nan
+        if velocities and not engine.consistent:
+            states[2] = np.nan
+            warnings.append("ours: reactions are not told, as the start's accelerations ignore velocity constraints")
+        mechanism = self.mechanism
+        pose, twist, acceleration = states
+        return Recorded(
+            pose, twist, acceleration, stepping, mechanism.inertias, np.array(mechanism.gravity), tuple(warnings)
+        )
+
+
+DEFAULT = Exudyn("default")
+TUNED = Exudyn("tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-12, consistent=True, sparse=True)
+EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(2, 4, 6))
+VARIANTS = (DEFAULT, TUNED, EXTENDED)

@@ -1,0 +1,152 @@
+"""MJX under test: MuJoCo's model, stepped by JAX instead of C, here on the processor and in double precision.
+
+The model is the MjModel that our MuJoCo adapter compiles with the same settings, put on the device as it is, so that
+what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C, skates and rolling
+contacts among it, has no place in a compiled program and is refused.
+
+MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. A loop is then pulled off its
+path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force.
+
+A program is compiled for each model, 6 to 12 s for one with a loop: that is building and not stepping. JAX keeps it for
+models of the same structure. It is told to use the processor alone, one thread, and doubles, before it is imported.
+
+The package mujoco-mjx requires the package mujoco, whose files overwrite those of mujoco-core by an older release. So
+the extra installs what it needs, and it has to be installed by itself: pip install --no-deps mujoco-mjx.
+"""
+
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# (the package is an extra, and MuJoCo's bindings are compiled.)
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.contract import EXACT, Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.mujoco.engine import MuJoCo
+from engines.mujoco.methods import DEFAULT as C_DEFAULT
+from engines.mujoco.methods import TUNED as C_TUNED
+from engines.mujoco.model import Model
+from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
+from engines.tree import spanning_tree
+from reference.joints import Joint, Skate
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reference.validation import Name, Positive, validated
+
+Array = NDArray[np.float64]
+EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
+NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step"
+
+
+@dataclass(frozen=True)
+class Mjx(Optional):
+    """An engine in the sense of `engines.Engine`; `settings`: the MuJoCo method whose model and options are taken."""
+
+    extra: ClassVar[str] = "mjx"
+    modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
+    distributions: ClassVar[tuple[str, ...]] = ("mujoco-mjx", "jax", "mujoco-core")
+    apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
+    building: ClassVar[float] = 20.0
+
+    variant: Name
+    settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
+
+    @property
+    def family(self) -> str:
+        return "mjx"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """The integrator's where there is no loop."""
+        tree = spanning_tree(mechanism)
+        if tree.loops:
+            return Unpromised("MJX leaves out the velocity term of loops, which no step makes smaller")
+        if tree.geared:
+            return self.settings.order(mechanism)
+        if turns_steadily(mechanism) or is_prescribed(mechanism):
+            return Promise(EXACT)
+        return Promise(4 if self.settings.integrator == "RK4" else 1, gap=EXACT, slip=EXACT)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s], once compiled."""
+        return EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """As in MuJoCo."""
+        return self.settings.holder(joint, mechanism)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """MuJoCo's, without the term of velocities."""
+        soft = self.settings.softness(mechanism, dt)
+        return None if soft is None else replace(soft, complete=False)
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A model for steps of dt [s], not yet compiled; raises Unsupported, and ValueError for a bad dt."""
+        for joint in mechanism.joints:
+            if isinstance(joint, Skate | Roll):
+                what = f"a {type(joint).__name__.lower()} is held by contacts or callbacks of MuJoCo's C code"
+                raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
+        self.require()
+        model = self.settings.model(mechanism, dt)
+        hooks = model.hooks
+        if any((hooks.control, hooks.passive, hooks.before, hooks.start, hooks.read)) or model.written:
+            raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
+        data = model.start()
+        size = Size(model.compiled.nbody - 1, model.compiled.nq, model.rows + len(model.driven), data.nefc)
+        return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, data, samples, every))
+
+
+@cache
+def _programs() -> tuple[Any, Any, Any]:
+    """(mjx, steps(model, data, count), forward(model, data)); JAX is imported here and nowhere else."""
+    os.environ.setdefault("JAX_PLATFORMS", "cpu")
+    os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
+    with quiet():  # it tells that another back end is not installed
+        import jax
+
+        jax.config.update("jax_enable_x64", True)
+        from mujoco import mjx
+
+    def steps(model: Any, data: Any, count: Any) -> Any:
+        return jax.lax.fori_loop(0, count, lambda _, now: mjx.step(model, now), data)
+
+    return mjx, jax.jit(steps), jax.jit(mjx.forward)
+
+
+def _record(model: Model, data: Any, samples: int, every: int) -> Recorded:
+    mjx, steps, forward = _programs()
+    try:
+        held, now = mjx.put_model(model.compiled), mjx.put_data(model.compiled, data)
+    except NotImplementedError as reason:
+        raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
+    steps(held, now, 0).qpos.block_until_ready()  # compiles
+    position, velocity, acceleration = np.full((3, samples + 1, model.compiled.nq), np.nan)
+    states = [now]
+    begin = time.process_time()
+    for sample in range(samples + 1):
+        if sample:
+            now = steps(held, now, every)
+            states.append(now)
+        position[sample], velocity[sample] = np.asarray(now.qpos), np.asarray(now.qvel)
+    stepping = time.process_time() - begin
+    for sample, each in enumerate(states):
+        acceleration[sample] = np.asarray(forward(held, each).qacc)
+    motion = tree_states(model.tree, *(each[:, model.address] for each in (position, velocity, acceleration)))
+    warnings = (NO_VELOCITY_TERM,) if model.tree.loops else ()
+    return Recorded(*motion, stepping, *model.loads(), warnings)
+
+
+DEFAULT = Mjx("default")
+TUNED = Mjx("tuned", C_TUNED)
+VARIANTS = (DEFAULT, TUNED)

@@ -1,0 +1,221 @@
+"""Pinocchio under test: a tree in reduced coordinates whose loops are closed by exact contact constraints.
+
+Pinocchio (the package is called `pin`) computes accelerations and integrates nothing: the integrators here are ours,
+semi-implicit Euler and the classical Runge-Kutta method of fourth order, as its own examples are written.
+
+The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, and for a body that hangs on
+nothing two prismatic ones and a revolute one. A Pin that closes a loop is a RigidConstraintModel of the type CONTACT_3D
+whose corrector gains stay zero, as shipped: `constraintDynamics` then holds its acceleration exactly, and what opens is
+the integrator's error. Its third row, out of the plane, is empty; the proximal solver takes care of that. A Drive has
+no counterpart: the torque that keeps its rate is worked out in every evaluation from the engine's own answer to a unit
+torque. Accelerations are the engine's at the sampled instant, so reactions are too. A Slot that closes a loop, a Skate
+and a Roll would need a constraint of a kind that the engine does not have.
+"""
+
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# (the package is an extra, and its bindings are compiled.)
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.contract import EXACT, Holder, Promise, Size, Unpromised
+from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.single_run import Optional, Recorded, SingleRun, refuse_own_models, tree_states
+from engines.tree import Link, Tree, refuse_all_but_pins_of_loops, spanning_tree, world_offset
+from reference.joints import Drive, Joint, Pin, Slot, Weld
+from reference.mechanism import Mechanism
+from reference.validation import Name, Positive, validated
+
+Array = NDArray[np.float64]
+Integrator = Literal["euler", "rk4"]
+EVALUATION_COST = 6e-6  # s, with three bodies
+# Of the proximal solver: its regularisation, when it may stop, and after how many iterations it has to. A loop of four
+# bars takes two; the regularisation has to be far above rounding, since the row out of the plane is empty.
+REGULARISATION, ACCURACY, ITERATIONS = 1e-10, 1e-14, 20
+
+
+@dataclass(frozen=True)
+class Pinocchio(Optional):
+    """An engine in the sense of `engines.Engine`; `integrator`: "euler" (semi-implicit, order 1) or "rk4" (order 4)."""
+
+    extra: ClassVar[str] = "pinocchio"
+    modules: ClassVar[tuple[str, ...]] = ("pinocchio",)
+    distributions: ClassVar[tuple[str, ...]] = ("pin",)
+
+    variant: Name
+    integrator: Integrator = "euler"
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """The integrator's; what the tree holds is exact."""
+        tree = spanning_tree(mechanism)
+        order = 4 if self.integrator == "rk4" else 1
+        if tree.loops:
+            return Promise(order)
+        if turns_steadily(mechanism) or is_prescribed(mechanism):
+            return Promise(EXACT)
+        return Promise(order, gap=EXACT, slip=EXACT)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]: its evaluations, and one more for each drive."""
+        drives = sum(isinstance(joint, Drive) for joint in mechanism.joints)
+        stages = 4 if self.integrator == "rk4" else 1
+        return EVALUATION_COST * stages * (1 + drives) * over_three(mechanism)
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Pins and slots are the engine's; the torque of a drive is worked out by our code."""
+        return "ours" if isinstance(joint, Drive) and joint not in spanning_tree(mechanism).kept else "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        refuse_own_models(mechanism, "pinocchio")
+        tree = spanning_tree(mechanism)
+        refuse_all_but_pins_of_loops(mechanism, tree, "pinocchio")
+        self.require()
+        model = _Model(mechanism, tree)
+        return SingleRun(
+            mechanism, dt, model.size, lambda samples, every: model.record(self.integrator, dt, samples, every)
+        )
+
+
+class _Model:
+    """The engine's objects for one mechanism."""
+
+    def __init__(self, mechanism: Mechanism, tree: Tree) -> None:
+        import pinocchio
+
+        self.pin, self.mechanism, self.tree = pinocchio, mechanism, tree
+        self.model = pinocchio.Model()
+        self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
+        self.joints: dict[int | None, int] = {None: 0}  # the last joint of each body; the ground is the universe
+        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # of that joint, from the centre of mass
+        self.address: list[int] = [0] * tree.coordinates  # where each tree coordinate stands in the engine's vectors
+        self._add_children(None)
+        self.data = self.model.createData()
+        self.loops = pinocchio.StdVec_RigidConstraintModel()
+        self.loop_data = pinocchio.StdVec_RigidConstraintData()
+        for joint in tree.loops:
+            self.loops.append(self._loop(joint))
+            self.loop_data.append(self.loops[-1].createData())
+        pinocchio.initConstraintDynamics(self.model, self.data, self.loops, self.loop_data)
+        self.proximal = pinocchio.ProximalSettings(ACCURACY, REGULARISATION, ITERATIONS)
+        drives = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint not in tree.kept]
+        self.driven = np.zeros((len(drives), tree.coordinates))
+        for row, drive in zip(self.driven, drives, strict=True):
+            for column, sign in tree.turning(drive.first, drive.second).items():
+                row[self.address[column]] = sign
+        loops = len(self.loops)
+        self.size = Size(len(mechanism.bodies), tree.coordinates, 2 * loops + len(drives), 3 * loops)
+
+    def _placed(self, offset: Any) -> Any:
+        return self.pin.SE3(np.eye(3), np.array([offset[0], offset[1], 0.0]))
+
+    def _add_children(self, parent: int | None) -> None:
+        """Depth first: the engine's sparse factorisation of loops takes for granted that subtrees are numbered so."""
+        for link in self.tree.links:
+            if link.parent == parent:
+                self._add(link)
+                self._add_children(link.body)
+
+    def _add(self, link: Link) -> None:
+        pin, body = self.pin, self.mechanism.bodies[link.body]
+        at = body.pose[:2] if link.kind == "free" else np.array(link.arm) - self.anchors[link.parent]
+        kinds: list[Any] = []
+        if link.kind == "free":
+            kinds = [pin.JointModelPX(), pin.JointModelPY()]
+        elif link.kind == "slot":
+            kinds = [pin.JointModelPrismaticUnaligned(np.array([*link.direction, 0.0]))]
+        kinds += [pin.JointModelRZ()] if link.turns else []
+        joint = self.joints[link.parent]
+        for number, (kind, column) in enumerate(zip(kinds, link.columns, strict=True)):
+            self.address[column] = self.model.nv
+            joint = self.model.addJoint(joint, kind, self._placed(at), f"body {link.body} joint {number}")
+            at = (0.0, 0.0)
+        # Out of the plane nothing turns, but an inertia has to be positive there too.
+        inertia = pin.Inertia(body.mass, -np.array([*link.anchor, 0.0]), body.inertia * np.eye(3))
+        self.model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
+        self.joints[link.body], self.anchors[link.body] = joint, np.array(link.anchor)
+
+    def _loop(self, joint: Pin | Slot | Weld) -> Any:
+        ends: list[Any] = []
+        for name, point in ((joint.first, joint.first_point), (joint.second, joint.second_point)):
+            body = None if name is None else self.mechanism.body_index(name)
+            offset = np.array(world_offset(self.mechanism, name, point)) - self.anchors[body]
+            ends += [self.joints[body], self._placed(offset)]
+        kind = self.pin.ContactType.CONTACT_3D
+        return self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
+
+    def _answer(self, position: Array, velocity: Array, torque: Array) -> Array:
+        found = self.pin.constraintDynamics(
+            self.model, self.data, position, velocity, torque, self.loops, self.loop_data, self.proximal
+        )
+        return np.array(found)
+
+    def acceleration(self, position: Array, velocity: Array) -> Array:
+        """Of the tree coordinates, drives kept at their rates."""
+        none = np.zeros(self.tree.coordinates)
+        free = self._answer(position, velocity, none)
+        if not len(self.driven):
+            return free
+        answers = np.array([self._answer(position, velocity, row) - free for row in self.driven])
+        if not np.isfinite(answers).all():
+            return np.full_like(free, np.nan)
+        torques, *_ = np.linalg.lstsq(self.driven @ answers.T, -self.driven @ free, rcond=None)
+        return free + torques @ answers
+
+    def record(self, integrator: Integrator, dt: float, samples: int, every: int) -> Recorded:
+        tree = self.tree
+        shape = (samples + 1, tree.coordinates)
+        position, velocity, acceleration = np.full((3, *shape), np.nan)
+        q, v = np.zeros(tree.coordinates), np.zeros(tree.coordinates)
+        v[self.address] = tree.start_rates()
+        position[0], velocity[0] = q, v
+        step = self._runge_kutta if integrator == "rk4" else self._euler
+        begin = time.process_time()
+        with np.errstate(all="ignore"):
+            for sample in range(1, samples + 1):
+                for _ in range(every):
+                    q, v = step(q, v, dt)
+                if not (np.isfinite(q).all() and np.isfinite(v).all()):
+                    break
+                position[sample], velocity[sample] = q, v
+        stepping = time.process_time() - begin
+        for sample in range(samples + 1):
+            if np.isfinite(velocity[sample]).all():
+                acceleration[sample] = self.acceleration(position[sample], velocity[sample])
+        states = tree_states(tree, *(each[:, self.address] for each in (position, velocity, acceleration)))
+        return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
+
+    def _inertias(self) -> Array:
+        """What the model holds, back in the order of bodies."""
+        held = [self.model.inertias[self.joints[body]] for body in range(len(self.mechanism.bodies))]
+        return np.array([(each.mass, each.mass, each.inertia[2, 2]) for each in held])
+
+    def _euler(self, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
+        v = v + dt * self.acceleration(q, v)
+        return q + dt * v, v
+
+    def _runge_kutta(self, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
+        first = self.acceleration(q, v)
+        half = dt / 2
+        v2 = v + half * first
+        second = self.acceleration(q + half * v, v2)
+        v3 = v + half * second
+        third = self.acceleration(q + half * v2, v3)
+        v4 = v + dt * third
+        fourth = self.acceleration(q + dt * v3, v4)
+        return q + dt / 6 * (v + 2 * v2 + 2 * v3 + v4), v + dt / 6 * (first + 2 * second + 2 * third + fourth)
+
+
+DEFAULT = Pinocchio("default")
+TUNED = Pinocchio("tuned", "rk4")
+VARIANTS = (DEFAULT, TUNED)

@@ -1,0 +1,177 @@
+"""What every engine that is an extra shares: how its package is found, and a run that is called once and read out."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.util import find_spec
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.contract import Size, Softness, Unsupported, refuse_forces
+from engines.read_reactions import reactions
+from engines.tree import Tree
+from reference.joints import Gear, Rod, Weld
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reference.validation import Count, Valid, validated
+
+Array = NDArray[np.float64]
+
+
+@cache
+def _is_found(module: str) -> bool:
+    return find_spec(module) is not None
+
+
+class Optional(Valid):
+    """The base of an engine whose package is an extra of this project: a value even where the package is missing.
+
+    `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
+    belong to; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
+    takes to build [s], where that is no matter of milliseconds. A package is imported when the
+    first mechanism is built, because some take seconds.
+    """
+
+    extra: ClassVar[str]
+    modules: ClassVar[tuple[str, ...]]
+    distributions: ClassVar[tuple[str, ...]]
+    apart: ClassVar[str] = ""
+    building: ClassVar[float] = 0.0
+
+    @property
+    def name(self) -> str:
+        return self.extra
+
+    @property
+    def family(self) -> str:
+        return self.extra
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return self.distributions
+
+    @property
+    def missing(self) -> str:
+        """One sentence that says which extra installs it; empty where it is installed."""
+        absent = [module for module in self.modules if not _is_found(module)]
+        if not absent:
+            return ""
+        then = f", then {self.apart}" if self.apart else ""
+        return f"{self.extra} needs the package {absent[0]}: pip install -e '.[{self.extra}]'{then}"
+
+    def require(self) -> None:
+        """Raises Unsupported with the sentence where the package is missing."""
+        if self.missing:
+            raise Unsupported(self.missing)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """None, unless an engine says otherwise: nothing is declared that the judge could follow."""
+        return None
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """What native code prints in here goes nowhere: file descriptors 1 and 2, which Python's streams don't see."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    with tempfile.TemporaryFile() as nowhere:
+        kept = [os.dup(number) for number in (1, 2)]
+        try:
+            for number in (1, 2):
+                os.dup2(nowhere.fileno(), number)
+            yield
+        finally:
+            for number, copy in zip((1, 2), kept, strict=True):
+                os.dup2(copy, number)
+                os.close(copy)
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What an engine held at the samples, in the mechanism's order and frame; NaN where it could not go on.
+
+    `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are those of the engine's own objects.
+    """
+
+    pose: Array  # (samples + 1, bodies, 3)
+    twist: Array
+    acceleration: Array  # NaN where it can't be told
+    stepping: float  # s
+    inertias: Array
+    gravity: Array
+    warnings: tuple[str, ...] = ()
+
+
+def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+    """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
+    with np.errstate(all="ignore"):
+        return tree.motion(position, velocity, acceleration)
+
+
+def differences(twist: Array, before: Array, dt: float) -> Array:
+    """Accelerations (samples + 1, bodies, 3) as changes of velocity over the last step; NaN at t = 0."""
+    out = np.full_like(twist, np.nan)
+    with np.errstate(all="ignore"):
+        out[1:] = (twist[1:] - before[1:]) / dt
+    return out
+
+
+def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
+    """Angles (times, bodies) that an engine keeps within a turn, each whole turn taken back by what rates predict.
+
+    The prediction is the trapezoidal rule between samples, so it is right while alpha spacing^2 / 12 is below pi.
+    """
+    out = angle.copy()
+    out[0] = start
+    with np.errstate(all="ignore"):
+        for sample in range(1, len(out)):
+            expected = out[sample - 1] + (rate[sample - 1] + rate[sample]) / 2 * spacing
+            out[sample] += 2 * np.pi * np.round((expected - out[sample]) / (2 * np.pi))
+    return out
+
+
+def refuse_own_models(mechanism: Mechanism, engine: str) -> None:
+    """Raise Unsupported for rods, gears, welds and force elements: only users' own models have them."""
+    refuse_forces(mechanism, engine)
+    for joint in mechanism.joints:
+        if isinstance(joint, Rod | Gear | Weld):
+            kind = type(joint).__name__.lower()
+            raise Unsupported(f"joint {joint.name!r} is a {kind}; the adapter of {engine} knows pins, slots and drives")
+
+
+@dataclass
+class SingleRun:
+    """A model, ready to be stepped once: `record(samples, every)` steps it. See `engines.Run`."""
+
+    mechanism: Mechanism
+    dt: float  # s
+    size: Size
+    record: Callable[[int, int], Recorded]
+    _over: bool = field(default=False, init=False)
+
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
+        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        self.mechanism.require_room(samples)
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+        found = self.record(samples, every)
+        pose, twist = found.pose.copy(), found.twist.copy()
+        # Single precision rounds the start, which is the mechanism's and not the engine's.
+        pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
+        sound = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
+        lost = int(np.argmin(sound)) if not sound.all() else samples + 1
+        acceleration = found.acceleration.copy()
+        pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
+        reaction = reactions(self.mechanism, pose, twist, acceleration, found.inertias, found.gravity)
+        t = np.arange(samples + 1, dtype=np.float64) * (every * self.dt)
+        return Trajectory(t, pose, twist, reaction, found.stepping, found.warnings)

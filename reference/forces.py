@@ -1,0 +1,192 @@
+"""The force elements that act besides joints and gravity: springs, dampers, constant forces and torques.
+
+A closed vocabulary, like the joints: engines `match` on it. An element has `name`; `first` and `second`, names of
+bodies or None for the ground; for poses and twists of the two bodies (..., 3), the ground's zero,
+`on(first, second, first_twist, second_twist)`, the generalised force (..., 6) on the first body's x, y, angle and then
+the second's [N, N, N m]; and `potential(first, second)` (...) [J], whose negative derivative by the poses that is,
+unless the element `dissipates`. All are analytic, so a complex step passes through them. As with joints, what acts on
+the second body acts in the opposite direction on the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.distance import between, distance, length_of
+from reference.plane import from_body
+from reference.validation import Name, NonNegative, Positive, Valid
+
+Vector = tuple[float, float]
+AnyArray = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Spring(Valid):
+    """A linear massless spring between a point of each body: it pulls by stiffness (distance - rest length).
+
+    stiffness [N/m]; rest_length [m], which may be zero; points [m] are in the bodies' own frames, from the centre of
+    mass, on the ground (None) world coordinates. Shorter than its rest length it pushes.
+    """
+
+    dissipates: ClassVar[bool] = False
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    first_point: Vector
+    second_point: Vector
+    stiffness: Positive
+    rest_length: NonNegative = 0.0
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]; NaN where the points coincide, unless the rest length is zero."""
+        apart, rows = between(first, second, self.first_point, self.second_point)
+        rest = np.asarray(self.rest_length)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            stretched = 1 - np.where(rest == 0, 0.0, rest / np.where(rest == 0, 1.0, length_of(apart)))
+            pull = (np.asarray(self.stiffness) * stretched)[..., None]
+            return -pull * (apart[..., 0, None] * rows[..., 0, :] + apart[..., 1, None] * rows[..., 1, :])
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """stiffness (distance - rest length)^2 / 2 (...) [J]."""
+        apart, _ = between(first, second, self.first_point, self.second_point)
+        return 0.5 * np.asarray(self.stiffness) * (length_of(apart) - np.asarray(self.rest_length)) ** 2
+
+
+@dataclass(frozen=True)
+class Damper(Valid):
+    """A linear damper between a point of each body: damping times the rate at which their distance grows.
+
+    damping [N s/m]; points [m] as of a Spring. With a spring of the same points it is what engines call a damped one.
+    """
+
+    dissipates: ClassVar[bool] = True
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    first_point: Vector
+    second_point: Vector
+    damping: Positive
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]; NaN where the points coincide: it has no direction there."""
+        _, row = distance(first, second, self.first_point, self.second_point)
+        rate = np.sum(row[..., :3] * first_twist + row[..., 3:] * second_twist, axis=-1)
+        return -(np.asarray(self.damping) * rate)[..., None] * row
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """Zero (...) [J]."""
+        return np.zeros_like(first[..., 2] + second[..., 2])
+
+
+@dataclass(frozen=True)
+class TorsionSpring(Valid):
+    """A linear torsion spring between two bodies: stiffness times (relative angle - rest angle).
+
+    stiffness [N m/rad]; rest_angle [rad] of the second body against the first, the difference of the poses' angles, not
+    wrapped.
+    """
+
+    dissipates: ClassVar[bool] = False
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    stiffness: Positive
+    rest_angle: float = 0.0
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]: torques alone."""
+        twisted = second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
+        return _couple(-np.asarray(self.stiffness) * twisted)
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """stiffness (relative angle - rest angle)^2 / 2 (...) [J]."""
+        twisted = second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
+        return 0.5 * np.asarray(self.stiffness) * twisted**2
+
+
+@dataclass(frozen=True)
+class TorsionDamper(Valid):
+    """A linear torsion damper between two bodies: damping [N m s/rad] times their relative rate of turning."""
+
+    dissipates: ClassVar[bool] = True
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    damping: Positive
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]: torques alone."""
+        return _couple(-np.asarray(self.damping) * (second_twist[..., 2] - first_twist[..., 2]))
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """Zero (...) [J]."""
+        return np.zeros_like(first[..., 2] + second[..., 2])
+
+
+@dataclass(frozen=True)
+class Torque(Valid):
+    """A constant torque [N m] on the second body, and its opposite on the first."""
+
+    dissipates: ClassVar[bool] = False
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    torque: float
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]."""
+        return _couple(np.asarray(self.torque) + np.zeros_like(first[..., 2] + second[..., 2]))
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """Minus torque times relative angle (...) [J]: it grows less by the work that the torque does."""
+        return -np.asarray(self.torque) * (second[..., 2] - first[..., 2])
+
+
+@dataclass(frozen=True)
+class Force(Valid):
+    """A constant force (x, y) [N] in the world's directions, at a point of the second body.
+
+    second_point [m] is in the body's own frame, from its centre of mass. Nothing acts on a first body: `first` is
+    always the ground.
+    """
+
+    dissipates: ClassVar[bool] = False
+    first: ClassVar[None] = None
+
+    name: Name
+    second: Name
+    second_point: Vector
+    force: Vector
+
+    def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
+        """Generalised force (..., 6) [N, N, N m]; the first body's share is zero."""
+        arm_x, arm_y = from_body(second[..., 2], self.second_point)
+        x, y = np.moveaxis(np.asarray(self.force), -1, 0)
+        out = np.zeros((*arm_x.shape, 6), dtype=arm_x.dtype)
+        out[..., 3], out[..., 4], out[..., 5] = x, y, arm_x * y - arm_y * x
+        return out
+
+    def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """Minus force times place of the point (...) [J], zero at the world's origin."""
+        arm_x, arm_y = from_body(second[..., 2], self.second_point)
+        x, y = np.moveaxis(np.asarray(self.force), -1, 0)
+        return -(x * (second[..., 0] + arm_x) + y * (second[..., 1] + arm_y))
+
+
+ForceElement = Spring | Damper | TorsionSpring | TorsionDamper | Torque | Force
+
+
+def _couple(torque: AnyArray) -> AnyArray:
+    """The generalised force (..., 6) of a torque (...) [N m] on the second body and its opposite on the first."""
+    out = np.zeros((*torque.shape, 6), dtype=torque.dtype)
+    out[..., 2], out[..., 5] = -torque, torque
+    return out

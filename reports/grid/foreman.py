@@ -1,0 +1,174 @@
+"""Between a worker of a cluster and the processes that run cells: one such process, supervised, in a process beside it.
+
+A Dask worker is a process that may have no children of its own, and one that native code must not end. So each of its
+threads has a foreman: a plain process that reads chunks of items, runs them as `supervise` does, and writes the
+answers. It ends with the worker. The worker itself passes bytes on: it imports no engine.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from reports.grid.fingerprint import ROOT, versions_behind
+from reports.grid.supervisor import Crew, crew
+from reports.grid.worker import describe
+
+_own = threading.local()  # a worker with several threads runs as many chunks at a time
+
+
+@dataclass(frozen=True)
+class Request:
+    """A chunk: (key, pickled item) of every item, what is run of them, and the limits of `supervise` [s].
+
+    paths: where the client finds modules; on the same machine a file of its user is found there too.
+    """
+
+    function: bytes
+    items: tuple[tuple[str, bytes], ...]
+    limit: float
+    wall: float
+    paths: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why nothing of a chunk was run: an item can't be read, or would be run with other versions than the client's."""
+
+    reason: str
+    versions: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Answers:
+    """(index of the item, its result or Loss, note) of every item, as `supervise` tells them; `seconds` it all took."""
+
+    told: tuple[tuple[int, Any, str], ...]
+    seconds: float
+
+
+Reply = Answers | Refusal
+
+
+class Foreman:
+    """The process, as a worker sees it."""
+
+    def __init__(self, request: Request) -> None:
+        self.terms = (request.limit, request.wall, request.paths)
+        paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH", ""))))
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "reports.grid.foreman"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "PYTHONPATH": paths},
+        )
+        self._send(pickle.dumps(self.terms))
+
+    def answered(self, data: bytes) -> bytes:
+        """The pickled reply to a pickled request. Raises EOFError or OSError if the process has ended."""
+        self._send(data)
+        assert self._process.stdout is not None
+        return _read(self._process.stdout)
+
+    def end(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            with suppress(OSError):
+                if pipe is not None:
+                    pipe.close()
+
+    def _send(self, data: bytes) -> None:
+        assert self._process.stdin is not None
+        _write(self._process.stdin, data)
+
+
+def answered(data: bytes) -> bytes:
+    """What a Dask worker runs: a pickled Request in, a pickled Reply out, by the foreman of this thread.
+
+    Raises EOFError or OSError if the foreman ends meanwhile: the chunk is then run again somewhere.
+    """
+    request: Request = pickle.loads(data)
+    foreman: Foreman | None = getattr(_own, "foreman", None)
+    if foreman is not None and foreman.terms != (request.limit, request.wall, request.paths):
+        foreman.end()
+        foreman = None
+    try:
+        if foreman is None:
+            foreman = _own.foreman = Foreman(request)
+        return foreman.answered(data)
+    except (EOFError, OSError):
+        if foreman is not None:
+            foreman.end()
+        _own.foreman = None
+        raise
+
+
+def main() -> None:
+    """The process: answers requests until nobody asks any more."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends with the worker, and not before
+    requests, replies = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what somebody's module prints is no reply
+    parent = os.getppid()
+
+    def watch(running: list[Any]) -> None:
+        if os.getppid() != parent:
+            raise EOFError("the worker is gone")
+
+    with suppress(EOFError, OSError):
+        limit, wall, paths = pickle.loads(_read(requests))
+        sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
+        with crew(limit, 1, wall) as own:
+            while True:
+                _write(replies, pickle.dumps(reply(own, pickle.loads(_read(requests)), watch)))
+
+
+def reply(own: Crew, request: Request, watch: Callable[[list[Any]], None] | None = None) -> Reply:
+    """Run a chunk, unless an item's key would be another one here."""
+    items: list[Any] = []
+    for key, data in request.items:
+        try:
+            item = pickle.loads(data)
+        except Exception as error:
+            return Refusal(f"can't read an item: {describe(error)}", {})
+        vars(item).pop("key", None)  # it was made where the item comes from
+        if item.key != key:
+            return Refusal("", versions_behind(item))
+        items.append(item)
+    start = time.monotonic()
+    own.give(pickle.loads(request.function), items)
+    places = {id(item): index for index, item in enumerate(items)}
+    told = tuple((places[id(item)], result, note) for item, result, note in own.answers(watch))
+    return Answers(told, time.monotonic() - start)
+
+
+def _write(pipe: IO[bytes], data: bytes) -> None:
+    pipe.write(len(data).to_bytes(8, "big") + data)
+    pipe.flush()
+
+
+def _read(pipe: IO[bytes]) -> bytes:
+    """One message. Raises EOFError if there is none."""
+    head = pipe.read(8)
+    length = int.from_bytes(head, "big")
+    data = pipe.read(length) if len(head) == 8 else b""
+    if len(head) < 8 or len(data) < length:
+        raise EOFError("the pipe has ended")
+    return data
+
+
+if __name__ == "__main__":
+    # As the module of this name: what is unpickled here are its classes, not those of `__main__`.
+    from reports.grid import foreman
+
+    foreman.main()

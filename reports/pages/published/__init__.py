@@ -1,0 +1,1 @@
+"""Problems that others published, with answers that nobody here wrote."""

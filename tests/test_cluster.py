@@ -1,0 +1,244 @@
+"""Cells on a cluster: the same rows as the pool's, each once, whatever becomes of workers; none of other versions."""
+
+from __future__ import annotations
+
+import gc
+import os
+import pickle
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from engines.registry import VARIANTS
+from reference.four_bar.scenes import FreeFourBar
+from reports.grid import cluster as clusters
+from reports.grid.cells import Cell
+from reports.grid.cluster import cluster
+from reports.grid.ending import REFUSED, BadInput
+from reports.grid.foreman import Refusal, Request, reply
+from reports.grid.measure import TIMINGS
+from reports.grid.outcomes import Loss, Outcome
+from reports.grid.pool import run_cells
+from reports.grid.running import run_into
+from reports.grid.store import Store
+from reports.grid.supervisor import WorkersLost
+from reports.grid.tasks import Motion
+from tests.rough_toys import end_the_supervisor
+from tests.test_command_line import call, one_line
+from tests.toys import Disc, FailingToy, SlowToy, Toy
+
+distributed = pytest.importorskip("distributed")
+ROOT = Path(__file__).resolve().parent.parent
+NOWHERE = "127.0.0.1:0"  # any free port, seen from this machine alone
+# Dask leaves sockets to the garbage collector.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def swept_up():
+    """So that no other module's test is told of them."""
+    yield
+    gc.collect()
+
+
+@pytest.fixture(scope="module")
+def two_workers():
+    """A scheduler with two workers, which come back when they are killed."""
+    start: Any = distributed.LocalCluster
+    with start(n_workers=2, threads_per_worker=1, dashboard_address=NOWHERE, memory_limit=None, silence_logs=50) as own:
+        yield own
+
+
+@pytest.fixture
+def no_workers():
+    start: Any = distributed.LocalCluster
+    with start(n_workers=0, dashboard_address=NOWHERE, silence_logs=50) as own:
+        yield own
+
+
+def untimed(row):
+    return {name: repr(value) for name, value in asdict(row).items() if name not in TIMINGS}
+
+
+def test_a_local_cluster_gives_the_same_rows_as_the_pool():
+    cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS]
+    cells += [Cell(Disc(), FailingToy(variant), 1) for variant in ("abort", "refuse", "unsupported", "exit", "raise")]
+    with cluster("local:2") as own:
+        there = {row.key: untimed(row) for row in run_cells(cells, supervised=own.supervise)}
+        assert own.threads == 2
+    assert there == {row.key: untimed(row) for row in run_cells(cells)}
+    assert {row["outcome"] for row in there.values()} >= {repr(Outcome.ABORTED), repr(Outcome.FINISHED)}
+
+
+def test_an_abort_ends_a_cell_and_no_worker_and_tasks_go_the_same_way(two_workers, tmp_path):
+    before = two_workers.scheduler_info["workers"].keys()
+    items = [Cell(Disc(), FailingToy("abort"), 1), Cell(Disc(), Toy(), 1), Motion(Cell(Disc(), Toy(), 2))]
+    with cluster(two_workers.scheduler_address) as own, Store(tmp_path / "cells.sqlite") as store:
+        assert run_into(store, items, supervised=own.supervise) == 3
+        assert run_into(store, items, supervised=own.supervise) == 0
+        outcomes = {cell.engine.variant: row.outcome for cell, row in store.get(items[:2]).items()}
+        [motion] = store.answers(items[2:]).values()
+    assert outcomes == {"abort": Outcome.ABORTED, "default": Outcome.FINISHED}
+    assert motion.array("pose").shape == (Disc().samples + 1, 1, 3)
+    assert two_workers.scheduler_info["workers"].keys() == before
+
+
+@pytest.mark.parametrize("kills", [4, pytest.param(20, marks=pytest.mark.slow)])
+def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers, tmp_path, kills):
+    cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 1 + 40 * kills)]
+    chance, killed, rows, over = random.Random(kills), [], [], threading.Event()
+
+    def kill() -> None:
+        while len(killed) < kills and not over.wait(chance.uniform(0.2, 2.0)):
+            if pid := two_workers.workers[chance.randrange(2)].pid:
+                os.kill(pid, signal.SIGKILL)
+                killed.append(pid)
+
+    killer = threading.Thread(target=kill)
+    with cluster(two_workers.scheduler_address) as own, Store(tmp_path / "cells.sqlite") as store:
+        killer.start()
+        try:
+            run_into(store, cells, done=rows.append, timed=False, supervised=own.supervise)
+        finally:
+            over.set()
+            killer.join()
+        assert set(store.get(cells)) == set(cells)
+    assert Counter(row.key for row in rows) == Counter(cell.key for cell in cells)
+    assert {row.outcome for row in rows} == {Outcome.FINISHED}
+    assert killed
+
+
+def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers):
+    cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
+    with cluster(two_workers.scheduler_address) as own:
+        told = {cell.every: result for cell, result, _ in own.supervise(end_the_supervisor, cells, 60.0)}
+    lost = told.pop(901)
+    assert isinstance(lost, Loss)
+    assert lost.outcome == Outcome.LOST
+    assert told == {1: "fine", 2: "fine"}
+
+
+def test_a_worker_with_another_version_is_refused_and_both_are_named(no_workers, tmp_path, monkeypatch, capsys):
+    fake = tmp_path / "elsewhere" / "pymunk-99.0.dist-info"
+    fake.mkdir(parents=True)
+    (fake / "METADATA").write_text("Metadata-Version: 2.1\nName: pymunk\nVersion: 99.0\n")
+    (fake / "top_level.txt").write_text("pymunk\n")
+    command = [sys.executable, "-m", "distributed.cli.dask_worker", no_workers.scheduler_address]
+    worker = subprocess.Popen(
+        [*command, "--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(tmp_path)],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(fake.parent), str(ROOT)])},
+        stderr=subprocess.DEVNULL,
+    )
+    monkeypatch.chdir(tmp_path)
+    try:
+        words = ("--every", "1", "--engine", "pymunk", "--variant", "tuned")
+        assert call("run", "free_four_bar", *words, "--scheduler", no_workers.scheduler_address) == REFUSED
+    finally:
+        worker.kill()
+        worker.wait()
+    from importlib.metadata import version
+
+    assert f"pymunk 99.0 there, {version('pymunk')} here" in one_line(capsys.readouterr().err)
+
+
+def test_a_foreman_with_other_source_files_runs_nothing():
+    cell = Cell(Disc(), Toy(), 1)
+    own = cell.key
+    request = Request(pickle.dumps(pytest.fail), (("of another file", pickle.dumps(cell)),), 1.0, 1.0)
+    told = reply(None, request)  # type: ignore[arg-type]
+    assert isinstance(told, Refusal)
+    assert told.versions["our source files"]
+    assert own == cell.key
+    unreadable = Request(pickle.dumps(pytest.fail), ((own, b"cmissing_module\nX\n."),), 1.0, 1.0)
+    assert "missing_module" in reply(None, unreadable).reason  # type: ignore[arg-type,union-attr]
+
+
+def test_a_key_that_travels_with_an_item_is_made_anew():
+    cell = Cell(Disc(), Toy(), 1)
+    vars(cell)["key"] = "of another file"  # as a client with other sources has it
+    request = Request(pickle.dumps(pytest.fail), ((cell.key, pickle.dumps(cell)),), 1.0, 1.0)
+    assert isinstance(reply(None, request), Refusal)  # type: ignore[arg-type]
+
+
+def test_without_workers_a_run_ends_after_a_while_in_a_sentence(no_workers, monkeypatch):
+    monkeypatch.setattr(clusters, "WORKERS_WITHIN", 0.5)
+    with cluster(no_workers.scheduler_address) as own, pytest.raises(WorkersLost, match=r"no worker.*dask worker"):
+        list(own.supervise(end_the_supervisor, [Cell(Disc(), Toy(), 1)], 60.0))
+
+
+@pytest.mark.parametrize("command", ["run", "search"])
+def test_no_scheduler_at_the_address_is_one_line(command, monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(clusters, "ANSWERS_WITHIN", 0.3)
+    assert call(command, "--scheduler", "tcp://127.0.0.1:1") == REFUSED
+    assert "'tcp://127.0.0.1:1': no Dask scheduler answers there" in one_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("words", ["local:0", "local:two", "127.0.0.1:8786", ""])
+def test_words_that_name_no_scheduler_are_refused(words):
+    with pytest.raises(BadInput, match=r"tcp://HOST:PORT .* or local:N"), cluster(words):
+        pass
+
+
+def test_without_dask_the_line_names_the_extra(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(BadInput, match=r"pip install '\.\[cluster\]'"), cluster("local:2"):
+        pass
+
+
+def test_chunks_keep_to_their_time(two_workers):
+    """Cells that take longer than estimated go in smaller chunks: the last ones are not waited for."""
+    cells = [Cell(Disc(), SlowToy(seconds=0.05, factor=float(number)), 1) for number in range(80)]
+    sizes: list[int] = []
+    start = clusters._Sender.__call__
+
+    def counted(self: Any, chunk: Any) -> None:
+        sizes.append(len(chunk.items))
+        start(self, chunk)
+
+    with pytest.MonkeyPatch.context() as patch, cluster(two_workers.scheduler_address) as own:
+        patch.setattr(clusters._Sender, "__call__", counted)
+        for _ in run_cells(cells, timed=False, supervised=own.supervise):
+            pass
+    assert sum(sizes) == len(cells)
+    assert max(sizes) <= 11
+    assert sizes[-1] <= 2
+
+
+def test_nobody_is_left_when_a_cluster_is_closed():
+    before = set(_children())
+    with cluster("local:1") as own:
+        assert list(own.supervise(end_the_supervisor, [Cell(Disc(), Toy(), 1)], 60.0))
+    deadline = time.monotonic() + 30
+    while (left := _foremen(before)) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not left
+
+
+def _children() -> list[int]:
+    import psutil  # comes with Dask
+
+    return [process.pid for process in psutil.process_iter()]
+
+
+def _foremen(before: set[int]) -> list[int]:
+    import psutil
+
+    found = []
+    for process in psutil.process_iter(["pid", "cmdline"]):
+        line = process.info["cmdline"] or []
+        if process.info["pid"] not in before and "reports.grid.foreman" in line:
+            found.append(process.info["pid"])
+    return found
