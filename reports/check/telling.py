@@ -175,8 +175,8 @@ def _parts(found: Checked) -> tuple[str, ...]:
         )
         return (
             f"Step: your run is off the ideal motion by {number(parts.step)}; {smallest}, and {kind}.",
-            f"Softness: {model.engine} declares no law of all these joints without a step in it, so its share is not "
-            "told apart.",
+            f"Softness: {model.engine} declares no law for all of these joints that no step takes part in, so its "
+            "share is not told apart.",
         )
     if model.softly_held:
         out.append(
