@@ -118,9 +118,12 @@ def told(scene: Scene) -> list[str]:
     """The truth at ten instants: poses of all bodies, in the plane of the scene."""
     import numpy as np
 
-    names = [body.name for body in scene.mechanism().bodies]
+    mechanism = scene.mechanism()
+    names = [body.name for body in mechanism.bodies]
     times = np.linspace(0.0, scene.duration, INSTANTS)
     lines = [f"{scene.name} ({scene.source}): where the centres of mass are [m], and the angles [rad], in truth."]
+    x, y = mechanism.gravity
+    lines.append(f"Gravity: {x:.12g}, {y:.12g} m/s^2 in the plane, x and y as below; some formats can't hold it.")
     for t, poses in zip(times, scene.motion(times).pose, strict=True):
         lines.append(f"t = {t:.6g} s")
         lines += [
