@@ -46,7 +46,7 @@ def fetched(package: Package, cache: Path) -> dict[str, bytes]:
     if digest != package.sha512:
         path.unlink()
         raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
-    with tarfile.open(path) as archive:
+    with tarfile.open(path, encoding="utf-8") as archive:
         return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
 
 

@@ -50,7 +50,7 @@ def _sources(release: str, folder: Path) -> Path:
     found = list(folder.glob("pymunk-*.tar.gz"))
     if ended.returncode or not found:
         raise NotFetched(f"pip could not fetch the source package of pymunk {release}")
-    with tarfile.open(found[0]) as archive:
+    with tarfile.open(found[0], encoding="utf-8") as archive:
         archive.extractall(folder, filter="data")
     return folder / f"pymunk-{release}" / "Munk2D"
 
