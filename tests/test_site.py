@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import tomllib
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -283,6 +284,16 @@ def test_stored_rows_are_series_of_steps_and_errors():
     assert series["points"] == [[0.01, 0.5], [0.001, 0.05]]
     published = stored_rows((RESULTS / "errors.csv").read_text("utf-8"))
     assert {each["method"] for each in published} >= {"pymunk default", "mujoco default"}
+
+
+def test_every_file_of_the_site_is_in_a_wheel():
+    globs = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-data"]["*"]
+    folder = ROOT / "reports" / "site"
+    for path in folder.rglob("*"):
+        if path.is_dir() or path.suffix in (".py", ".pyc") or path.name == "readme.svg":
+            continue
+        package = next(each for each in path.parents if (each / "__init__.py").is_file())
+        assert any(path in package.glob(pattern) for pattern in globs), path
 
 
 HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))

@@ -13,6 +13,7 @@ import tarfile
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 PATIENCE = 180  # s for one package
 
@@ -45,7 +46,7 @@ def fetched(package: Package, cache: Path) -> dict[str, bytes]:
     if digest != package.sha512:
         path.unlink()
         raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
-    with tarfile.open(path) as archive:
+    with tarfile.open(path, encoding="utf-8") as archive:
         return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
 
 
@@ -56,8 +57,9 @@ def _fetch(package: Package, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         words = [npm, "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
+        given: dict[str, Any] = {"cwd": folder, "capture_output": True, "encoding": "utf-8", "timeout": PATIENCE}
         try:
-            ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
+            ended = subprocess.run(words, **given)
         except subprocess.TimeoutExpired:
             raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
         found = list(Path(folder).glob("*.tgz"))

@@ -31,15 +31,19 @@ def reference_pages() -> dict[str, bytes]:
         (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
         words = [sys.executable, "-m", "pdoc", "--no-show-source", "--template-directory", str(theme)]
         words += ["--footer-text", "crosscheck", "--output-directory", str(output), *MODULES]
-        ended = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE)
+        ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
         if ended.returncode:
             raise NotFetched(f"pdoc failed: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
         found = {path.relative_to(output).as_posix(): path for path in sorted(output.rglob("*")) if path.is_file()}
-        return {f"reference/{name}": path.read_bytes() for name, path in found.items()}
+        # A browser asks for an icon unless the page has one.
+        icon = (b"</head>", b'<link rel="icon" href="data:,"></head>')
+        return {f"reference/{name}": path.read_bytes().replace(*icon, 1) for name, path in found.items()}
 
 
 def _sheet() -> str:
     light, dark = _colours(LIGHT), _colours(DARK)
+    # What pdoc colours by itself is too dark on dark paper.
+    dark += " .pdoc-code .nb, .pdoc-code .kt { color: var(--def) } .pdoc-code .o { color: var(--muted) }"
     return f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} :root {{ color-scheme: dark }} }}\n"
 
 

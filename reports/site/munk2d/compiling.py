@@ -32,7 +32,7 @@ def compiled(cache: Path) -> bytes:
     if compiler is None:
         raise NotFetched("emscripten is not installed")
     release = version("pymunk")
-    told = subprocess.run([compiler, "--version"], capture_output=True, text=True).stdout.splitlines()
+    told = subprocess.run([compiler, "--version"], capture_output=True, text=True, encoding="utf-8").stdout.splitlines()
     parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *told[:1])
     kept = cache / f"munk2d-{hashlib.sha256(repr(parts).encode()).hexdigest()[:16]}.js"
     if not kept.is_file():
@@ -46,11 +46,11 @@ def _sources(release: str, folder: Path) -> Path:
     """The folder of Munk2D in pymunk's source package of this release, which pip fetches."""
     words = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
     words += ["--no-binary", "pymunk", f"pymunk=={release}", "--dest", str(folder)]
-    ended = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE)
+    ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
     found = list(folder.glob("pymunk-*.tar.gz"))
     if ended.returncode or not found:
         raise NotFetched(f"pip could not fetch the source package of pymunk {release}")
-    with tarfile.open(found[0]) as archive:
+    with tarfile.open(found[0], encoding="utf-8") as archive:
         archive.extractall(folder, filter="data")
     return folder / f"pymunk-{release}" / "Munk2D"
 
@@ -58,7 +58,7 @@ def _sources(release: str, folder: Path) -> Path:
 def _compile(compiler: str, sources: Path, output: Path) -> Path:
     files = sorted(str(path) for path in (sources / "src").glob("*.c") if path.name != THREADED)
     words = [compiler, *FLAGS, f"-I{sources / 'include'}", str(SHIM), *files, "-o", str(output)]
-    ended = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE)
+    ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
     if ended.returncode:
         raise NotFetched(f"emscripten refuses Munk2D: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
     return output
