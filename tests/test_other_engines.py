@@ -144,7 +144,7 @@ def test_what_an_engine_lacks_is_refused_in_a_sentence_that_names_the_joint(name
     refused: list[bool] = []
     for scene in SCENES:
         described = scene.mechanism()
-        named = [repr(part.name) for part in (*described.joints, *described.bodies)]
+        named = [repr(part.name) for part in (*described.joints, *described.bodies, *described.forces)]
         try:
             engine.build(described, scene.spacing)
         except Unsupported as reason:

@@ -48,7 +48,7 @@ def files(tmp_path_factory, request):
         motion: answered(motion) for name in ("driven", "large") for motion in four_bar.takes[name].motions().values()
     }
     cache = Path(request.config.cache.mkdir("site"))
-    source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.")
+    source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
     return build(source)
 
 

@@ -169,8 +169,8 @@ def _parts(found: Checked) -> tuple[str, ...]:
         )
         return (
             f"Step: your run is off the ideal motion by {number(parts.step)}; {smallest}, and {kind}.",
-            f"Softness: how far joints give way in {model.engine} follows from the step and the iterations, so no "
-            "part of the error is its own.",
+            f"Softness: {model.engine} declares no law for all of these joints that no step takes part in, so its "
+            "share is not told apart.",
         )
     if model.softly_held:
         out.append(

@@ -24,7 +24,7 @@ Force = Annotated[bool, typer.Option("--force", help="Replace a file that is the
 
 def export(
     scene: SceneName,
-    to: Annotated[str, typer.Option("--to", help="mjcf, pymunk or urdf.")] = "mjcf",
+    to: Annotated[str, typer.Option("--to", help="mjcf, urdf, or the engine whose script it is.")] = "mjcf",
     variant: Annotated[str, typer.Option(help="The variant whose settings the file has.")] = "default",
     step: Annotated[float, typer.Option(help="The step in the file [s].")] = 1e-3,
     out: Out = None,

@@ -21,7 +21,8 @@ from reports.site.markdown import Formulas
 from reports.site.munk2d.compiling import compiled
 from reports.site.packages import NotFetched, Package, fetched
 from reports.site.packages_used import D3, KATEX, MUJOCO, PLOT
-from reports.site.rows import stored_rows
+from reports.site.reference_pages import reference_pages
+from reports.site.rows import explored, stored_rows
 from reports.site.style import colours
 
 HERE = Path(__file__).parent
@@ -43,6 +44,8 @@ class Source:
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
+    contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
+    api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
     troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
 
 
@@ -83,6 +86,17 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
             **_lesson(lesson, source, formulas, names),
             **_running(running, missing),
         )
+    api = _reference(source)
+    files |= api
+    guides = [(path.stem, path.read_text(encoding="utf-8")) for path in sorted((HERE / "howto").glob("*.md"))]
+    below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
+    for name, text in guides:
+        told = environment.from_string(text).render(contributing=lambda part: Markup(_quoted(source, part)))
+        body = markdown.linked(markdown.html(told, formulas), below, _elsewhere)
+        write(f"howto/{name}.html", "article.html", title=_title(text), body=Markup(body))
+    titles = [(name, _title(text)) for name, text in guides]
+    write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
+    write("results/rows.html", "explorer.html", title="All stored rows")
     write("index.html", "index.html", title="How far from ideal?", **_front(lessons, source))
     listed, why = rendered(formulas, source.cache)
     if why:
@@ -96,6 +110,8 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     )
     files |= {path: markdown.with_formulas(text, listed).encode() for path, text in pages.items()}
     files |= {f"results/{name}": text.encode() for name, text in {**source.pictures, **source.tables}.items()}
+    csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
+    files["results/rows.json"] = json.dumps(explored(*csv), separators=(",", ":"), allow_nan=False).encode()
     files[MARKER] = json.dumps({"pages": sorted(pages), "troubles": source.troubles}, indent=1).encode()
     return files
 
@@ -132,6 +148,23 @@ def _engines(source: Source, wanted: bool) -> tuple[Files, list[str]]:
         files["live/four_bar.json"] = json.dumps(live.data(), separators=(",", ":")).encode()
         files["live/rows.json"] = json.dumps(stored_rows(source.tables.get("errors.csv", ""))).encode()
     return files, missing
+
+
+def _reference(source: Source) -> Files:
+    if not source.api:
+        return {}
+    try:
+        return reference_pages()
+    except NotFetched as reason:
+        source.troubles.append(f"Built without the reference: {reason}.")
+        return {}
+
+
+def _quoted(source: Source, part: str) -> str:
+    """A part of CONTRIBUTING.md; where that is not there, a sentence that says so."""
+    if not source.contributing:
+        return "The steps stand in CONTRIBUTING.md of the checkout."
+    return markdown.section(source.contributing, part)
 
 
 def _running(files: Files, missing: list[str]) -> dict[str, object]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from typing import Any
 
 BESIDE_SLIDERS = ("driven_four_bar", "free_four_bar")
@@ -27,3 +28,34 @@ def stored_rows(errors: str) -> list[dict[str, Any]]:
             if points:
                 found.append({"scene": scene, "method": f"{engine} {variant}", "mark": mark, "points": points})
     return found
+
+
+COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
+NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
+
+
+def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
+    """All rows of sweeps for the page of charts: {columns, rows}; a number that is missing is None.
+
+    `cpu` is CPU time per simulated second [s], from timings.csv; settings are told in words, from descriptions.csv.
+    """
+    key = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
+    spent = {tuple(row[name] for name in key): row for row in read(timings)} if timings else {}
+    words = {row["digest"]: row["description"] for row in read(descriptions)} if descriptions else {}
+    rows = []
+    for row in read(errors) if errors else []:
+        if row["purpose"] != "sweep":
+            continue
+        cost = spent.get(tuple(row[name] for name in key), {}).get("cpu", "nan")
+        told = {**row, "settings": words.get(row["settings"], "")}
+        rows.append(
+            [*(told[name] for name in COLUMNS[:-1]), float(row["step"])]
+            + [_number(row[name]) for name in NUMBERS]
+            + [_number(cost)]
+        )
+    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows}
+
+
+def _number(text: str) -> float | None:
+    value = float(text or "nan")
+    return value if math.isfinite(value) else None

@@ -99,7 +99,9 @@ export class Player {
     const begin = performance.now() - (this.frame / (this.frames - 1)) * SECONDS * 1000;
     const step = (/** @type {number} */ now) => {
       if (!this.playing) return;
-      this.frame = Math.min(this.frames - 1, Math.floor(((now - begin) / 1000 / SECONDS) * (this.frames - 1)));
+      // The first frame may have begun before the button was pressed.
+      const passed = Math.max(0, (now - begin) / 1000 / SECONDS);
+      this.frame = Math.min(this.frames - 1, Math.floor(passed * (this.frames - 1)));
       this.show();
       if (this.frame >= this.frames - 1) this.stop();
       else requestAnimationFrame(step);
