@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 from textwrap import fill
+from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -57,10 +57,14 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             drawn |= _explained(panel, own, subject, theme)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
             panel.set_ylabel("step [s]" if index % columns == 0 else "")
-        handles: list[Artist] = [
-            Rectangle((0, 0), 1, 1, facecolor=outcome_colour(o, theme), edgecolor=theme.quiet, hatch=HATCHES.get(o))
-            for o in Outcome
-            if o in met
+        # A hatch apart from its ground: in one patch its colours would not follow the reader's scheme.
+        handles: list[Any] = [
+            (
+                Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet),
+                Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=HATCHES.get(outcome)),
+            )
+            for outcome in Outcome
+            if outcome in met
         ]
         names = [str(outcome) for outcome in Outcome if outcome in met]
         words = {
