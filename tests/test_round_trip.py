@@ -36,10 +36,11 @@ IDEAL = [
 
 def of_forces(welded: bool = True) -> Mechanism:
     """Springs, dampers, a gear, and perhaps a weld, with everything in motion."""
+    rate = 7 / 9  # rad/s: no number of few digits
     bodies = (
-        Body("a", 1.0, 0.1, (0.5, 0.0, 0.3), (0.0, 0.4, 0.8)),
-        Body("b", 2.0, 0.2, (2.0, 0.0, 0.0), (0.0, 0.0, 1.6)),
-        Body("c", 0.5, 0.1, (2.0, 1.0, 0.2), (-1.6, 0.0, 1.6)),
+        Body("a", 1.0, 0.1, (0.5, 0.0, 0.3), (0.0, 0.5 * rate, rate)),
+        Body("b", 2.0, 0.2, (2.0, 0.0, 0.0), (0.0, 0.0, 2 * rate)),
+        Body("c", 0.5, 0.1, (2.0, 1.0, 0.2), (-2 * rate, 0.0, 2 * rate)),
     )
     cosine, sine = np.cos(0.3), np.sin(0.3)
     joints = (
