@@ -1,8 +1,9 @@
 # Everything from a fresh checkout: environment, install, run.
 PYTHON ?= python3
 BIN := .venv/bin
-# A worker of pytest for each processor, with one thread each; the grid has a pool of its own, and runs after the others.
-WORKERS := -n auto --dist worksteal
+# A worker of pytest for each processor, with one thread each. A file stays in one worker, so that what its tests share
+# is made once. The grid has a pool of its own, and runs after the others.
+WORKERS := -n auto --dist loadfile
 export OMP_NUM_THREADS ?= 1
 
 .PHONY: report test slow check bench mutants lower clean

@@ -10,6 +10,18 @@ from engines.contract import (
     Softness,
     Unpromised,
     Unsupported,
+    refuse_forces,
 )
 
-__all__ = ["EXACT", "Engine", "Holder", "Promise", "Run", "Size", "Softness", "Unpromised", "Unsupported"]
+__all__ = [
+    "EXACT",
+    "Engine",
+    "Holder",
+    "Promise",
+    "Run",
+    "Size",
+    "Softness",
+    "Unpromised",
+    "Unsupported",
+    "refuse_forces",
+]

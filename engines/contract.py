@@ -7,7 +7,8 @@
 2. `packages` are the installed distributions whose versions its numbers depend on; they are printed under the numbers.
    Engines of one `family` share a colour and a mark in charts: the variants of an engine are one family.
 3. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
-   sentence. It sees no scene, so it can't see the answer.
+   sentence. It sees no scene, so it can't see the answer. A mechanism may have `forces` besides joints: an engine that
+   knows none begins with `refuse_forces(mechanism, self.name)`.
 4. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
    again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
@@ -45,6 +46,14 @@ Holder = Literal["engine", "engine, our rows", "ours"]
 
 class Unsupported(Exception):
     """An engine can't build this mechanism; the message is one sentence that says why."""
+
+
+def refuse_forces(mechanism: Mechanism, engine: str) -> None:
+    """Raise Unsupported for a mechanism with force elements: for an engine that knows no force but gravity."""
+    if mechanism.forces:
+        force = mechanism.forces[0]
+        kind = type(force).__name__
+        raise Unsupported(f"force {force.name!r} is a {kind}; the adapter of {engine} knows no force but gravity")
 
 
 @dataclass(frozen=True)

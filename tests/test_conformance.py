@@ -36,6 +36,7 @@ FOUND_BY = {
     "softness counts joints": "tells_how_joints_give_way",
     "nothing is built": "builds_at_least_one",
     "the first joint is looked at": "refuses_odd_mechanisms",
+    "forces are not looked at": "feels_forces_or_refuses_them",
     "a bad step is replaced": "refuses_bad_steps",
     "a bad count is replaced": "refuses_bad_counts",
     "a second call goes on": "refuses_a_second_call",

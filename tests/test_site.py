@@ -4,27 +4,37 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 from urllib.parse import unquote, urlsplit
 
 import numpy as np
 import pytest
 
-from reference.four_bar import FreeFourBar
+from engines.lagrange import Lagrange
+from engines.mujoco import TUNED
+from engines.registry import trouble
+from reference.four_bar import DrivenFourBar, FreeFourBar
 from reports.grid.ending import FileTrouble
 from reports.grid.tasks import answered
-from reports.site import markdown
+from reports.site import live, markdown
 from reports.site.build import MARKER, Source, build, tasks
 from reports.site.embed import data, picture, shown
 from reports.site.lesson import Take
 from reports.site.lessons import LESSONS
 from reports.site.markdown import Formulas, html, section
 from reports.site.packages import NotFetched, Package, fetched
+from reports.site.reference_pages import reference_pages
+from reports.site.rows import explored, stored_rows
 from reports.site.writing import compressed_size, refuse_strangers, write_site
 
-RESULTS = Path(__file__).parents[1] / "reports" / "results"
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "reports" / "results"
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 TAKES = [(lesson.name, name) for lesson in LESSONS for name in lesson.takes]
 # What a page may differ from the reference by: 13 digits after the point, and rounding.
 HELD = 1e-12
@@ -62,7 +72,7 @@ def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
     cache = tmp_path_factory.mktemp("cache")
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.")
+    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.", CONTRIBUTING, api=False)
 
 
 SUFFIXES = (".md", ".svg", ".csv")
@@ -225,3 +235,104 @@ def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
     assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
     write_site(new, {MARKER: b"{}", "c.html": b"two"})
     assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
+
+
+def test_every_place_of_the_sliders_is_a_linkage_that_turns_fully():
+    corners = list(live.corners())
+    assert len(corners) == len(live.CRANKS) * len(live.COUPLERS) * len(live.RATIOS)
+    assert (live.CRANKS[2], live.COUPLERS[1], live.RATIOS[2]) == (0.4, DrivenFourBar().coupler, 1.0)
+    for crank, coupler, ratio in corners:
+        scene = live.with_sliders(crank, coupler, ratio, 10.0)
+        assert np.all(np.isfinite(scene.motion(np.linspace(0, scene.duration, 40)).pose))
+
+
+def test_the_text_of_a_model_gives_back_the_model_that_the_adapter_compiles():
+    import mujoco
+
+    scene = live.with_sliders(0.3, 0.65, 10.0, 10.0)
+    table = live.told([live.place(scene), live.place(live.with_sliders(0.2, 0.9, 0.1, 10.0))])
+    numbers = table["numbers"][0].split(",")
+    text = "".join(part + number for part, number in zip(table["mjcf"], [*numbers, ""], strict=True))
+    again, ours = mujoco.MjModel.from_xml_string(text), TUNED.model(scene.mechanism(), 1e-3).compiled
+    for field in ("body_pos", "body_mass", "body_inertia", "jnt_pos", "dof_armature", "eq_data"):
+        assert np.allclose(getattr(again, field), getattr(ours, field), rtol=1e-15, atol=1e-17), field
+
+
+def test_what_munk2d_is_given_is_what_pymunk_holds():
+    scene = DrivenFourBar()
+    plan = live.munk(scene)
+    mechanism = scene.mechanism()
+    bodies = np.reshape(plan[3:36], (3, 11))
+    assert list(plan[:3]) == [*mechanism.gravity, 3]
+    assert bodies[:, 0].tolist() == [1, 0, 0]  # the crank is kinematic
+    assert bodies[1:, 1:3] == pytest.approx(mechanism.inertias[1:, 1:])
+    assert bodies[1:, 3:6] == pytest.approx(mechanism.pose[1:])
+    assert bodies[1:, 6:9] == pytest.approx(mechanism.twist[1:])
+    pivots = np.reshape(plan[36:], (-1, 6))
+    assert pivots[:, :2].tolist() == [[0, 1], [1, 2], [-1, 2]]
+
+
+def test_stored_rows_are_series_of_steps_and_errors():
+    header = "scene,engine,variant,purpose,outcome,step,angle"
+    lines = [header, "driven_four_bar,pymunk,default,sweep,finished,0.01,0.5", "x,pymunk,default,sweep,finished,1,1"]
+    lines += [
+        "driven_four_bar,pymunk,default,sweep,finished,0.001,0.05",
+        "driven_four_bar,pymunk,default,map,finished,1,1",
+    ]
+    (series,) = stored_rows("\n".join(lines))
+    assert series["points"] == [[0.01, 0.5], [0.001, 0.05]]
+    published = stored_rows((RESULTS / "errors.csv").read_text("utf-8"))
+    assert {each["method"] for each in published} >= {"pymunk default", "mujoco default"}
+
+
+HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))
+
+
+@pytest.mark.parametrize("path", HOWTOS, ids=lambda path: path.stem)
+def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
+    blocks = re.findall(r"```python\n(.*?)```", path.read_text("utf-8"), re.DOTALL)
+    module = ModuleType("howto")  # dataclasses look their module up
+    monkeypatch.setitem(sys.modules, "howto", module)
+    given: dict[str, Any] = vars(module)
+    for block in blocks:
+        exec(compile(block, path.name, "exec"), given)
+    if "STILL" in given:
+        scene = FreeFourBar()
+        still = given["STILL"].build(scene.mechanism(), 1e-2)(100, 1)
+        assert trouble(given["STILL"]) == ""
+        assert np.all(still.pose == scene.mechanism().pose)
+    if "SCENE" in given:
+        found = Lagrange("dop853", "projection").build(given["SCENE"].mechanism(), 1e-2)(100, 1)
+        assert np.abs(found.pose - given["SCENE"].motion(found.t).pose).max() < 1e-9
+    if "mechanism" in given:
+        errors = [float(each) for each in re.findall(r": (\S+) rad", capsys.readouterr().out)]
+        assert len(errors) == 2
+        assert errors[0] > errors[1] > 0  # as shipped, and tuned
+
+
+def test_how_to_pages_quote_the_steps_of_contributing(files):
+    assert "crosscheck conform my_package.engine:TUNED" in files["howto/add_an_engine.html"].decode()
+    assert "reference.scene.Scene" in files["howto/add_a_scene.html"].decode()
+    assert len(HOWTOS) == 4
+
+
+def test_all_rows_are_told_with_their_cost_and_settings():
+    texts = [(RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")]
+    told = explored(*texts)
+    rows = [dict(zip(told["columns"], row, strict=True)) for row in told["rows"]]
+    assert len(rows) > 500
+    (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == FREE and abs(r["step"] - 1e-3) < 1e-6]
+    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as the page of the four-bar tells
+    assert row["cpu"] > 0
+    assert "Pymunk(" in row["settings"]
+
+
+FREE = ("free_four_bar", "pymunk", "default")
+
+
+def test_the_reference_is_made_of_docstrings_and_needs_nothing_from_elsewhere():
+    pytest.importorskip("pdoc", reason="pdoc is not installed: pip install '.[site]'")
+    pages = reference_pages()
+    assert "Bodies, the joints between them" in pages["reference/reference/mechanism.html"].decode()
+    fetched_from = re.compile(rb"<(?:script[^>]* src|link[^>]* rel=.stylesheet.[^>]* href)=.https?:")
+    assert not [name for name, text in pages.items() if fetched_from.search(text)]

@@ -300,6 +300,7 @@ MISTAKES: dict[str, Callable[..., Any]] = {
     "a refusal of two words": terse,
     "nothing is built": refuses_all,
     "the first joint is looked at": needs_joints,
+    "forces are not looked at": lambda inner, mechanism, dt: inner.build(replace(mechanism, forces=()), dt),
     "a bad step is replaced": any_step,
     "a bad count is replaced": any_count,
     "a second call goes on": goes_on,

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from reference.curves.circles_lines import Circle, Line, Ring
 from reference.curves.curve import Curve, Placed
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
@@ -65,7 +66,8 @@ class Isometry:
             for body in mechanism.bodies
         )
         joints = tuple(self._joint(joint) for joint in mechanism.joints)
-        changed = Mechanism(bodies, joints, self._place(*mechanism.gravity, shifted=False))
+        forces = tuple(self._force(force) for force in mechanism.forces)
+        changed = Mechanism(bodies, joints, self._place(*mechanism.gravity, shifted=False), forces)
 
         def back(run: Trajectory) -> Three:
             pose, twist, reaction = run.pose.copy(), run.twist.copy(), run.reaction.copy()
@@ -75,9 +77,10 @@ class Isometry:
             row = 0
             for joint in mechanism.joints:
                 own = reaction[:, row : row + joint.size]
-                if isinstance(joint, Pin):  # a force in the world's directions
-                    own[:] = own @ self._matrix
-                elif isinstance(joint, Drive):
+                if isinstance(joint, Pin | Weld):  # a force in the world's directions, and a weld's torque
+                    own[:, :2] = own[:, :2] @ self._matrix
+                    own[:, 2:] *= sense
+                elif isinstance(joint, Drive | Gear):
                     own *= sense
                 elif isinstance(joint, Roll):  # a boundary keeps its material on the left, so its direction turns round
                     own[:, 0] *= sense
@@ -98,13 +101,40 @@ class Isometry:
                 return replace(joint, **self._points(joint), line_angle=own_angle(joint.line_angle))
             case Skate():
                 return replace(joint, second_point=self._inside(joint.second_point), angle=sense * joint.angle)
+            case Rod():
+                return replace(joint, **self._points(joint))
+            case Gear():
+                first, second = (float(name is not None) for name in (joint.first, joint.second))
+                return replace(joint, phase=sense * joint.phase + self.turn * (second - joint.ratio * first))
+            case Weld():
+                return replace(joint, **self._points(joint), angle=self._between(joint, joint.angle))
             case Drive():
                 offset = own_angle(joint.offset) if joint.second is not None else sense * joint.offset - self.turn
                 return replace(joint, turning_rate=sense * joint.turning_rate, offset=offset)
             case Roll():
                 return replace(joint, rolling=self._rolling(joint.rolling, ground))
 
-    def _points(self, joint: Pin | Slot) -> dict[str, Any]:
+    def _force(self, force: ForceElement) -> ForceElement:
+        """The force element in the new world."""
+        match force:
+            case Spring() | Damper():
+                return replace(force, **self._points(force))
+            case TorsionSpring():
+                return replace(force, rest_angle=self._between(force, force.rest_angle))
+            case TorsionDamper():
+                return force
+            case Torque():
+                return replace(force, torque=-force.torque if self.mirrored else force.torque)
+            case Force():
+                pull = self._place(*force.force, shifted=False)
+                return replace(force, second_point=self._inside(force.second_point), force=pull)
+
+    def _between(self, pair: Weld | TorsionSpring, angle: float) -> float:
+        """An angle of the second body against the first, where the ground's stays zero."""
+        turned = float(pair.second is not None) - float(pair.first is not None)
+        return (-angle if self.mirrored else angle) + self.turn * turned
+
+    def _points(self, joint: Pin | Slot | Rod | Weld | Spring | Damper) -> dict[str, Any]:
         """Both points where they are now."""
         return {
             point: self._place(*where) if body is None else self._inside(where)
@@ -148,7 +178,14 @@ def relabelled(mechanism: Mechanism) -> Described:
         replace(joint, name=_named("joint", i), first=names.get(joint.first), second=names.get(joint.second))
         for i, joint in enumerate(mechanism.joints)
     )
-    return replace(mechanism, bodies=bodies, joints=joints), lambda run: (run.pose, run.twist, run.reaction)
+    forces = tuple(
+        replace(force, second=names[force.second])
+        if isinstance(force, Force)
+        else replace(force, first=names.get(force.first), second=names.get(force.second))
+        for force in mechanism.forces
+    )
+    changed = replace(mechanism, bodies=bodies, joints=joints, forces=forces)
+    return changed, lambda run: (run.pose, run.twist, run.reaction)
 
 
 def _named(what: str, index: int) -> str:

@@ -26,6 +26,7 @@ from engines.lagrange.flat import (
     SOFT,
     START_POSE,
     START_TWIST,
+    STEPS,
     STIFF,
     STIFFNESS,
     STOPPED,
@@ -131,6 +132,7 @@ class Machine:
         A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
         """
         tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
+        self.arrays.real[self.arrays.whole[TOLD] + STEPS] = 0.0  # a batch has one machine for many mechanisms
         return self._repeated(
             lambda at: self._call(
                 CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists

@@ -20,8 +20,9 @@ PROJECTION_ITERATIONS = 8
 # Newton's method is quadratic: after a correction this small, in parts of the mechanism's length, the next would be
 # lost in rounding.
 CLOSED = 1e-9
-# Accepted between two samples; some seconds for a few bodies. Compiled code, which is faster, allows ten times as many.
-MOST_STEPS = 2_000
+# Steps that are accepted between two samples, some seconds for a few bodies, and what each sample adds to these for the
+# whole run. Compiled code, which is faster, allows ten times as many.
+MOST_STEPS, EACH_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
 
@@ -120,6 +121,7 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
     """One interval between samples by DOP853 with steps of its own choice; NaN where they are too small or too many."""
     tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # scipy's least
+    left = MOST_STEPS
     allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
@@ -129,10 +131,11 @@ def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
 
         start = np.concatenate([pose.reshape(-1), twist.reshape(-1)])
         solver: Any = DOP853(rates, t, start, t + dt, rtol=tolerance, atol=allowed)
-        for _ in range(MOST_STEPS):
+        nonlocal left
+        while solver.status == "running" and left > 0:
             solver.step()
-            if solver.status != "running":
-                break
+            left -= 1
+        left += EACH_SAMPLE
         state = solver.y if solver.status == "finished" else np.full_like(start, np.nan)
         return state.reshape(2, -1, 3)[0], state.reshape(2, -1, 3)[1]
 

@@ -1,8 +1,21 @@
 """MuJoCo as an engine under test: planar joints as a tree, loops as soft equality constraints."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
 from engines.mujoco.engine import MuJoCo, bare_loop
 from engines.mujoco.methods import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, VARIANTS
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
+
+
+def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Any:
+    """A mujoco.MjModel as a mechanism of the plane: see `engines.mujoco.reading.read`."""
+    # By its name: what only reads a user's models is no part of what an engine's rows depend on.
+    return import_module("engines.mujoco.reading").read(model, data, without)
+
 
 __all__ = [
     "DEFAULT",
@@ -16,4 +29,5 @@ __all__ = [
     "Shipped",
     "TiedToStep",
     "bare_loop",
+    "read",
 ]

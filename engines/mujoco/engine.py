@@ -24,6 +24,7 @@ from engines.mujoco.model import Coordinates, Model, Settings, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
+from engines.mujoco.written_file import as_text
 from engines.tree import Tree, spanning_tree
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
@@ -148,6 +149,17 @@ class MuJoCo(Valid):
     @validated
     def model(self, mechanism: Mechanism, dt: Positive) -> Model:
         """The compiled model alone."""
+        return self._model(mechanism, dt, as_text=False)
+
+    @validated
+    def text(self, mechanism: Mechanism, dt: Positive) -> str:
+        """MJCF that runs without this suite, in kg, with the start as its keyframe.
+
+        Raises Unsupported where rows are written, or compliances changed, while or before it is stepped.
+        """
+        return as_text(self._model(mechanism, dt, as_text=True), self.stiffness.softening)
+
+    def _model(self, mechanism: Mechanism, dt: float, as_text: bool) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
         options = {
@@ -168,6 +180,7 @@ class MuJoCo(Valid):
             self.skates,
             self.rolls,
             self.rods,
+            as_text,
         )
         model = build_model(mechanism, dt, settings)
         choose_solver(model, self.solvers)

@@ -26,7 +26,7 @@ from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.written_model import new_specification
+from engines.mujoco.written_model import Written, new_specification
 from engines.mujoco.written_rows import (
     add_placeholders,
     equality_rows,
@@ -59,6 +59,7 @@ class Settings:
     skates: SkateBy
     rolls: RollBy
     rods: RodBy
+    as_text: bool = False  # write it as text with all digits, masses in kg
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,7 @@ class Model:
     start_rates: tuple[tuple[int, float], ...] = ()  # of coordinates that stand for no body of the mechanism
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
+    written_as: Written | None = None  # the model as text, where that was asked for
 
     def hooked(self) -> AbstractContextManager[None]:
         """The callbacks in place while this is entered: every step and every reading needs them."""
@@ -112,7 +114,7 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    whole, unit = mechanism, _unit_of_mass(mechanism)
+    whole, unit = mechanism, 1.0 if settings.as_text else _unit_of_mass(mechanism)
     mechanism = _lighter(mechanism, unit)
     drives: list[Drive] = []
     skating: list[Skate] = []
@@ -178,6 +180,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         rates,
         unit,
         tuple(building.halves),
+        spec if settings.as_text else None,
     )
 
 
@@ -197,7 +200,7 @@ def _lighter(mechanism: Mechanism, unit: float) -> Mechanism:
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:
     """A mujoco.MjSpec with the options and the bodies of the tree, and nothing else."""
-    spec = new_specification()
+    spec = Written() if settings.as_text else new_specification()
     spec.compiler.degree = False
     spec.option.timestep = dt
     spec.option.gravity = [*tree.mechanism.gravity, 0.0]

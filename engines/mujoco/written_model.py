@@ -9,7 +9,7 @@ digits; options are set in the compiled model, where their names are the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree as xml
@@ -165,10 +165,14 @@ class Written:
     def joint(self, name: str) -> Element:
         return next(joint for joint in self.worldbody.all("joint") if joint.name == name)
 
-    def text(self) -> str:
-        """The model as MJCF."""
-        root = xml.Element("mujoco")
+    def text(self, option: Mapping[str, str] | None = None, flags: Sequence[str] = (), name: str = "") -> str:
+        """The model as MJCF; `option`: attributes of its options, `flags`: what it disables."""
+        root = xml.Element("mujoco", {"model": name} if name else {})
         xml.SubElement(root, "compiler", {"angle": "radian", "autolimits": "true"})
+        if option:
+            told = xml.SubElement(root, "option", dict(option))
+            if flags:
+                xml.SubElement(told, "flag", dict.fromkeys(flags, "disable"))
         self.worldbody.write(xml.SubElement(root, "worldbody"))
         for section, elements in self._parts.items():
             parent = xml.SubElement(root, section)

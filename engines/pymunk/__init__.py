@@ -26,7 +26,10 @@ How many sweeps that takes, and when it may not be done, is in `engines.pymunk.c
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from importlib import import_module
 from itertools import repeat
+from typing import Any
 
 from engines import Engine, Unsupported
 from engines.extrapolated import Extrapolated
@@ -63,6 +66,12 @@ def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) 
     return time.process_time() - begin
 
 
+def read(space: Any, step: float | None = None, without: Sequence[str] = ()) -> Any:
+    """A pymunk.Space as a mechanism: see `engines.pymunk.reading.read`."""
+    # By its name: what only reads a user's models is no part of what an engine's rows depend on.
+    return import_module("engines.pymunk.reading").read(space, step, without)
+
+
 __all__ = [
     "DEFAULT",
     "EXTENDED",
@@ -76,4 +85,5 @@ __all__ = [
     "Extended",
     "Pymunk",
     "bare_loop",
+    "read",
 ]

@@ -23,7 +23,7 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported, refuse_forces
 from engines.motions import over_three
 from engines.pymunk.joints.skate import along_blade
 from engines.read_reactions import reactions
@@ -89,8 +89,7 @@ class Reflected(Valid):
     def build(self, mechanism: Mechanism, dt: Positive) -> ReflectedRun:
         """Raises Unsupported for any other joint, ValueError for a bad dt."""
         if not reflectable(mechanism):
-            if mechanism.forces:
-                raise Unsupported(f"force {mechanism.forces[0].name!r}: a reflection knows no force but gravity")
+            refuse_forces(mechanism, "a reflection")
             raise Unsupported(
                 "a reflection is known in closed form only for one skate or contact of a body on the ground"
             )

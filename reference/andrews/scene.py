@@ -25,7 +25,7 @@ from reference.andrews.dyad import Dyad, Moving, direction
 from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, integrate, units_of_motion
+from reference.numerics.collocation import integrate
 from reference.plane import from_complex
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
@@ -38,6 +38,7 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
+LONGEST_STEP = 0.25  # of a radian at the first rate; halved where that is too long
 SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
 
 
@@ -100,7 +101,9 @@ class Andrews(Scene):
 
         The crank's is phi; the others stay between -pi and pi, as they swing. NaN where the bars don't reach.
         """
-        crank = np.asarray(phi, dtype=float)
+        return self._angles(np.asarray(phi, dtype=float))
+
+    def _angles(self, crank: Array) -> tuple[Moving, ...]:
         ones = np.ones_like(crank)
         turning = Moving(crank, ones, 0 * ones)
         pivot_a, pivot_b = complex(*self.pivot_a), complex(*self.pivot_b)
@@ -129,7 +132,7 @@ class Andrews(Scene):
 
     def _placed(self, phi: Array) -> tuple[tuple[Moving, ...], list[Moving], Moving]:
         """Angles and centres of mass of the bodies, and the spring's vector, by the crank's angle."""
-        angles = self.angles(phi)
+        angles = self._angles(phi)
         frames, own = [direction(angle) for angle in angles], self._points
         ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
         ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
@@ -164,28 +167,35 @@ class Andrews(Scene):
         pull = self.stiffness * (length - self.rest_length) / length
         return inertia, change, pull * np.real(np.conj(apart.value) * apart.first) - self.torque
 
+    @cached_property
+    def rate_unit(self) -> float:
+        """About the crank's rate after one radian [rad/s]: in its time the motion has no unit."""
+        strength = abs(self.torque) + self.stiffness * self.crank[0] ** 2
+        return math.sqrt(strength / float(self._reduced(np.array(self.angle))[0]))
+
     def _rates(self, state: Array) -> Array:
         phi, rate = state[..., 0], state[..., 1]
         inertia, change, slope = self._reduced(phi)
-        return np.stack([rate, -(change * rate**2 / 2 + slope) / inertia], axis=-1)
+        return np.stack([rate, -(change * rate**2 / 2 + slope / self.rate_unit**2) / inertia], axis=-1)
 
     @cached_property
-    def _known(self) -> list[tuple[float, Integrated]]:
-        return []
+    def _known(self) -> dict[bytes, Array]:
+        return {}
 
     def _states(self, times: Array) -> Array:
-        """phi and phi' (times, 2) [rad, rad/s]."""
-        until, start = max(self.duration, float(times.max(initial=0.0))), np.array([self.angle, 0.0])
-        if not (self._known and self._known[0][0] >= until):
-            unit = units_of_motion(self._rates, start)
-            self._known[:] = [(until, integrate(self._rates, start, until, unit=unit))]
-        return self._known[0][1](times)
+        """phi and phi' (times, 2) [rad, rad/s]; those of the last times that were asked for are kept."""
+        order, where = np.unique(times, return_inverse=True)
+        if order.tobytes() not in self._known:
+            self._known.clear()
+            states = integrate(self._rates, [self.angle, 0.0], order * self.rate_unit, LONGEST_STEP)
+            self._known[order.tobytes()] = states.astype(float) * [1.0, self.rate_unit]
+        return self._known[order.tobytes()][where]
 
     def _placement(self, times: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 7, 3)."""
         state = self._states(times)
         phi, rate = state[:, 0], state[:, 1]
-        gain = self._rates(state)[:, 1]
+        gain = self._rates(state / [1.0, self.rate_unit])[:, 1] * self.rate_unit**2
         angles, centres, _ = self._placed(phi)
         parts = []
         for order in range(3):

@@ -7,10 +7,13 @@ from collections.abc import Sequence
 import typer
 
 from reports.cli.animate import animate
+from reports.cli.atlas import atlas
 from reports.cli.bench import bench
+from reports.cli.check import check
 from reports.cli.compare import compare
 from reports.cli.conform import conform
 from reports.cli.errata import errata
+from reports.cli.export import export, view
 from reports.cli.listing import list_command
 from reports.cli.report import report
 from reports.cli.run import run
@@ -38,10 +41,14 @@ app.command("shapes")(shapes)
 app.command("errata")(errata)
 app.command("conform")(conform)
 app.command("search")(search)
+app.command("atlas")(atlas)
 app.command("versions")(versions)
 app.command("compare")(compare)
 app.command("animate")(animate)
 app.command("site")(site)
+app.command("check")(check)
+app.command("export")(export)
+app.command("view")(view)
 
 
 def invoke(arguments: Sequence[str]) -> int:

@@ -51,6 +51,7 @@ def site(
         answers=_answers(console, results),
         cache=results / CACHE,
         foot=_foot(),
+        contributing=_contributing(),
     )
     files = build(source)
     with kept() as check:
@@ -68,6 +69,11 @@ def site(
 
 def _texts(folder: Path, pattern: str) -> dict[str, str]:
     return {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob(pattern))}
+
+
+def _contributing() -> str:
+    path = CHECKOUT / "CONTRIBUTING.md"
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def _answers(console: Terminal, results: Path) -> dict[Motion, Answer]:

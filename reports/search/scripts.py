@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from engines import Unsupported
 from engines.pymunk import Pymunk
+from engines.pymunk.written_script import object_lines
 from reports.search import instant_pymunk, raw
 from reports.search.recipe import Recipe, build
 from reports.search.release import release
@@ -66,36 +68,10 @@ def of_pymunk(engine: Any, recipe: Recipe) -> str:
     model, sweeps = engine.model(mechanism, dt), instant_pymunk.MOST_SWEEPS
     for aim in model.aims:
         aim(dt / model.unit)
-    lines = []
-    for number, body in enumerate(model.bodies):
-        kind = {0: "", 1: "body_type=pymunk.Body.KINEMATIC", 2: "body_type=pymunk.Body.STATIC"}[body.body_type]
-        kind = kind or f"{body.mass!r}, {_number(body.moment)}"
-        lines.append(f"b{number} = pymunk.Body({kind})")
-        lines.append(f"b{number}.position, b{number}.angle = {tuple(body.position)!r}, {body.angle!r}")
-        lines.append(
-            f"b{number}.velocity, b{number}.angular_velocity = {tuple(body.velocity)!r}, {body.angular_velocity!r}"
-        )
-        lines.append(f"space.add(b{number})")
-    names = {model.space.static_body: "space.static_body", **{body: f"b{i}" for i, body in enumerate(model.bodies)}}
-    for number, joint in enumerate(model.space.constraints):
-        own = f"{names[joint.a]}, {names[joint.b]}"
-        match type(joint).__name__:
-            case "PivotJoint":
-                made = f"PivotJoint({own}, {tuple(joint.anchor_a)!r}, {tuple(joint.anchor_b)!r})"
-            case "PinJoint":
-                made = f"PinJoint({own}, {tuple(joint.anchor_a)!r}, {tuple(joint.anchor_b)!r})"
-            case "GrooveJoint":
-                ends = f"{tuple(joint.groove_a)!r}, {tuple(joint.groove_b)!r}"
-                made = f"GrooveJoint({own}, {ends}, {tuple(joint.anchor_b)!r})"
-            case "SimpleMotor":
-                made = f"SimpleMotor({own}, {joint.rate!r})"
-            case _:
-                return ""
-        lines.append(f"j{number} = pymunk.{made}")
-        lines.append(f"j{number}.error_bias = {joint.error_bias!r}")
-        if type(joint).__name__ == "PinJoint":
-            lines.append(f"j{number}.distance = {joint.distance!r}")
-        lines.append(f"space.add(j{number})")
+    try:
+        lines = object_lines(model.space, model.bodies)
+    except Unsupported:
+        return ""
     expected = instant_pymunk.first_law(engine, mechanism, dt) * model.unit
     body = "\n".join(lines)
     bodies = ", ".join(f"b{number}" for number in range(len(model.bodies)))
@@ -118,10 +94,6 @@ print("found   ", found.tolist())
 print("expected", expected.tolist())
 print("largest difference", np.abs(found - expected).max())
 '''
-
-
-def _number(value: float) -> str:
-    return repr(value) if np.isfinite(value) else 'float("inf")'
 
 
 def _numbers(values: Any) -> str:

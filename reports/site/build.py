@@ -12,14 +12,17 @@ import jinja2
 from markupsafe import Markup
 
 from reports.grid.tasks import Answer, Motion
-from reports.site import markdown
+from reports.site import live, markdown
 from reports.site.embed import data, picture, shown
 from reports.site.formulas import rendered
 from reports.site.lesson import Lesson
 from reports.site.lessons import LESSONS
 from reports.site.markdown import Formulas
+from reports.site.munk2d.compiling import compiled
 from reports.site.packages import NotFetched, Package, fetched
-from reports.site.packages_used import D3, KATEX, PLOT
+from reports.site.packages_used import D3, KATEX, MUJOCO, PLOT
+from reports.site.reference_pages import reference_pages
+from reports.site.rows import explored, stored_rows
 from reports.site.style import colours
 
 HERE = Path(__file__).parent
@@ -41,6 +44,8 @@ class Source:
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
+    contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
+    api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
     troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
 
 
@@ -54,11 +59,12 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     lessons = tuple(lessons)
     formulas = Formulas()
     taken = _packages((D3, PLOT), source)
+    running, missing = _engines(source, any(lesson.live for lesson in lessons))
     environment = _environment()
     pages: dict[str, str] = {}
     files: Files = {path.relative_to(ASSETS).as_posix(): path.read_bytes() for path in _assets()}
     files["colours.css"] = colours().encode()
-    files |= taken
+    files |= taken | running
     names = {name.removesuffix(".md"): name.removesuffix(".md") + ".html" for name in source.pages}
 
     def write(path: str, template: str, **given: object) -> None:
@@ -74,14 +80,38 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
         title_text = re.sub(r"<[^>]+>", "", title[1]) if title else name
         write(f"results/{names[name.removesuffix('.md')]}", "article.html", title=title_text, body=Markup(body))
     for lesson in lessons:
-        write(f"lessons/{lesson.name}.html", "lesson.html", **_lesson(lesson, source, formulas, names))
+        write(
+            f"lessons/{lesson.name}.html",
+            "lesson.html",
+            **_lesson(lesson, source, formulas, names),
+            **_running(running, missing),
+        )
+    api = _reference(source)
+    files |= api
+    guides = [(path.stem, path.read_text(encoding="utf-8")) for path in sorted((HERE / "howto").glob("*.md"))]
+    below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
+    for name, text in guides:
+        told = environment.from_string(text).render(contributing=lambda part: Markup(_quoted(source, part)))
+        body = markdown.linked(markdown.html(told, formulas), below, _elsewhere)
+        write(f"howto/{name}.html", "article.html", title=_title(text), body=Markup(body))
+    titles = [(name, _title(text)) for name, text in guides]
+    write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
+    write("results/rows.html", "explorer.html", title="All stored rows")
     write("index.html", "index.html", title="How far from ideal?", **_front(lessons, source))
     listed, why = rendered(formulas, source.cache)
     if why:
         source.troubles.append(f"Formulas are shown as TeX, since {why}.")
-    write("about.html", "about.html", title="About this site", packages=(D3, PLOT, KATEX), troubles=source.troubles)
+    write(
+        "about.html",
+        "about.html",
+        title="About this site",
+        packages=(D3, PLOT, MUJOCO, KATEX),
+        troubles=source.troubles,
+    )
     files |= {path: markdown.with_formulas(text, listed).encode() for path, text in pages.items()}
     files |= {f"results/{name}": text.encode() for name, text in {**source.pictures, **source.tables}.items()}
+    csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
+    files["results/rows.json"] = json.dumps(explored(*csv), separators=(",", ":"), allow_nan=False).encode()
     files[MARKER] = json.dumps({"pages": sorted(pages), "troubles": source.troubles}, indent=1).encode()
     return files
 
@@ -96,6 +126,64 @@ def _packages(packages: Iterable[Package], source: Source) -> Files:
             continue
         found |= {name: content[path] for path, name in package.files if name}
     return found
+
+
+def _engines(source: Source, wanted: bool) -> tuple[Files, list[str]]:
+    """The files with which pages run engines themselves, and what to say of those that are missing."""
+    files: Files = {}
+    missing = []
+    if not wanted:
+        return files, missing
+    try:
+        content = fetched(MUJOCO, source.cache)
+        files |= {name: content[path] for path, name in MUJOCO.files}
+    except NotFetched as reason:
+        missing.append(f"This site was built without MuJoCo: {reason}.")
+    try:
+        files["packages/munk2d.js"] = compiled(source.cache)
+    except NotFetched as reason:
+        missing.append(f"This site was built without Munk2D, the engine in pymunk: {reason}.")
+    source.troubles += missing
+    if files:
+        files["live/four_bar.json"] = json.dumps(live.data(), separators=(",", ":")).encode()
+        files["live/rows.json"] = json.dumps(stored_rows(source.tables.get("errors.csv", ""))).encode()
+    return files, missing
+
+
+def _reference(source: Source) -> Files:
+    if not source.api:
+        return {}
+    try:
+        return reference_pages()
+    except NotFetched as reason:
+        source.troubles.append(f"Built without the reference: {reason}.")
+        return {}
+
+
+def _quoted(source: Source, part: str) -> str:
+    """A part of CONTRIBUTING.md; where that is not there, a sentence that says so."""
+    if not source.contributing:
+        return "The steps stand in CONTRIBUTING.md of the checkout."
+    return markdown.section(source.contributing, part)
+
+
+def _running(files: Files, missing: list[str]) -> dict[str, object]:
+    """What a page says of the engines that it can run."""
+    known = {"packages/munk2d.js": ("munk2d", "Munk2D"), "packages/mujoco.js": ("mujoco", "MuJoCo")}
+    there = [told for path, told in known.items() if path in files]
+    words = ["Munk2D, the engine in pymunk", "MuJoCo"]
+    figure = {"motions": {word: None for word in words if any(name in word for _, name in there)}, "lost": {}}
+    return {
+        "engines": [word for word, _ in there],
+        "names": [name for _, name in there],
+        "missing": missing,
+        "nothing": figure,
+        "places": {
+            "cranks": live.CRANKS,
+            "couplers": [round(length, 4) for length in live.COUPLERS],
+            "ratios": live.RATIOS,
+        },
+    }
 
 
 def _assets() -> list[Path]:

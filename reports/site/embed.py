@@ -21,8 +21,8 @@ from reports.site.lesson import Take
 
 Array = NDArray[np.float64]
 
-TRUTH_DIGITS = 13  # after the point: half of the last is below 1e-13, so that a page holds the truth to 1e-12
-DIGITS = 9  # of a method's motion, and of forces relative to the largest
+TRUTH_DIGITS = 13  # of poses, after the point: half of the last is below 1e-13, so that a page holds the truth to 1e-12
+DIGITS = 9  # of twists, which only place the instant centre
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def data(shown: Shown) -> dict[str, Any]:
         "joints": joints,
         "size": mechanism.length_scale,
         "truth": {"pose": _listed(truth.pose), "twist": _listed(truth.twist, DIGITS)},
-        "motions": [{"name": name, "pose": _listed(pose, DIGITS)} for name, pose in shown.motions.items()],
+        "motions": [{"name": name, "pose": _listed(pose)} for name, pose in shown.motions.items()],
         "lost": [{"name": name, "why": why} for name, why in shown.lost.items()],
         "forces": forces(mechanism, truth),
         "centre": None if shown.take.centre is None else mechanism.body_index(shown.take.centre),

@@ -33,6 +33,7 @@ from engines.lagrange.flat import (
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies
+EACH_SAMPLE = 1_000  # accepted ones that each sample adds to these: a run of many samples comes to its end too
 ROUNDING = 2.2e-16
 STIFF_PRODUCT, STIFF_STEPS = 6.1, 15  # step times largest eigenvalue at the border of stability, so often met
 
@@ -53,7 +54,7 @@ def controlled(
             step = _first_step(whole, real, cells, t, tolerance, min(spacing * 10, end - t))
         least = 16 * ROUNDING * max(abs(t), spacing)
         tries += 1
-        if not step > least or tries > MOST_STEPS:
+        if not step > least or tries > MOST_STEPS or real[told + STEPS] > MOST_STEPS + EACH_SAMPLE * sample:
             real[told + STOPPED] = t
             return sample
         # Steps about as long as samples are apart end there, longer ones where the run does; a crumb is shared out.

@@ -1,4 +1,4 @@
-"""Three guides without scenes of their own: words, reactions, integrators; their numbers are stored rows."""
+"""Guides without scenes of their own: words, reactions, integrators, clusters; their numbers are stored rows."""
 
 from __future__ import annotations
 
@@ -85,4 +85,5 @@ PAGES = (
         INTEGRATORS,
         (FOUR_BAR,),
     ),
+    guide("cluster", "More than one machine", "How to run cells, searches and the failure atlas on a Dask cluster."),
 )

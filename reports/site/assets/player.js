@@ -99,7 +99,9 @@ export class Player {
     const begin = performance.now() - (this.frame / (this.frames - 1)) * SECONDS * 1000;
     const step = (/** @type {number} */ now) => {
       if (!this.playing) return;
-      this.frame = Math.min(this.frames - 1, Math.floor(((now - begin) / 1000 / SECONDS) * (this.frames - 1)));
+      // The first frame may have begun before the button was pressed.
+      const passed = Math.max(0, (now - begin) / 1000 / SECONDS);
+      this.frame = Math.min(this.frames - 1, Math.floor(passed * (this.frames - 1)));
       this.show();
       if (this.frame >= this.frames - 1) this.stop();
       else requestAnimationFrame(step);
@@ -270,7 +272,7 @@ function change(player, name) {
 document.documentElement.classList.add("js");
 /** @type {Map<string, Player>} */
 export const players = new Map();
-for (const figure of document.querySelectorAll("figure.moving[data-take]")) {
+for (const figure of document.querySelectorAll('figure.moving[data-take]:not([data-take=""])')) {
   if (figure instanceof HTMLElement) players.set(figure.id, new Player(figure, read(figure.dataset.take ?? "")));
 }
 const front = players.get("front");

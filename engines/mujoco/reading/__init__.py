@@ -1,0 +1,163 @@
+"""A user's MuJoCo model (MJCF or URDF) as a mechanism of the plane: `read`."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from engines.mujoco.reading.along_joints import off, turns
+from engines.mujoco.reading.equalities import equalities
+from engines.mujoco.reading.forces import forces
+from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
+from engines.mujoco.reading.joints import Scene, tree_joints
+from engines.mujoco.reading.other_settings import switch_off
+from engines.mujoco.reading.own_model import OwnMuJoCo
+from engines.reading import Reading, refuse
+from reference.forces import Force
+from reference.mechanism import Mechanism
+
+SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
+
+
+def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
+    """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, or in its first one.
+
+    The plane of motion is found. `without`: elements to switch off first, in a copy of the model too. Raises
+    Unsupported for what has no counterpart in the plane, in a sentence that names it, and InvalidMechanism for a start
+    that does not satisfy the model's own equalities.
+    """
+    if data is None:
+        data = mujoco.MjData(model)
+    model = copy.copy(model)
+    for element in without:
+        switch_off(model, element)
+    started = mujoco.MjData(model)
+    for name in ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos", "mocap_quat"):
+        getattr(started, name)[:] = getattr(data, name)
+    if model.nv == 0:
+        raise refuse("the model", "nothing in it can move")
+    # No contacts and no solver: a model of thousands of bodies is refused before that.
+    mujoco.mj_kinematics(model, started)
+    mujoco.mj_comPos(model, started)
+    frame = find_frame(model, started)
+    groups = find_groups(model, started, frame)
+    mujoco.mj_forward(model, started)
+    bodies = bodies_of(model, started, frame, groups)
+    scene = Scene(model, started, frame, groups, bodies)
+    joints = [*tree_joints(scene), *equalities(scene)]
+    acting = forces(scene)
+    bodies, weights = _with_armature(scene)
+    gravity = (0.0, 0.0) if off(model, "GRAVITY") else frame.in_plane(model.opt.gravity)
+    _note_gravity_across(scene)
+    _note_what_may_act(scene)
+    for element in without:
+        scene.note(element, "left out at your word, in your model too")
+    mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
+    own = OwnMuJoCo(scene, mechanism)
+    for _, words in own.obstacles(np.zeros(1), mechanism.pose[None]):
+        raise refuse(
+            words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
+        )
+    title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
+    return Reading(mechanism, own, tuple(scene.notes), title)
+
+
+def _note_gravity_across(scene: Scene) -> None:
+    model = scene.model
+    across = 0.0 if off(model, "GRAVITY") else float(model.opt.gravity @ scene.frame.normal)
+    if abs(across) <= 1e-12 * max(1.0, float(np.linalg.norm(model.opt.gravity))):
+        return
+    if np.any(model.jnt_type == FREE):
+        raise refuse("gravity", "it pulls a free body out of the plane")
+    scene.note("gravity", f"{across:g} m/s^2 of it act across the plane, where joints hold the bodies")
+
+
+def _note_what_may_act(scene: Scene) -> None:
+    """Limits and contacts, which count as left out once nothing in the judged motion has met them."""
+    model = scene.model
+    if off(model, "CONSTRAINT"):
+        return
+    if not off(model, "LIMIT"):
+        for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
+            for index in np.flatnonzero(limited):
+                element = name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
+                scene.note(element, "its limit, which is not reached in the judged motion")
+    shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
+    if not off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
+        scene.note("contacts", "none is made in the judged motion")
+
+
+def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
+    """Bodies with the inertia that armature gives them, and what takes its weight off where it has none."""
+    model, bodies, weights = scene.model, list(scene.bodies), []
+    gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
+    for joint in range(model.njnt):
+        added = float(model.dof_armature[int(model.jnt_dofadr[joint])])
+        if not added:
+            continue
+        group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
+        element, body = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint), bodies[group]
+        if model.jnt_type[joint] == HINGE and not turns(scene, parent):
+            bodies[group] = replace(body, inertia=body.inertia + added)
+        elif model.jnt_type[joint] != FREE and parent < 0 and len(scene.joints_of(group)) == 1:
+            bodies[group] = replace(body, mass=body.mass + added)
+            weight = scene.frame.in_plane(-added * gravity)
+            if any(weight):
+                label = scene.names.new(f"{body.name}: armature has no weight")
+                weights.append(Force(label, body.name, (0.0, 0.0), weight))
+        else:
+            words = "its armature is an inertia of a relative motion, which no body has; give --without armature"
+            raise refuse(element, words)
+    return tuple(bodies), weights
+
+
+class Reader:
+    """For `crosscheck check`: MJCF, URDF, and MuJoCo's own binary models."""
+
+    words = "a MuJoCo model (model.xml, model.urdf)"
+
+    def reads(self, word: str) -> bool:
+        return Path(word).suffix.lower() in SUFFIXES
+
+    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
+        """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
+        path = folder / word
+        if not path.is_file():
+            raise ValueError(f"{word}: there is no such file")
+        try:
+            if path.suffix.lower() == ".mjb":
+                model = mujoco.MjModel.from_binary_path(str(path))
+            else:
+                model = mujoco.MjModel.from_xml_path(str(path))
+        except ValueError as error:
+            raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
+        if step is not None:
+            model.opt.timestep = step
+        data = mujoco.MjData(model)
+        if model.nkey and key != "none":
+            mujoco.mj_resetDataKeyframe(model, data, _key(model, key))
+        elif key not in ("", "none"):
+            raise ValueError(f"--key is {key!r}; {word} has no keyframes")
+        return read(model, data, without)
+
+
+def _key(model: Any, key: str) -> int:
+    """The number of a keyframe, the first if none is named."""
+    if not key:
+        return 0
+    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_KEY, index) or str(index) for index in range(model.nkey)]
+    if key not in names:
+        raise ValueError(f"--key is {key!r}; there are {', '.join(names)}, and none")
+    return names.index(key)
+
+
+READER = Reader()

@@ -1,0 +1,235 @@
+"""A user's MuJoCo model as it is: run from its start, with its own settings or with others that MuJoCo documents."""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import copy
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.mujoco.reading.along_joints import beyond_springs
+from engines.mujoco.reading.declared import declared
+from engines.mujoco.reading.frame import angles_of, name_of
+from engines.mujoco.reading.joints import Scene
+from engines.mujoco.reading.other_settings import TIED_STEPS, changes, switch_off
+from engines.mujoco.reading.places import positions
+from engines.mujoco.releases import marks
+from engines.mujoco.running import _listening
+from engines.mujoco.stiffness import STIFFEST
+from engines.mujoco.written_file import INTEGRATORS, SOLVERS
+from engines.reading import Change, Give
+from reference.joints import Rod
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class OwnMuJoCo:
+    """The compiled model and its start; see `engines.reading.OwnModel`."""
+
+    scene: Scene
+    mechanism: Mechanism
+
+    @property
+    def engine(self) -> str:
+        return "MuJoCo"
+
+    @property
+    def dt(self) -> float:
+        return float(self.scene.model.opt.timestep)
+
+    @property
+    def declares(self) -> bool:
+        """Not with a rod: the equality of a tendon leaves out the term of the velocities, which no ideal row does."""
+        return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
+
+    @property
+    def softly_held(self) -> bool:
+        return any(self.scene.held.values())
+
+    @property
+    def elements(self) -> Sequence[str]:
+        return ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
+
+    @property
+    def settings(self) -> Mapping[str, str]:
+        model = self.scene.model
+        option = model.opt
+        out = {
+            "timestep": f"{option.timestep:g} s",
+            "integrator": _spelled(INTEGRATORS, mujoco.mjtIntegrator(option.integrator)),
+            "solver": _spelled(SOLVERS, mujoco.mjtSolver(option.solver)),
+            "iterations": f"{option.iterations}",
+            "tolerance": f"{option.tolerance:g}",
+            "cone": mujoco.mjtCone(option.cone).name.split("_")[1].lower(),
+        }
+        for index, joints in self.scene.held.items():
+            if joints:
+                element = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)
+                out[f"solref of {element}"] = " ".join(f"{value:g}" for value in model.eq_solref[index])
+                out[f"solimp of {element}"] = " ".join(f"{value:g}" for value in model.eq_solimp[index])
+        return out
+
+    def start(self) -> Array:
+        return self._start(self.scene.model)
+
+    def without(self, element: str) -> Array:
+        model = copy.copy(self.scene.model)
+        switch_off(model, element)
+        return self._start(model)
+
+    def _start(self, model: Any) -> Array:
+        """With the solver's tolerance at zero: the equations are to be compared, not where a solver stops."""
+        model = copy.copy(model)
+        model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
+        data = self._fresh(model)
+        mujoco.mj_forward(model, data)
+        return self._motion(model, data)[1]
+
+    @cached_property
+    def _give(self) -> Any:
+        return declared(self.scene, self.mechanism, self._directions(self.scene.data), self._drift())
+
+    def _drift(self) -> Array:
+        """Accelerations (3 bodies,) at the start with MuJoCo's coordinates at a steady rate."""
+        model = self.scene.model
+        data = self._fresh(model)
+        mujoco.mj_forward(model, data)
+        data.qacc[:] = 0.0
+        return self._motion(model, data)[1].reshape(-1)
+
+    def give(self, gap: Array) -> Give:
+        return self._give(gap)
+
+    def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
+        model, found = self.scene.model, dict[str, float]()
+        data = self._fresh(model)
+        kinds = mujoco.mjtConstraint
+        limits = {int(kinds.mjCNSTR_LIMIT_JOINT): "joint", int(kinds.mjCNSTR_LIMIT_TENDON): "tendon"}
+        touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
+        places = positions(self.scene, pose)
+        for at, qpos in zip(t, places, strict=True):
+            data.qpos[:] = qpos
+            mujoco.mj_fwdPosition(model, data)
+            for kind, index in zip(data.efc_type, data.efc_id, strict=True):
+                if kind in limits:
+                    obj = mujoco.mjtObj.mjOBJ_JOINT if limits[kind] == "joint" else mujoco.mjtObj.mjOBJ_TENDON
+                    found.setdefault(f"{name_of(model, obj, int(index))} reaches its limit", float(at))
+                elif kind in touching:
+                    pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, int(each)) for each in data.contact[index].geom]
+                    found.setdefault(f"{pair[0]} touches {pair[1]}", float(at))
+        if reached := beyond_springs(self.scene, t, places):
+            found.setdefault(*reached)
+        return sorted((at, words) for words, at in found.items())
+
+    def changes(self, smallest: float) -> list[Change]:
+        return changes(self.scene.model, self.softly_held, smallest)
+
+    def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
+        model, spacing = copy.copy(self.scene.model), every * self.dt
+        if change is not None:
+            options = dict(change.options)
+            model.opt.timestep = change.dt
+            model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{options['integrator']}")
+            if options["tied"]:
+                model.eq_solref[:] = (TIED_STEPS * change.dt, 1.0)
+                model.eq_solimp[:] = STIFFEST
+        steps = max(1, round(spacing / model.opt.timestep))
+        t = np.arange(samples + 1, dtype=np.float64) * spacing
+        data = self._fresh(model)
+        qpos, qvel = np.full((samples + 1, model.nq), np.nan), np.full((samples + 1, model.nv), np.nan)
+        now_qpos, now_qvel = data.qpos, data.qvel
+        qpos[0], qvel[0] = now_qpos, now_qvel
+        with _listening(data) as complaints:
+            begin = time.process_time()
+            for sample in range(1, samples + 1):
+                mujoco.mj_step(model, data, nstep=steps)
+                if data.time < t[sample] - spacing / 2:  # MuJoCo has started anew
+                    break
+                qpos[sample], qvel[sample] = now_qpos, now_qvel
+            stepping = time.process_time() - begin
+            reset = complaints.reset_at
+            sound = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
+            if reset is not None:
+                sound &= t < reset
+            pose, twist, acceleration = self._read(model, data, qpos, qvel, sound)
+            warnings = (*complaints.said, *marks())
+        reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
+        if self.mechanism.row_count:
+            own = (each[sound] for each in (pose, acceleration, twist))
+            reaction[sound] = self._reactions(*own) if sound.any() else np.nan
+        return Trajectory(t, pose, twist, reaction, stepping, warnings, reset)
+
+    def _reactions(self, pose: Array, acceleration: Array, twist: Array) -> Array:
+        return self.mechanism.reaction(pose, acceleration, twist=twist)
+
+    def _read(self, model: Any, data: Any, qpos: Array, qvel: Array, sound: Any) -> tuple[Array, Array, Array]:
+        shape = (len(qpos), len(self.mechanism.bodies), 3)
+        pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
+        data = self._fresh(model)
+        last = int(np.argmin(sound)) if not sound.all() else len(sound)
+        sound[last:] = False
+        angles = angles_of(model, self.scene.frame, self.scene.groups, qpos[:last]) if last else np.zeros((0, 1))
+        for sample in range(last):
+            data.qpos[:], data.qvel[:] = qpos[sample], qvel[sample]
+            mujoco.mj_forward(model, data)
+            data.qacc_warmstart[:] = data.qacc
+            twist[sample], acceleration[sample] = self._motion(model, data)
+            pose[sample, :, :2] = self._centres(data) @ self.scene.frame.both.T
+            pose[sample, :, 2] = angles[sample]
+        return pose, twist, acceleration
+
+    def _fresh(self, model: Any) -> Any:
+        """A mujoco.MjData at the user's start."""
+        data, given = mujoco.MjData(model), self.scene.data
+        for name in ("qpos", "qvel", "ctrl", "act", "qfrc_applied", "xfrc_applied", "eq_active", "mocap_pos"):
+            getattr(data, name)[:] = getattr(given, name)
+        data.mocap_quat[:] = given.mocap_quat
+        return data
+
+    def _centres(self, data: Any) -> Array:
+        groups = self.scene.groups
+        roots = list(groups.roots)
+        turns = data.xmat[roots].reshape(-1, 3, 3)
+        return data.xpos[roots] + np.einsum("bij,bj->bi", turns, groups.centres)
+
+    def _motion(self, model: Any, data: Any) -> tuple[Array, Array]:
+        """Twists and accelerations (bodies, 3) in the state of `data`, after mj_forward."""
+        frame, count = self.scene.frame, len(self.mechanism.bodies)
+        out = np.zeros((2, count, 3))
+        jac, rate = np.zeros((2, 3, model.nv)), np.zeros((2, 3, model.nv))
+        # What holds a tree: the derivative of the Jacobian along the motion.
+        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, self._centres(data), strict=True)):
+            mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
+            mujoco.mj_jacDot(model, data, rate[0], rate[1], centre, root)
+            for which, vectors in enumerate((jac @ data.qvel, jac @ data.qacc + rate @ data.qvel)):
+                out[which, index, :2] = frame.both @ vectors[0]
+                out[which, index, 2] = frame.normal @ vectors[1]
+        return out[0], out[1]
+
+    def _directions(self, data: Any) -> Array:
+        """(3 bodies, nv): twists of unit velocities of MuJoCo's coordinates."""
+        model, frame = self.scene.model, self.scene.frame
+        jac = np.zeros((2, 3, model.nv))
+        out = np.zeros((len(self.mechanism.bodies), 3, model.nv))
+        for index, (root, centre) in enumerate(zip(self.scene.groups.roots, self._centres(data), strict=True)):
+            mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
+            out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
+        return out.reshape(-1, model.nv)
+
+
+def _spelled(words: Mapping[str, str], value: Any) -> str:
+    """MuJoCo's constant as MJCF spells it."""
+    word = value.name.split("_")[1]
+    return words.get(word, word.lower())

@@ -1,0 +1,203 @@
+"""pymunk's bodies and constraints as ideal bodies, joints and force elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf, isinf
+
+import pymunk
+from pymunk.constraints import (
+    Constraint,
+    DampedRotarySpring,
+    DampedSpring,
+    GearJoint,
+    GrooveJoint,
+    PinJoint,
+    PivotJoint,
+    RatchetJoint,
+    RotaryLimitJoint,
+    SimpleMotor,
+    SlideJoint,
+)
+
+from engines.reading import MOST_BODIES, Names, Note, refuse
+from reference.body import Body
+from reference.forces import Damper, ForceElement, Spring, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Vector
+
+LIMITS = (SlideJoint, RotaryLimitJoint)
+STILL = 0.0
+
+
+@dataclass(eq=False)
+class Described:
+    """A space while it is read. `moving`: the bodies of the mechanism, in its order; others are the ground."""
+
+    space: pymunk.Space
+    moving: list[pymunk.Body] = field(default_factory=list)
+    words: dict[pymunk.Body, str] = field(default_factory=dict)
+    bodies: list[Body] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    forces: list[ForceElement] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
+    names: Names = field(default_factory=Names)
+    prescribed: list[str] = field(default_factory=list)  # joints that only say how a body moves
+    constraints: dict[Constraint, str] = field(default_factory=dict)
+
+    def name(self, body: pymunk.Body) -> str | None:
+        return self.words.get(body)
+
+    def own(self, body: pymunk.Body, point: Vector) -> Vector:
+        """A point of a pymunk body in our frame, from the centre of mass; of the ground, in the world."""
+        if body in self.words:
+            x, y = body.center_of_gravity
+            return (float(point[0] - x), float(point[1] - y))
+        place = body.local_to_world((point[0], point[1]))
+        return (float(place.x), float(place.y))
+
+    def angle(self, body: pymunk.Body) -> float:
+        """0 on the ground, where lines and angles are those of the world."""
+        return float(body.angle) if body in self.words else 0.0
+
+    def standing(self, body: pymunk.Body) -> float:
+        """The angle of a body of the ground in the world."""
+        return 0.0 if body in self.words else float(body.angle)
+
+
+def described(space: pymunk.Space) -> Described:
+    """All of a space. Raises Unsupported for what has no ideal counterpart."""
+    out = Described(space)
+    if space.damping != 1:
+        raise refuse("space.damping", f"it is {space.damping:g}: a drag against nothing has no ideal counterpart here")
+    moves = [body for body in space.bodies if _moves(body)]
+    if not moves:
+        raise refuse("the space", "nothing in it can move")
+    if len(moves) > MOST_BODIES:
+        raise refuse("the space", f"it has {len(moves)} moving bodies; the judge takes up to {MOST_BODIES}")
+    for number, body in enumerate(moves, start=1):
+        out.moving.append(body)
+        out.words[body] = out.names.new(str(getattr(body, "name", f"body {number}")))
+    for body in moves:
+        _add_body(out, body)
+    counts: dict[str, int] = {}
+    for constraint in space.constraints:
+        kind = type(constraint).__name__
+        counts[kind] = counts.get(kind, 0) + 1
+        label = out.names.new(str(getattr(constraint, "name", f"{kind} {counts[kind]}")))
+        out.constraints[constraint] = label
+        _add_constraint(out, constraint, label)
+    return out
+
+
+def _moves(body: pymunk.Body) -> bool:
+    if body.body_type == pymunk.Body.KINEMATIC:
+        return bool(body.angular_velocity != STILL or tuple(body.velocity) != (STILL, STILL))
+    return body.body_type == pymunk.Body.DYNAMIC
+
+
+def _add_body(out: Described, body: pymunk.Body) -> None:
+    name = out.words[body]
+    if getattr(body, "_velocity_func", None) or getattr(body, "_position_func", None):
+        raise refuse(name, "it moves by a function of its own, which has no ideal counterpart")
+    if body.force.length or body.torque:
+        raise refuse(name, "a force stands on it, which pymunk takes off after one step; take it off")
+    place = body.local_to_world(body.center_of_gravity)
+    pose = (float(place.x), float(place.y), float(body.angle))
+    if body.body_type == pymunk.Body.KINEMATIC:
+        if body.velocity.length:
+            raise refuse(name, "a kinematic body that travels has no ideal counterpart here; it may turn about a place")
+        rate = float(body.angular_velocity)
+        pose = (float(body.position.x), float(body.position.y), float(body.angle))
+        out.bodies.append(Body(name, 1.0, 1.0, pose, (0.0, 0.0, rate)))  # of a known motion: any mass will do
+        pin, drive = out.names.new(f"{name} stays"), out.names.new(f"{name} turns")
+        out.joints += [Pin(pin, None, name, pose[:2], (0.0, 0.0)), Drive(drive, None, name, rate, pose[2])]
+        out.prescribed += [pin, drive]
+        return
+    if not 0 < body.mass < inf or not body.moment > 0:
+        raise refuse(name, f"its mass is {body.mass:g} and its moment {body.moment:g}; both must be above zero")
+    rate = float(body.angular_velocity)
+    twist = (float(body.velocity.x), float(body.velocity.y), rate)
+    if isinf(body.moment):
+        out.bodies.append(Body(name, float(body.mass), 1.0, pose, twist))
+        label = out.names.new(f"{name} turns steadily")
+        out.joints.append(Drive(label, None, name, rate, pose[2]))
+        out.prescribed.append(label)
+    else:
+        out.bodies.append(Body(name, float(body.mass), float(body.moment), pose, twist))
+
+
+def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
+    a, b = constraint.a, constraint.b
+    # A body that stands still need not be in the space.
+    if any(_moves(body) and body.space is not out.space for body in (a, b)):
+        raise refuse(label, "it holds a body that is not in the space; add the body too")
+    first, second = out.name(a), out.name(b)
+    if isinstance(constraint, LIMITS):
+        out.notes.append(Note(label, "its limit, which is not reached in the judged motion"))
+        return
+    if first == second:
+        out.notes.append(Note(label, "it joins what stands still"))
+        return
+    if constraint.max_force != inf:
+        raise refuse(label, f"its force is limited to {constraint.max_force:g}, which no ideal joint is")
+    if getattr(constraint, "_pre_solve_func", None) or getattr(constraint, "_post_solve_func", None):
+        raise refuse(label, "a function of its own runs before or after it is solved")
+    match constraint:
+        case PivotJoint():
+            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
+            out.joints.append(Pin(label, first, second, *points))
+        case GrooveJoint():
+            ends = [out.own(a, point) for point in (constraint.groove_a, constraint.groove_b)]
+            line = pymunk.Vec2d(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
+            if not line.length:
+                raise refuse(label, "its groove has no length")
+            out.joints.append(Slot(label, first, second, ends[0], float(line.angle), out.own(b, constraint.anchor_b)))
+        case PinJoint():
+            points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
+            if constraint.distance:
+                out.joints.append(Rod(label, first, second, *points, float(constraint.distance)))
+            else:
+                raise refuse(label, "its distance is zero, which has no direction; give a PivotJoint")
+        case GearJoint():
+            out.joints.append(_geared(out, constraint, label))
+        case SimpleMotor():
+            turned = out.angle(b) - out.angle(a)
+            out.joints.append(Drive(label, first, second, -float(constraint.rate), turned))
+        case DampedSpring():
+            _refuse_own_force(constraint, label, "_force_func")
+            ends = first, second, out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
+            if constraint.stiffness:
+                out.forces.append(Spring(label, *ends, float(constraint.stiffness), float(constraint.rest_length)))
+            if constraint.damping:
+                out.forces.append(Damper(out.names.new(f"{label} damper"), *ends, float(constraint.damping)))
+        case DampedRotarySpring():
+            _refuse_own_force(constraint, label, "_torque_func")
+            # Chipmunk's angle is that of the first body against the second.
+            rest = float(constraint.rest_angle) + out.standing(b) - out.standing(a)
+            if constraint.stiffness:
+                out.forces.append(TorsionSpring(label, second, first, float(constraint.stiffness), rest))
+            if constraint.damping:
+                word = out.names.new(f"{label} damper")
+                out.forces.append(TorsionDamper(word, second, first, float(constraint.damping)))
+        case RatchetJoint():
+            raise refuse(label, "a ratchet has no ideal counterpart")
+        case _:
+            raise refuse(label, f"a {type(constraint).__name__} has no ideal counterpart here")
+
+
+def _refuse_own_force(constraint: Constraint, label: str, function: str) -> None:
+    if getattr(constraint, function, None):
+        raise refuse(label, "its force is a function of its own")
+
+
+def _geared(out: Described, gear: GearJoint, label: str) -> Joint:
+    """angle of a = ratio times angle of b - phase (preStep in Chipmunk's cpGearJoint.c)."""
+    ratio, a, b = float(gear.ratio), out.name(gear.a), out.name(gear.b)
+    if not ratio:
+        raise refuse(label, "its ratio is zero")
+    phase = -float(gear.phase) + ratio * out.standing(gear.b) - out.standing(gear.a)
+    if b is None:
+        return Drive(label, None, a, 0.0, phase)
+    if a is None:
+        return Drive(label, None, b, 0.0, -phase / ratio)
+    return Gear(label, b, a, ratio, phase)

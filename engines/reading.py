@@ -1,0 +1,163 @@
+"""A user's own model, read: the mechanism that it describes, what was left out, and the model itself, ready to be run.
+
+What `crosscheck check` asks of a reader, and nothing of one engine. A reader stands under the entry point group
+`crosscheck.readers`. What it can't read it refuses by `Unsupported`, in a sentence that names the element.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.contract import Unsupported
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+# The judge solves dense rows at every step: more bodies than this take minutes.
+MOST_BODIES = 200
+
+
+@dataclass(frozen=True)
+class Note:
+    """An element of the user's model that the mechanism lacks, and why the check goes on without it."""
+
+    element: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Change:
+    """Documented settings of an engine: what they are in `words`, the `lines` to copy, the step `dt` [s]."""
+
+    words: str
+    dt: float
+    lines: tuple[str, ...]
+    options: tuple[tuple[str, Any], ...] = ()  # for the model's own use
+
+
+@dataclass(frozen=True, eq=False)
+class Give:
+    """How rows give way by the engine's own declaration: J a = bias - damping slip - stiffness gap - compliance F.
+
+    `instead`: at the start, what stands in the place of the bias where the engine leaves it out; NaN elsewhere.
+    All (rows,), of the mechanism's rows; zero where a row holds exactly. stiffness [1/s^2]; damping [1/s]; compliance
+    [1/kg, 1/(kg m^2)].
+    """
+
+    stiffness: Array
+    damping: Array
+    compliance: Array
+    instead: Array
+
+
+class OwnModel(Protocol):
+    """A user's model as it is: it can be run from its start as often as one likes."""
+
+    @property
+    def engine(self) -> str: ...
+    @property
+    def dt(self) -> float:
+        """The user's step [s]."""
+        ...
+
+    @property
+    def settings(self) -> Mapping[str, str]:
+        """The engine's own settings in the model, in words."""
+        ...
+
+    @property
+    def declares(self) -> bool:
+        """Whether the engine declares a law of its joints that no step takes part in."""
+        ...
+
+    @property
+    def softly_held(self) -> bool:
+        """Whether that law lets some joints give way."""
+        ...
+
+    def start(self) -> Array:
+        """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2]."""
+        ...
+
+    def give(self, gap: Array) -> Give:
+        """How the joints give way where they are open by `gap` (rows,) [m, rad]."""
+        ...
+
+    def without(self, element: str) -> Array:
+        """`start`, with one of `elements` switched off."""
+        ...
+
+    @property
+    def elements(self) -> Sequence[str]:
+        """What can be switched off, to find out what explains a difference."""
+        ...
+
+    def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
+        """What a motion of poses (times, bodies, 3) runs into, that the mechanism lacks: the time [s] and what."""
+        ...
+
+    def changes(self, smallest: float) -> list[Change]:
+        """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own."""
+        ...
+
+    def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
+        """The user's model in motion: samples + 1 states, `every` of the user's steps apart."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What a user's model describes: a mechanism, what was left out of it, and the model, as it is."""
+
+    mechanism: Mechanism
+    model: OwnModel
+    notes: tuple[Note, ...]
+    title: str = ""
+
+
+class Reader(Protocol):
+    """Under `crosscheck.readers`: it says what it reads, and reads it."""
+
+    @property
+    def words(self) -> str:
+        """What it reads, for a message."""
+        ...
+
+    def reads(self, word: str) -> bool:
+        """Whether a word on the command line is a model for this reader."""
+        ...
+
+    def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
+        """The model. Raises Unsupported, or ValueError where the file is no model.
+
+        `without`: elements to switch off in the user's model too; `key`: the name or number of a stored state; `step`
+        [s]: the user's, instead of the model's own.
+        """
+        ...
+
+
+def refuse(element: str, reason: str) -> Unsupported:
+    """The error for an element that has no ideal counterpart."""
+    return Unsupported(f"{element}: {reason}")
+
+
+class Names:
+    """Names that differ: a model may call a joint and an equality alike, or nothing at all."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def new(self, wanted: str) -> str:
+        """The name wanted, or the same with a number."""
+        name, number = wanted, 2
+        while name in self._taken:
+            name, number = f"{wanted} ({number})", number + 1
+        self._taken.add(name)
+        return name

@@ -1,0 +1,132 @@
+"""What a mechanism is, before any engine is blamed: freedoms, redundant rows, singular positions, time scales."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.joints import Drive, Pin, Slot
+from reference.mechanism import Mechanism
+from reference.row_system import undetermined
+from reference.trajectory import Trajectory
+from reports.check.law import accelerations
+
+Array = NDArray[np.float64]
+# The least singular value beside the largest below which rows nearly depend on one another.
+NEAR = 1e-2
+NEVER = 1e-9
+MOST_NUMBERS = 2e7  # of rows over all samples whose singular values are asked for
+STEP = 1e-6  # of length and time: of differences
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Counts and instants [s]; rates in rad/s and 1/s."""
+
+    bodies: int
+    joints: int
+    forces: int
+    rows: int
+    freedoms: tuple[int, int]  # of configuration, of velocity
+    redundant: int
+    undetermined: tuple[str, ...]  # rows whose reactions rigid bodies alone don't tell
+    singular: tuple[tuple[float, float], ...]  # (time, least singular value beside the largest)
+    dead_centres: tuple[tuple[float, str], ...]
+    fastest_rotation: float
+    stiffest_mode: float  # rad/s or 1/s, at the start
+    length: float
+    time: float
+
+
+def facts_of(mechanism: Mechanism, motion: Trajectory) -> Facts:
+    """From the mechanism and the judge's motion of it."""
+    freedoms = mechanism.degrees_of_freedom()
+    independent = 3 * len(mechanism.bodies) - freedoms[1]
+    rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, 3 * len(mechanism.bodies)))
+    idle = undetermined(rows, mechanism.length_scale) if len(rows) else np.zeros(0, dtype=bool)
+    names = tuple(name for name, which in zip(mechanism.row_names, idle, strict=True) if which)
+    return Facts(
+        len(mechanism.bodies),
+        len(mechanism.joints),
+        len(mechanism.forces),
+        mechanism.row_count,
+        freedoms,
+        mechanism.row_count - independent,
+        names,
+        _singular(mechanism, motion, independent),
+        _dead_centres(mechanism, motion, freedoms[1]),
+        float(np.abs(motion.twist[..., 2]).max()),
+        _stiffest(mechanism),
+        mechanism.length_scale,
+        mechanism.time_scale,
+    )
+
+
+def _singular(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:
+    """The instants at which the independent rows come near to depending on one another."""
+    if independent < 2:
+        return ()
+    stride = max(1, int(len(motion.t) * mechanism.row_count * 3 * len(mechanism.bodies) / MOST_NUMBERS))
+    poses, times = motion.pose[::stride], motion.t[::stride]
+    scaled = mechanism.joint_rows.dense(poses) / np.tile([1.0, 1.0, mechanism.length_scale], len(mechanism.bodies))
+    norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    sizes = np.linalg.svd(scaled / np.where(norm > 0, norm, 1.0), compute_uv=False)
+    least = sizes[:, independent - 1] / sizes[:, 0]
+    found = []
+    for index in range(len(times)):
+        around = least[max(0, index - 1) : index + 2]
+        if least[index] < NEAR and least[index] == around.min():
+            found.append((float(times[index]), float(least[index])))
+    return tuple(found)
+
+
+def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
+    """When a body that is held to the ground stops and turns back while the mechanism goes on: of one freedom alone."""
+    loops = mechanism.row_count > 2 * len(mechanism.bodies)
+    if freedoms > 1 or not loops:
+        return ()
+    held = {
+        name
+        for joint in mechanism.joints
+        if isinstance(joint, Pin | Slot | Drive) and None in (joint.first, joint.second)
+        for name in (joint.first, joint.second)
+        if name is not None
+    }
+    rates = motion.twist[..., 2]
+    busy = np.abs(rates).max(axis=1)
+    out = []
+    for name in sorted(held):
+        own = rates[:, mechanism.body_index(name)]
+        turned = np.flatnonzero((own[:-1] * own[1:] < 0) & (busy[:-1] > 0.1 * busy.max()))
+        for index in turned:
+            share = own[index] / (own[index] - own[index + 1])
+            out.append((float(motion.t[index] + share * (motion.t[index + 1] - motion.t[index])), name))
+    return tuple(sorted(out))
+
+
+def _stiffest(mechanism: Mechanism) -> float:
+    """The largest eigenvalue of small motions about the start, at rest [1/s]; 0 where nothing can move."""
+    count = mechanism.pose.size
+    unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))
+    _, sizes, right = np.linalg.svd(rows * unit, full_matrices=True)
+    rank = int(np.sum(sizes > NEVER * sizes[0])) if len(sizes) else 0
+    free = right[rank:].T  # directions without units that the joints allow
+    if free.shape[1] == 0 or free.shape[1] > 60:
+        return 0.0
+
+    def of(pose: Array, twist: Array) -> Array:
+        return accelerations(mechanism, pose, twist, 0.0).reshape(-1) / unit
+
+    rest, slope = np.zeros_like(mechanism.pose), STEP / mechanism.time_scale
+    by_place, by_speed = np.zeros((2, count, free.shape[1]))
+    for column in range(free.shape[1]):
+        way = (unit * free[:, column]).reshape(-1, 3)
+        by_place[:, column] = of(mechanism.pose + STEP * way, rest) - of(mechanism.pose - STEP * way, rest)
+        by_speed[:, column] = of(mechanism.pose, slope * way) - of(mechanism.pose, -slope * way)
+    own = free.T @ by_place / (2 * STEP), free.T @ by_speed / (2 * slope)
+    still, one = np.zeros_like(own[0]), np.eye(len(own[0]))
+    values = np.linalg.eigvals(np.block([[still, one], [own[0], own[1]]]))
+    return float(np.abs(values).max()) if np.isfinite(values).all() else float("nan")

@@ -1,0 +1,104 @@
+"""A check as work for a supervised process: what is asked, and what comes back, both plain enough to be sent.
+
+A user's script is run in that process: if it raises, ends the process or never ends, the command says so and goes on.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from engines import Unsupported
+from engines.entry_points import registered_by_key
+from engines.loading import Kind
+from engines.reading import Reader, Reading
+from reference.validation import InvalidMechanism
+from reports.check.checked import check
+from reports.check.telling import Section, data, sections, verdict
+
+MEMBERS = ("words", "reads", "read")
+
+
+@dataclass(frozen=True)
+class Request:
+    """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is."""
+
+    word: str
+    folder: str
+    duration: float
+    tolerance: float
+    without: tuple[str, ...] = ()
+    key: str = ""
+    step: float | None = None
+    pictures: bool = True
+    notes: str = ""
+
+    @property
+    def label(self) -> str:
+        return self.word
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was found, as sections and as plain data."""
+
+    met: bool
+    verdict: str
+    sections: tuple[Section, ...]
+    data: dict[str, Any]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Refused:
+    """One sentence that says why there is no answer."""
+
+    sentence: str
+
+
+def readers() -> dict[str, Reader]:
+    """Who reads a user's models, by the keys of the entry point group `crosscheck.readers`."""
+    lacking = "it lacks words, reads or read"
+    kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
+    return registered_by_key("crosscheck.readers", kind)
+
+
+def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None) -> Reading:
+    """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
+    known = readers().values()
+    for reader in known:
+        if reader.reads(word):
+            return reader.read(word, folder, without, key, step)
+    raise ValueError(f"{word} is no model; give {' or '.join(reader.words for reader in known)}")
+
+
+def answered(request: Request) -> Answer | Refused:
+    """In a worker: the check, or why there is none."""
+    begin = time.monotonic()
+
+    def told(words: str) -> None:
+        if request.notes:
+            Path(request.notes).write_text(words, encoding="utf-8")
+
+    try:
+        told("reading")
+        reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
+        found = check(reading, reading.title or Path(request.word).name, request.duration, request.tolerance, told)
+        drawn = {}
+        if request.pictures:
+            told("drawing")
+            from reports.check.pictures import pictures  # a second of imports
+
+            drawn = pictures(found)
+    except (Unsupported, InvalidMechanism, ValueError) as reason:
+        return Refused(_one_line(request, reason))
+    told_sections = tuple(sections(found, drawn))
+    return Answer(found.met, verdict(found), told_sections, data(found), time.monotonic() - begin)
+
+
+def _one_line(request: Request, reason: Exception) -> str:
+    sentence = " ".join(str(reason).split())
+    return sentence if sentence.startswith(("--", request.word)) else f"{request.word}: {sentence}"

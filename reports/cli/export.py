@@ -1,0 +1,140 @@
+"""`crosscheck export SCENE` and `crosscheck view SCENE`: a scene as a file that runs without us, or to look at."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from reports.cli.options import REFERENCES
+from reports.grid.ending import BadInput, FileTrouble
+from reports.grid.files import write_whole
+
+if TYPE_CHECKING:
+    from reference.scene import Scene
+
+INSTANTS = 10  # at which the truth is told
+MEMBERS = ("suffix", "write", "commented")
+
+SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
+Out = Annotated[Path | None, typer.Option("--out", help="The file; standard output unless given.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
+
+
+def export(
+    scene: SceneName,
+    to: Annotated[str, typer.Option("--to", help="mjcf, urdf, or the engine whose script it is.")] = "mjcf",
+    variant: Annotated[str, typer.Option(help="The variant whose settings the file has.")] = "default",
+    step: Annotated[float, typer.Option(help="The step in the file [s].")] = 1e-3,
+    out: Out = None,
+    force: Force = False,
+) -> None:
+    """Write a scene as a file that runs without this suite, with the truth at ten instants in its comments."""
+    known = writers()
+    if to not in known:
+        raise BadInput(f"--to is {to!r}; it must be one of {', '.join(sorted(known))}")
+    if not 0 < step < float("inf"):
+        raise BadInput(f"--step is {step:g}; it must be a finite time above zero")
+    chosen = _scene(scene)
+    text = _written(known[to], chosen, step, variant)
+    if out is None:
+        from reports.cli.terminal import written
+
+        with written():
+            print(text, end="")
+        return
+    _write(out, text, force)
+
+
+def view(
+    scene: SceneName,
+    variant: Annotated[str, typer.Option(help="The variant that the viewer steps.")] = "default",
+    out: Annotated[Path | None, typer.Option("--out", help="An animation in this file (.svg), and no viewer.")] = None,
+    force: Force = False,
+) -> None:
+    """Look at a scene: in an engine's viewer where there is a display, or else as an animation in a file."""
+    from engines import Unsupported
+
+    chosen = _scene(scene)
+    if out is None:
+        try:
+            for show in _viewers().values():
+                show(writers()["mjcf"].write(chosen.mechanism(), 1e-3, variant))
+                return
+        except Unsupported as reason:
+            print(f"no viewer: {reason}")
+        out = Path(f"{chosen.name}.svg")
+    from reports.site.animated import animation
+    from reports.site.embed import shown
+    from reports.site.lessons import take_like
+
+    motion = shown(take_like(chosen, ()), {})
+    _write(out, animation(motion, f"{chosen.name.replace('_', ' ')}: the exact motion"), force)
+
+
+def writers() -> dict[str, Any]:
+    """What writes files, by the words of --to: the entry point group `crosscheck.writers`."""
+    from engines.entry_points import registered_by_key
+    from engines.loading import Kind
+
+    lacking = f"it lacks {', '.join(MEMBERS)}"
+    kind = Kind("writer", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
+    return registered_by_key("crosscheck.writers", kind)
+
+
+def _viewers() -> dict[str, Any]:
+    from engines.entry_points import registered_by_key
+    from engines.loading import Kind
+
+    return registered_by_key(
+        "crosscheck.viewers", Kind("viewer", lambda value: "" if callable(value) else "it is none")
+    )
+
+
+def _scene(word: str) -> Scene:
+    from reports.cli.known import registered, with_words
+    from reports.cli.selection import choose_scenes
+
+    known, names, _ = with_words(registered(), [word], None, ())
+    found = choose_scenes(names, known.scenes, known.pages)
+    if len(found) != 1:
+        raise BadInput(f"{word} is {len(found)} scenes: {', '.join(each.name for each in found)}; name one")
+    return found[0]
+
+
+def _written(writer: Any, scene: Scene, step: float, variant: str) -> str:
+    from engines import Unsupported
+
+    mechanism = scene.mechanism()
+    try:
+        text = writer.write(mechanism, step, variant)
+    except (Unsupported, ValueError) as reason:
+        raise BadInput(f"{scene.name}: {reason}") from None
+    return writer.commented(text, [*told(scene), f"Settings of the variant {variant!r}, with a step of {step:g} s."])
+
+
+def told(scene: Scene) -> list[str]:
+    """The truth at ten instants: poses of all bodies, in the plane of the scene."""
+    import numpy as np
+
+    mechanism = scene.mechanism()
+    names = [body.name for body in mechanism.bodies]
+    times = np.linspace(0.0, scene.duration, INSTANTS)
+    lines = [f"{scene.name} ({scene.source}): where the centres of mass are [m], and the angles [rad], in truth."]
+    x, y = mechanism.gravity
+    lines.append(f"Gravity: {x:.12g}, {y:.12g} m/s^2 in the plane, x and y as below; some formats can't hold it.")
+    for t, poses in zip(times, scene.motion(times).pose, strict=True):
+        lines.append(f"t = {t:.6g} s")
+        lines += [
+            f"    {name}: x {x:.12g}, y {y:.12g}, angle {angle:.12g}"
+            for name, (x, y, angle) in zip(names, poses, strict=True)
+        ]
+    return lines
+
+
+def _write(path: Path, text: str, force: bool) -> None:
+    if not force and (path.is_symlink() or path.exists()):
+        raise FileTrouble(f"{path} is there already: give another --out, or --force to replace it")
+    write_whole({path: text}, "give another --out")
+    print(f"written: {path}")

@@ -1,0 +1,123 @@
+"""A column of the atlas: one scene at one value of its parameter, in one engine, at every step."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engines import Engine
+from engines.pymunk.contraction import contraction
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reports.grid.cells import Cell, estimated_cost
+from reports.grid.measure import TORN, measure
+from reports.grid.tasks import Task, Values
+
+LOOKS = 20  # instants of the truth at which the forces are taken
+
+
+@dataclass(frozen=True)
+class Column(Task):
+    """`steps` are (samples, steps a sample); every cell of a column is measured as any other cell of the grid is.
+
+    All engines of a value are one task, since they share its truth. A column whose process ends is asked again cell by
+    cell (`singles`), so that an abort costs one cell.
+    """
+
+    scene: Scene
+    engines: tuple[Engine, ...]
+    steps: tuple[tuple[int, int], ...]
+
+    @property
+    def cost(self) -> float:
+        return sum(estimated_cost(cell) + 2e-3 for engine in self.engines for cell in self.cells(engine))
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name}, {len(self.engines) * len(self.steps)} cells"
+
+    def cells(self, engine: Engine) -> tuple[Cell, ...]:
+        return tuple(Cell(self.scene, engine, every, "map", samples) for samples, every in self.steps)
+
+    @property
+    def singles(self) -> tuple[Column, ...]:
+        """Its cells, each a column of its own."""
+        return tuple(replace(self, engines=(engine,), steps=(one,)) for engine in self.engines for one in self.steps)
+
+    def run(self) -> Values:
+        """outcomes: words of all steps, engine by engine, with commas between; errors (engines, steps) [rad].
+
+        seconds (engines,): CPU time of the cells, the first engine's with that of the truth. gives (engines,) [s] and
+        left (engines,): see `gives_from` and `left_by_sweeps`.
+        """
+        outcomes: list[str] = []
+        errors, seconds = [], []
+        for engine in self.engines:
+            begin = time.process_time()
+            rows = [measure(cell, repeat=False) for cell in self.cells(engine)]
+            seconds.append(time.process_time() - begin)
+            outcomes += [str(row.outcome) for row in rows]
+            errors.append([row.angle for row in rows])
+        mechanism = self.scene.mechanism()
+        times = sorted(cell.step for cell in self.cells(self.engines[0]))
+        return {
+            "outcomes": ",".join(outcomes),
+            "errors": np.array(errors),
+            "seconds": np.array(seconds),
+            "gives": np.array(gives_from(self.scene, mechanism, self.engines, times[0], times[-1])),
+            "left": np.array([left_by_sweeps(mechanism, engine) for engine in self.engines]),
+        }
+
+
+def gives_from(
+    scene: Scene, mechanism: Mechanism, engines: Sequence[Engine], least: float, largest: float
+) -> list[float]:
+    """The step [s] from which on a joint opens so far by its own softness that a cell counts as torn, of each engine.
+
+    What an engine declares (`engines.Softness`) is J a = bias - damping slip - stiffness gap - compliance A reaction, A
+    each row's own inverse inertia. Where the gap no longer changes it is (compliance A reaction, and bias where the
+    engine leaves that out) over stiffness; the forces are those of the ideal motion. Looked for from `least` to
+    `largest` [s]: 0 and inf stand for all and for no step; NaN where no truth is known.
+    """
+    try:
+        motion = scene.motion(np.linspace(0, min(scene.duration, scene.comparable_until), LOOKS))
+    except ValueError:
+        return [math.nan] * len(engines)
+    weights, gravity = 1 / mechanism.inertias.ravel(), np.tile([*mechanism.gravity, 0.0], len(mechanism.bodies))
+    pushed, wanted = [], []
+    for pose, reaction in zip(motion.pose, motion.reaction, strict=True):
+        rows = mechanism.rows(pose)
+        pushed.append(np.abs((rows**2 @ weights) * reaction))
+        # J a of the ideal motion is the bias.
+        wanted.append(np.abs((rows * weights) @ (rows.T @ reaction) + rows @ gravity))
+    push, bias = np.nanmax(pushed, axis=0), np.nanmax(wanted, axis=0)
+    found = []
+    for engine in engines:
+        place = math.inf
+        for step in np.geomspace(least, largest, 81):
+            softness = engine.softness(mechanism, float(step))
+            if softness is None:
+                continue
+            gap = (softness.compliance * push + (0.0 if softness.complete else bias)) / softness.stiffness
+            if np.any(gap[np.array(softness.rows) & mechanism.holonomic] > TORN * mechanism.length_scale):
+                place = 0.0 if step == least else float(step)
+                break
+        found.append(place)
+    return found
+
+
+def left_by_sweeps(mechanism: Mechanism, engine: Any) -> float:
+    """What a step's sweeps leave of the slowest mode [1]; NaN for an engine whose solver does not sweep by a number.
+
+    From half on, a gap that is closed in one step grows from step to step (`engines.pymunk.contraction`).
+    """
+    sweeps = getattr(engine, "sweeps", None)
+    if not callable(sweeps):
+        return math.nan
+    count: Any = sweeps(mechanism)
+    return float(contraction(mechanism) ** count)

@@ -1,0 +1,65 @@
+"""The page that walks through three models of a user's: what `crosscheck check` finds in each, in words."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from reference.four_bar import FreeFourBar
+from reports.pages.page import Material, Page
+from reports.pages.your_model.answers import WALKS, Walk
+from reports.text.tables import markdown, number
+
+NAME = "your_model"
+HEADER = ("setting", "largest error", "reaction error")
+
+
+def found_of(material: Material, walk: Walk) -> dict[str, Any] | None:
+    """What was found in a model, if it was run and finished."""
+    answer = material.finished(walk)
+    return None if answer is None else json.loads(str(answer.values["found"]))
+
+
+def figures(material: Material) -> dict[str, str]:
+    """Errors over time, and the worst moment, of each model."""
+    out = {}
+    for walk in WALKS:
+        answer = material.finished(walk)
+        if answer is not None:
+            stem = walk.file.split(".")[0]
+            out |= {f"{stem}_{key}": str(answer.values[key]) for key in ("errors", "worst")}
+    return out
+
+
+def table(found: Mapping[str, Any]) -> str:
+    """The settings that were tried, with their errors."""
+    body = [[each["words"], _number(each["error"]), _number(each["reaction"])] for each in found["tried"]]
+    return markdown(list(HEADER), body)
+
+
+def _number(value: float | None) -> str:
+    return "gave up" if value is None else number(value)
+
+
+def words(material: Material) -> Mapping[str, Any]:
+    """By a model's name what was found in it, its text and its table; None for one that was not run."""
+    told = {}
+    for walk in WALKS:
+        found = found_of(material, walk)
+        stem = walk.file.split(".")[0]
+        told[stem] = None if found is None else {**found, "table": table(found)}
+    return {"found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
+
+
+PAGE = Page(
+    name=NAME,
+    title="Your own model",
+    lesson="What `crosscheck check` tells of a model of your own: how wrong it is, why, and which settings are enough.",
+    scenes=(),
+    engines=(),
+    companions=(FreeFourBar(),),  # a full run of it runs the checks too
+    figures=figures,
+    words=words,
+    tasks=WALKS,
+)

@@ -1,0 +1,48 @@
+"""The reference of the site: pages that pdoc makes of the docstrings, in the colours of the site."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from reports.charts.theme import DARK, LIGHT, Theme
+from reports.site.packages import NotFetched
+
+MODULES = ("reference", "engines")
+PATIENCE = 300  # s
+# pdoc's names of colours, by ours.
+ROLES = {
+    **{"text": "ink", "muted": "quiet", "link": "second", "link-hover": "first", "code": "grid", "active": "middling"},
+    **{"accent": "grid", "accent2": "quiet", "nav-hover": "grid", "name": "second", "def": "third"},
+    "annotation": "third",
+}
+
+
+def reference_pages() -> dict[str, bytes]:
+    """Files below reference/ of the site. Raises NotFetched where pdoc is not installed or fails."""
+    if find_spec("pdoc") is None:
+        raise NotFetched("pdoc is not installed: pip install '.[site]'")
+    with tempfile.TemporaryDirectory() as folder:
+        theme, output = Path(folder) / "theme", Path(folder) / "pages"
+        theme.mkdir()
+        (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
+        words = [sys.executable, "-m", "pdoc", "--no-show-source", "--template-directory", str(theme)]
+        words += ["--footer-text", "crosscheck", "--output-directory", str(output), *MODULES]
+        ended = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE)
+        if ended.returncode:
+            raise NotFetched(f"pdoc failed: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
+        found = {path.relative_to(output).as_posix(): path for path in sorted(output.rglob("*")) if path.is_file()}
+        return {f"reference/{name}": path.read_bytes() for name, path in found.items()}
+
+
+def _sheet() -> str:
+    light, dark = _colours(LIGHT), _colours(DARK)
+    return f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} :root {{ color-scheme: dark }} }}\n"
+
+
+def _colours(theme: Theme) -> str:
+    named = " ".join(f"--{name}: {getattr(theme, role)};" for name, role in ROLES.items())
+    return f":root {{ --pdoc-background: {theme.paper}; }} .pdoc {{ {named} }}"

@@ -1,0 +1,61 @@
+"""Stored rows as the page's charts want them: series of points, from errors.csv and timings.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from typing import Any
+
+BESIDE_SLIDERS = ("driven_four_bar", "free_four_bar")
+SERIES = (("pymunk", "default", 1), ("pymunk", "tuned", 3), ("mujoco", "default", 2), ("mujoco", "tuned", 4))
+
+
+def read(text: str) -> list[dict[str, str]]:
+    """The rows of a CSV text by column; lines that begin with # are its header's remarks."""
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+
+
+def stored_rows(errors: str) -> list[dict[str, Any]]:
+    """Angle errors against steps of the scenes with sliders: one series a scene and method; `mark` is its colour."""
+    rows = [row for row in read(errors) if row["purpose"] == "sweep" and row["outcome"] == "finished"]
+    found = []
+    for scene in BESIDE_SLIDERS:
+        for engine, variant, mark in SERIES:
+            own = [row for row in rows if (row["scene"], row["engine"], row["variant"]) == (scene, engine, variant)]
+            points = [[float(row["step"]), float(row["angle"])] for row in own if float(row["angle"]) > 0]
+            if points:
+                found.append({"scene": scene, "method": f"{engine} {variant}", "mark": mark, "points": points})
+    return found
+
+
+COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
+NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
+
+
+def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
+    """All rows of sweeps for the page of charts: {columns, rows}; a number that is missing is None.
+
+    `cpu` is CPU time per simulated second [s], from timings.csv; settings are told in words, from descriptions.csv.
+    """
+    key = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
+    spent = {tuple(row[name] for name in key): row for row in read(timings)} if timings else {}
+    words = {row["digest"]: row["description"] for row in read(descriptions)} if descriptions else {}
+    rows = []
+    for row in read(errors) if errors else []:
+        if row["purpose"] != "sweep":
+            continue
+        cost = spent.get(tuple(row[name] for name in key), {}).get("cpu", "nan")
+        told = {**row, "settings": words.get(row["settings"], "")}
+        rows.append(
+            [*(told[name] for name in COLUMNS[:-1]), float(row["step"])]
+            + [_number(row[name]) for name in NUMBERS]
+            + [_number(cost)]
+        )
+    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows}
+
+
+def _number(text: str) -> float | None:
+    value = float(text or "nan")
+    return value if math.isfinite(value) else None

@@ -1,0 +1,291 @@
+"""`crosscheck check`: what it finds in models whose answers are known, advice that can be copied, and bad models."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from reference.four_bar import FreeFourBar
+from reference.scenes import SCENES
+from reports.check import rendering, settings
+from reports.check.checked import check
+from reports.check.comparing import errors
+from reports.check.facts import facts_of
+from reports.check.judging import judged
+from reports.check.law import accelerations
+from reports.check.pictures import pictures
+from reports.check.request import Answer, Refused, Request, answered, read
+from reports.check.settings import best, cheapest
+from reports.check.telling import data, sections, verdict
+
+FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
+<default><geom contype="0" conaffinity="0" size="0.02" type="capsule"/><joint axis="0 1 0"/></default>
+<worldbody>
+<body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0 0.3"/>
+ <body name="coupler" pos="0 0 0.3"><joint name="B"/><geom fromto="0 0 0 0.8 0 0.3"/></body></body>
+<body name="rocker" pos="0.7 0 0"><joint name="D"/><geom fromto="0 0 0 0.1 0 0.6"/></body>
+</worldbody>
+<equality><connect name="C" body1="coupler" body2="rocker" anchor="0.8 0 0.3"/></equality>
+</mujoco>"""
+PENDULUM_1, PENDULUM_2 = (next(each for each in SCENES if each.name == name) for name in ("pendulum_1", "pendulum_2"))
+PENDULUM = """
+import pymunk
+
+def make():
+    space = pymunk.Space()
+    space.gravity = (0, -9.81)
+    bob = pymunk.Body(1, 0.08)
+    bob.position = (0.5, 0)
+    space.add(bob, pymunk.PivotJoint(space.static_body, bob, (0, 0), (-0.5, 0)))
+    return space
+"""
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    """Few settings are tried: what is asked here is whether they are told rightly."""
+    monkeypatch.setattr(settings, "PATIENCE", 0.4)
+
+
+def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
+    (folder / name).write_text(text)
+    return check(read(word, folder, (), "", step), name, duration, tolerance)
+
+
+def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path):
+    found = found_in(tmp_path, FOUR_BAR)
+    assert not found.met
+    # The soft loop's share is told by a law that knows no step: it explains most of the error, the step the rest.
+    parts = found.parts
+    assert parts.softness > found.tolerance
+    assert parts.rest < 0.3 * parts.step
+    assert parts.falling
+    assert found.opens is not None
+    assert found.opens.row.startswith("C ")
+    assert found.advised is not None
+    assert found.advised.error <= found.tolerance
+    told = sections(found)
+    assert "miss the tolerance" in told[0].sentences[0]
+    option, default = told[0].code
+    mended = re.sub(r"<option [^/]*/>", option, FOUR_BAR).replace("<worldbody>", f"{default}<worldbody>", 1)
+    again = found_in(tmp_path, mended)
+    assert again.met
+    assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)
+    assert "Your settings meet the tolerance" in verdict(again)
+
+
+def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_copied(tmp_path):
+    found = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=3e-3, step=0.01)
+    assert not found.met
+    assert not found.parts.divided
+    assert found.parts.falling
+    assert found.advised is not None
+    lines = sections(found)[0].code
+    step = float(re.search(r"step\((.*)\)", lines[-1])[1])  # type: ignore[index]
+    body = "\n".join(f"    {line}" for line in lines[:-1])
+    mended = PENDULUM.replace("    return space", f"{body}\n    return space")
+    again = found_in(tmp_path, mended, "swing.py", "swing.py:make", tolerance=3e-3, step=step)
+    assert again.met
+
+
+def test_the_judge_of_a_check_is_the_truth_of_a_scene(tmp_path):
+    scene = FreeFourBar()
+    judge = judged(scene.mechanism(), 40, 0.01)
+    truth = scene.motion(judge.trajectory.t)
+    own = errors(scene.mechanism(), truth, judge.trajectory)
+    assert own.largest < 1e-10
+    assert own.worst("reaction") < 1e-9
+    # What the judge says of its own error is no less than a hundredth of what it is, and no more than a lot above.
+    assert errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
+
+
+def test_equations_of_the_check_are_those_of_the_scenes_forces():
+    for scene in (FreeFourBar(), PENDULUM_1):
+        mechanism = scene.mechanism()
+        truth = scene.motion(np.array([0.0]))
+        found = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0)
+        told = mechanism.reaction(mechanism.pose, found)
+        np.testing.assert_allclose(told, truth.reaction[0], rtol=0, atol=1e-8 * np.abs(truth.reaction).max())
+
+
+def test_freedoms_modes_and_singular_positions_are_told():
+    mechanism = PENDULUM_1.mechanism()
+    facts = facts_of(mechanism, judged(mechanism, 20, 0.01).trajectory)
+    assert facts.freedoms == (1, 1)
+    assert facts.redundant == 0
+    assert facts.singular == ()
+    # A parallelogram stands in line at the start: its rows are dependent there, once more than elsewhere.
+    line = FOUR_BAR.replace("0 0 0 0 0 0.3", "0 0 0 .3 0 0").replace('pos="0 0 0.3"', 'pos=".3 0 0"')
+    line = line.replace("0 0 0 0.8 0 0.3", "0 0 0 .7 0 0").replace("0 0 0 0.1 0 0.6", "0 0 0 .3 0 0")
+    line = line.replace('anchor="0.8 0 0.3"', 'anchor=".7 0 0"')
+    import mujoco
+
+    from engines.mujoco.reading import read as read_model
+
+    mechanism = read_model(mujoco.MjModel.from_xml_string(line)).mechanism  # type: ignore[attr-defined]
+    rows = mechanism.row_count
+    independent = 3 * len(mechanism.bodies) - mechanism.degrees_of_freedom()[1]
+    assert rows - independent == 1
+
+
+def test_a_stiff_spring_is_the_stiffest_mode(tmp_path):
+    import mujoco
+
+    from engines.mujoco.reading import read as read_model
+
+    text = (
+        '<mujoco><option gravity="0 0 0"/><worldbody><body><joint type="slide" axis="1 0 0" stiffness="200"/>'
+        '<inertial pos="0 0 0" mass="2" diaginertia=".1 .1 .1"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model := mujoco.MjModel.from_xml_string(text))  # type: ignore[attr-defined]
+    data.qvel[0] = 0.1
+    mechanism = read_model(model, data).mechanism
+    facts = facts_of(mechanism, judged(mechanism, 5, 0.01).trajectory)
+    assert facts.stiffest_mode == pytest.approx(10.0, rel=1e-4)
+
+
+def test_chaos_ends_the_horizon_and_a_single_pendulum_has_none():
+    regular = judged(PENDULUM_1.mechanism(), 200, 0.01)
+    assert regular.horizon == regular.trajectory.t[-1]
+    wild = PENDULUM_2.mechanism()
+    rates = [replace(body, twist=(0.0, 0.0, 0.0)) for body in wild.bodies]
+    chaotic = judged(replace(wild, bodies=tuple(rates)), 1500, 0.01)
+    assert chaotic.horizon < chaotic.trajectory.t[-1]
+
+
+def test_the_report_can_be_read_by_people_and_programs(tmp_path):
+    found = found_in(tmp_path, FOUR_BAR)
+    drawn = pictures(found)
+    told = sections(found, drawn)
+    text = rendering.plain(told)
+    for words in ("redundant", "near-singular", "the judge's own", "Softness", "What to change"):
+        assert words in text or words == "redundant"
+    page = rendering.html("four bar", told)
+    assert page.count("<svg") == 2
+    assert "<script" not in page
+    files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
+    assert "](errors.svg)" in rendering.markdown("four bar", told, files)
+    numbers = json.loads(json.dumps(data(found), allow_nan=False))
+    assert numbers["error"] == found.own_errors.largest
+    assert len(numbers["over_time"]["t"]) == len(found.own_errors.t)
+
+
+def test_a_model_at_rest_says_that_nothing_moves(tmp_path):
+    bodies = '<body><joint axis="0 0 1"/><geom size=".1" pos=".2 0 0"/></body>'
+    found = found_in(tmp_path, f"<mujoco><worldbody>{bodies}</worldbody></mujoco>", duration=0.1)
+    text = rendering.plain(sections(found))
+    assert "Nothing moves" in text
+    assert found.met
+    assert "A tenth of that error" not in text
+
+
+def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(tmp_path):
+    found = found_in(tmp_path, FOUR_BAR)
+    allowed = [each for each in found.table if each.error <= 1e-3]
+    chosen = cheapest(found.table, 1e-3)
+    assert chosen is not None
+    assert chosen.cost == min(each.cost for each in allowed)
+    assert cheapest(found.table, 0.0) is None
+    front = best(found.table)
+    assert [each.cost for each in front] == sorted(each.cost for each in front)
+    assert [each.error for each in front] == sorted((each.error for each in front), reverse=True)
+
+
+# ------------------------------------------------------------------------------------------------------- bad models
+
+BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'
+BAD = {
+    "not_planar.xml": (
+        '<mujoco><worldbody><body name="a"><joint name="one" axis="0 1 0"/><geom size=".1"/><body><joint name="two" '
+        'axis="1 0 0"/><geom size=".1"/></body></body></worldbody></mujoco>',
+        "joint 'two': it is not parallel to joint 'one'",
+    ),
+    "no_inertia.xml": (
+        '<mujoco><worldbody><body><joint/><inertial pos="0 0 0" mass="1" diaginertia="0 0 0"/></body></worldbody>'
+        "</mujoco>",
+        "MuJoCo can't compile it",
+    ),
+    "open_loop.xml": (
+        FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
+        "row 'C y' is open by 0.263 m",
+    ),
+    "malformed.xml": ("<mujoco><worldbody><body></mujoco>", "MuJoCo can't compile it"),
+    "empty.xml": ("", "MuJoCo can't compile it"),
+    "no_robot.urdf": ("<robot name='x'/>", ""),
+    "many.xml": (
+        f"<mujoco><worldbody>{''.join(BODY.format(f'b{i}', i) for i in range(10_000))}</worldbody></mujoco>",
+        "it has 10000 moving bodies; the judge takes up to 200",
+    ),
+    "hits.xml": (
+        '<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 .15"><joint type="slide" '
+        'axis="0 0 1"/><geom name="ball" size=".1"/></body></worldbody></mujoco>',
+        "geom 'floor' touches geom 'ball' at 0.1",
+    ),
+    "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError: no space"),
+    "ends.py:space": ("import sys\nsys.exit(3)", "ends.py raised SystemExit: 3"),
+    "nothing.py:space": ("x = 1", "it has no 'space'"),
+    "other.py:space": ("space = 3", "it is int; it must be a pymunk.Space"),
+    "unnamed.py": ("x = 1", "give the name of the space"),
+    "drives.py:space": (
+        "import pymunk\nspace = pymunk.Space()\nbody = pymunk.Body(1, 1)\nbody.angular_velocity = 1\n"
+        "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
+        "is moving apart at",
+    ),
+    "still.py:space": ("import pymunk\nspace = pymunk.Space()", "nothing in it can move"),
+    "missing.xml": (None, "there is no such file"),
+    "picture.png": (None, "is no model; give"),
+}
+
+
+@pytest.mark.parametrize("word", BAD)
+def test_a_bad_model_is_one_sentence(tmp_path, word):
+    text, sentence = BAD[word]
+    if text is not None:
+        (tmp_path / word.split(":")[0]).write_text(text)
+    answer = answered(Request(word, str(tmp_path), 0.5, 1e-4, pictures=False))
+    assert isinstance(answer, Refused)
+    assert sentence in answer.sentence
+    assert "\n" not in answer.sentence
+    assert len(answer.sentence) < 600
+    assert word.split(":")[0] in answer.sentence
+
+
+def test_redundant_joints_are_told_and_their_reactions_not_compared(tmp_path):
+    twice = FOUR_BAR.replace("</equality>", '<connect body1="coupler" body2="rocker" anchor="0.8 0 0.3"/></equality>')
+    (tmp_path / "twice.xml").write_text(twice)
+    answer = answered(Request("twice.xml", str(tmp_path), 0.2, 1e-4, pictures=False))
+    assert isinstance(answer, Answer)
+    assert answer.data["facts"]["redundant"] == 2
+    told = " ".join(sentence for section in answer.sections for sentence in section.sentences)
+    assert "2 rows are redundant" in told
+
+
+@pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
+def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
+    (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
+    answer = answered(Request("hits.xml", str(tmp_path), 0.3, 1e-1, (element,), pictures=False))
+    if sentence:
+        assert isinstance(answer, Refused)
+        assert sentence in answer.sentence
+    else:
+        assert isinstance(answer, Answer)
+        assert answer.met
+
+
+def test_a_motion_that_meets_a_contact_is_refused_with_a_duration_that_does_not(tmp_path):
+    (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
+    refused = answered(Request("hits.xml", str(tmp_path), 0.5, 1e-1, pictures=False))
+    assert isinstance(refused, Refused)
+    duration = float(re.search(r"--duration ([\d.]+)", refused.sentence)[1])  # type: ignore[index]
+    shorter = answered(Request("hits.xml", str(tmp_path), duration, 1e-1, pictures=False))
+    assert isinstance(shorter, Answer)
+
+
+def test_a_step_longer_than_the_motion_is_refused(tmp_path):
+    with pytest.raises((ValueError, Unsupported), match="give a longer one"):
+        found_in(tmp_path, FOUR_BAR, duration=0.0004)

@@ -1,0 +1,375 @@
+"""MuJoCo models become mechanisms: the same accelerations, element by element, or a sentence that names what can't."""
+
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.mujoco.reading import read
+from engines.mujoco.reading.places import positions
+from engines.reading import Reading
+from reports.check.comparing import refuse_disagreement
+from reports.check.judging import apart
+from reports.check.law import soft_motion
+
+# Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
+ROUNDING = 1e-9
+PENDULUM = """
+<body name="upper"><joint name="A" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 .1" size=".02"/>
+  <body name="lower" pos=".3 0 .1"><joint name="B" axis="0 1 0"/>
+    <geom type="capsule" fromto="0 0 0 .4 .1 0" size=".02"/><site name="tip" pos=".4 0 0"/></body></body>
+"""
+FOUR_BAR = """
+<body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0 .3"/>
+  <body name="coupler" pos="0 0 .3"><joint name="B"/><geom fromto="0 0 0 .8 0 .3"/></body></body>
+<body name="rocker" pos=".7 0 0"><joint name="D"/><geom fromto="0 0 0 .1 0 .6"/></body>
+"""
+CONNECT = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 0 .3"/>'
+
+
+def model_of(bodies, more="", option=""):
+    """A model without contact; joints turn about y unless they say otherwise."""
+    return mujoco.MjModel.from_xml_string(f"""
+<mujoco><option {option}><flag contact="disable"/></option><compiler angle="radian"/>
+<default><geom type="capsule" size=".02"/><joint axis="0 1 0"/></default>
+<worldbody><site name="post" pos=".2 0 .9"/>{bodies}</worldbody>{more}</mujoco>""")
+
+
+def moving(model, seed=1):
+    """The model at its start, moving at random as its equalities allow."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    wanted = np.random.default_rng(seed).uniform(-2, 2, model.nv)
+    rows = np.zeros((data.nefc, model.nv))
+    if data.nefc:
+        mujoco.mju_sparse2dense(rows, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind) if (
+            mujoco.mj_isSparse(model)
+        ) else rows.__setitem__(slice(None), data.efc_J.reshape(data.nefc, model.nv))
+        rows = rows[data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)]
+    data.qvel[:] = wanted - np.linalg.pinv(rows) @ (rows @ wanted) if len(rows) else wanted
+    if np.abs(data.qvel).max() < 1e-12:  # nothing can move
+        data.qvel[:] = 0.0
+    mujoco.mj_forward(model, data)
+    return data
+
+
+def changed(reading: Reading, **values) -> Reading:
+    """The reading with another mechanism, which is not what the model is."""
+    return replace(reading, mechanism=replace(reading.mechanism, **values))
+
+
+BOX = '<inertial pos=".1 0 .05" mass="2" diaginertia=".02 .03 .03"/>'
+ELEMENTS = {
+    "hinges": (PENDULUM, ""),
+    "a body welded to its parent": (
+        PENDULUM.replace("<site", '<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><site'),
+        "",
+    ),
+    "a slide": (f'<body name="a"><joint type="slide" axis="1 0 2"/>{BOX}</body>', ""),
+    "a slide, then a hinge": (
+        f'<body name="a"><joint type="slide" axis="1 0 2"/><joint pos=".2 0 0"/>{BOX}</body>',
+        "",
+    ),
+    "a hinge, then a slide": (
+        f'<body name="a"><joint pos=".2 0 0"/><joint type="slide" axis="1 0 2"/>{BOX}</body>',
+        "",
+    ),
+    "a slide in a moving body": (
+        PENDULUM.replace("<site", f'<body pos=".1 0 0"><joint type="slide" axis="1 0 0"/>{BOX}</body><site'),
+        "",
+    ),
+    "two slides and a hinge": (
+        f'<body name="a"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint/>{BOX}</body>',
+        "",
+    ),
+    "two slides": (f'<body><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>{BOX}</body>', ""),
+    "hinges against each other": (PENDULUM.replace('name="B" axis="0 1 0"', 'name="B" axis="0 -1 0"'), ""),
+    "a connect": (FOUR_BAR, f"<equality>{CONNECT}</equality>"),
+    "a connect of sites": (
+        PENDULUM.replace('axis="0 1 0"/>\n    <geom', 'axis="0 1 0"/><site name="end" pos=".2 0 0"/>\n    <geom')
+        + '<body pos=".5 0 .1"><joint/><geom fromto="0 0 0 .1 0 .2"/><site name="mine"/></body>',
+        '<equality><connect site1="end" site2="mine"/></equality>',
+    ),
+    "a weld": (FOUR_BAR, '<equality><weld name="C" body1="coupler" body2="rocker"/></equality>'),
+    "a coupling of two grounded hinges": (
+        FOUR_BAR,
+        '<equality><joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/></equality>',
+    ),
+    "a coupling along a chain": (
+        PENDULUM,
+        '<equality><joint joint1="B" joint2="A" polycoef="0 -.4 0 0 0"/></equality>',
+    ),
+    "a locked hinge": (FOUR_BAR, '<equality><joint joint1="D"/></equality>'),
+    "a spring, a damper and armature of a hinge": (
+        PENDULUM.replace('name="A"', 'name="A" armature=".1"').replace(
+            'name="B"', 'name="B" stiffness="3" springref=".4" damping=".2"'
+        ),
+        "",
+    ),
+    "a spring, a damper and armature of a slide": (
+        f'<body><joint type="slide" axis="1 0 2" stiffness="30" springref=".1" damping=".3" armature=".5"/>{BOX}'
+        '<body pos=".2 0 0"><joint/><geom fromto="0 0 0 .3 0 0"/></body></body>',
+        "",
+    ),
+    "a spring of a slide in a moving body": (
+        PENDULUM.replace(
+            "<site",
+            f'<body pos=".1 0 0"><joint type="slide" axis="1 0 0" stiffness="30" damping="1"/>{BOX}</body><site',
+        ),
+        "",
+    ),
+    "a spatial tendon": (
+        PENDULUM,
+        '<tendon><spatial stiffness="20" springlength=".3" damping=".5"><site site="post"/><site site="tip"/>'
+        "</spatial></tendon>",
+    ),
+    "a fixed tendon": (
+        PENDULUM,
+        '<tendon><fixed stiffness="2" springlength=".3" damping=".5"><joint joint="A" coef="2"/>'
+        '<joint joint="B" coef="2"/></fixed></tendon>',
+    ),
+    "a motor": (PENDULUM, '<actuator><motor joint="B" gear="2"/></actuator>'),
+    "a motor of a slide": (
+        f'<body><joint name="S" type="slide" axis="1 0 2"/>{BOX}</body>',
+        '<actuator><motor joint="S" gear="2"/></actuator>',
+    ),
+    "a position servo": (PENDULUM, '<actuator><position joint="B" kp="5"/></actuator>'),
+    "a velocity servo": (PENDULUM, '<actuator><velocity joint="B" kv="3" gear="2"/></actuator>'),
+    "a force at a site": (
+        PENDULUM,
+        '<actuator><general site="tip" refsite="post" gear="1 0 2 0 .5 0"/></actuator>',
+    ),
+    "a body without weight": (PENDULUM.replace('name="lower"', 'name="lower" gravcomp=".7"'), ""),
+    "a rod of a tendon": (
+        PENDULUM,
+        '<tendon><spatial name="t"><site site="post"/><site site="tip"/></spatial></tendon>'
+        '<equality><tendon tendon1="t"/></equality>',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("option", ["", 'gravity="1 0 -9.81"'])
+def test_an_element_gives_the_same_accelerations(name, option):
+    bodies, more = ELEMENTS[name]
+    model = model_of(bodies, more, option)
+    data = moving(model)
+    data.ctrl[:] = 0.7
+    reading = read(model, data)
+    assert refuse_disagreement(reading) < ROUNDING
+    # What stands in the model is felt: with all forces and all gravity taken away the accelerations are others.
+    with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
+        refuse_disagreement(changed(reading, gravity=(0.3, -5.0), forces=()))
+
+
+@pytest.mark.parametrize("name", ["hinges", "a connect", "a slide, then a hinge", "a force at a site"])
+def test_the_plane_is_found_however_the_model_is_turned(name):
+    bodies, more = ELEMENTS[name]
+    turned = f'<body euler=".4 .9 -.3" pos="1 2 3">{bodies}</body>'
+    model = model_of(turned, more, 'gravity="1 2 -9"')
+    data = moving(model)
+    data.ctrl[:] = 0.7
+    reading = read(model, data)
+    assert refuse_disagreement(reading) < ROUNDING
+    assert any(note.element == "gravity" for note in reading.notes)  # the part of it across the plane
+
+
+def test_a_free_body_that_starts_in_the_plane_is_read():
+    model = model_of(
+        '<body name="a" pos="0 0 1"><freejoint/><inertial pos="0 0 0" mass="2" diaginertia=".1 .2 .3"/></body>'
+    )
+    data = mujoco.MjData(model)
+    data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # linear in the world, angular in the body's own frame
+    reading = read(model, data)
+    assert refuse_disagreement(reading) < ROUNDING
+    (body,) = reading.mechanism.bodies
+    assert reading.mechanism.degrees_of_freedom() == (3, 3)
+    assert body.inertia == pytest.approx(0.2)
+    run = reading.model.run(100, 10)  # 2 s, more than half a turn: the quaternion's angle is followed
+    assert run.pose[-1, 0, 2] - run.pose[0, 0, 2] == pytest.approx(np.sign(body.twist[2]) * 3.0 * run.t[-1], rel=1e-6)
+
+
+def test_the_first_keyframe_counts_and_any_can_be_named(tmp_path):
+    from engines.mujoco.reading import READER
+
+    file = tmp_path / "two_keys.xml"
+    keys = '<keyframe><key name="low" qpos=".3 0"/><key name="high" qpos="2 0"/></keyframe>'
+    file.write_text(f"<mujoco><worldbody>{PENDULUM}</worldbody>{keys}</mujoco>")
+    first, high, none = (
+        READER.read("two_keys.xml", tmp_path, (), key, None).mechanism.bodies[0].pose[2] for key in ("", "high", "none")
+    )
+    assert abs(first) == pytest.approx(0.3)
+    assert abs(high) == pytest.approx(2.0)
+    assert none == 0
+    with pytest.raises(ValueError, match="there are low, high, and none"):
+        READER.read("two_keys.xml", tmp_path, (), "middle", None)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda m: {"bodies": (replace(m.bodies[0], mass=1.001 * m.bodies[0].mass), *m.bodies[1:])},
+        lambda m: {"bodies": (replace(m.bodies[0], inertia=1.001 * m.bodies[0].inertia), *m.bodies[1:])},
+        lambda m: {"gravity": (m.gravity[0], 1.001 * m.gravity[1])},
+    ],
+    ids=["mass", "inertia", "gravity"],
+)
+def test_a_wrong_reading_is_stopped_at_the_start(change):
+    reading = read(model_of(FOUR_BAR, f"<equality>{CONNECT}</equality>"))
+    with pytest.raises(Unsupported, match=r"most of all at '(crank|coupler|rocker)'"):
+        refuse_disagreement(changed(reading, **change(reading.mechanism)))
+
+
+def test_an_element_that_explains_a_disagreement_is_named():
+    model = model_of(PENDULUM.replace('name="B"', 'name="B" damping=".5"'))
+    reading = read(model, moving(model))
+    with pytest.raises(Unsupported, match="agree without 'damper'"):
+        refuse_disagreement(changed(reading, forces=()))
+
+
+def test_softness_as_declared_is_what_mujoco_does():
+    model = model_of(
+        FOUR_BAR, f"<equality>{CONNECT}</equality>", 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'
+    )
+    reading = read(model)
+    run = reading.model.run(40, 50)
+    soft, _ = soft_motion(reading.mechanism, reading.model.give, run.t)
+    ideal_is_off = apart(reading.mechanism, soft, run.pose).max()
+    # RK4 at 0.2 ms: the step's own error is far below; the ideal motion is 1e-3 off.
+    assert ideal_is_off < 1e-6
+    stiffer = [replace(reading.model.give(np.zeros(8)), compliance=np.zeros(8))]
+    wrong, _ = soft_motion(reading.mechanism, lambda gap: stiffer[0], run.t)
+    assert apart(reading.mechanism, wrong, run.pose).max() > 1e-5
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "hinges",
+        "a slide, then a hinge",
+        "a hinge, then a slide",
+        "two slides and a hinge",
+        "two slides",
+        "a slide in a moving body",
+    ],
+)
+def test_poses_go_back_to_mujocos_positions(name):
+    model = model_of(*ELEMENTS[name])
+    data = moving(model)
+    data.qpos[:] = 0.3 * np.arange(1, model.nq + 1)
+    reading = read(model, data)
+    run = reading.model.run(20, 10)
+    found = positions(reading.model.scene, run.pose)  # type: ignore[attr-defined]
+    again = mujoco.MjData(model)
+    for name_of in ("qpos", "qvel"):
+        getattr(again, name_of)[:] = getattr(data, name_of)
+    for sample in range(21):
+        np.testing.assert_allclose(found[sample], again.qpos, atol=1e-10)
+        mujoco.mj_step(model, again, nstep=10)
+
+
+def test_a_limit_and_a_contact_are_named_with_their_time():
+    limited = PENDULUM.replace('name="B"', 'name="B" limited="true" range="-.1 .1"')
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><compiler angle="radian"/><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 -5"/>'
+        f"{limited}</worldbody></mujoco>"
+    )
+    reading = read(model)
+    t = 0.02 * np.arange(41, dtype=np.float64)
+    without = read(model, None, ("limit",))
+    free = without.model.run(40, 10).pose
+    assert without.model.obstacles(t, free) == []
+    (at, words), *_ = reading.model.obstacles(t, free)
+    turned = free[:, 1, 2] - free[:, 0, 2]
+    sign = np.sign(reading.model.scene.data.xaxis[1] @ reading.model.scene.frame.normal)  # type: ignore[attr-defined]
+    beyond = (sign * turned > 0.1) | (sign * turned < -0.1)
+    assert (at, words) == (t[int(np.argmax(beyond))], "joint 'B' reaches its limit")
+    assert at > 0
+    assert [note.element for note in without.notes] == ["contacts", "limit"]
+
+
+def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
+    def with_floor(height):
+        return mujoco.MjModel.from_xml_string(
+            f'<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 {height}"/>{PENDULUM}'
+            "</worldbody></mujoco>"
+        )
+
+    reading = read(with_floor(-0.3))
+    (at, words), *_ = reading.model.obstacles(0.02 * np.arange(41, dtype=np.float64), reading.model.run(40, 10).pose)
+    assert words.startswith("geom 'floor' touches geom")
+    assert 0.1 < at < 0.5
+    with pytest.raises(Unsupported, match=r"geom 'floor' touches geom .*: so it does at the start"):
+        read(with_floor(0.0))
+
+
+REFUSED = {
+    "a ball": (PENDULUM.replace('name="B" axis="0 1 0"', 'name="B" type="ball"'), "", "joint 'B': a ball joint"),
+    "not parallel": (
+        PENDULUM.replace('name="B" axis="0 1 0"', 'name="B" axis="1 1 0"'),
+        "",
+        "joint 'B': it is not parallel to joint 'A'",
+    ),
+    "a slide out of the plane": (
+        PENDULUM.replace('name="B" axis="0 1 0"', 'name="B" type="slide" axis="0 1 0"'),
+        "",
+        "joint 'B': it slides out of the plane",
+    ),
+    "two hinges in one body": (
+        PENDULUM.replace('<joint name="B"', '<joint pos=".1 0 0"/><joint name="B"'),
+        "",
+        "two hinges with nothing between",
+    ),
+    "friction": (PENDULUM.replace('name="B"', 'name="B" frictionloss=".1"'), "", "joint 'B': its friction loss"),
+    "armature between bodies": (PENDULUM.replace('name="B"', 'name="B" armature=".1"'), "", "joint 'B': its armature"),
+    "a fluid": (PENDULUM, "", "density or viscosity"),
+    "a coupling that bends": (
+        PENDULUM,
+        '<equality><joint name="bent" joint1="B" joint2="A" polycoef="0 1 2 0 0"/></equality>',
+        "equality 'bent': a coupling that is not linear",
+    ),
+    "a tendon that wraps": (
+        PENDULUM.replace("<site", '<site name="mid" pos=".1 0 0"/><site'),
+        '<tendon><spatial name="t" stiffness="1"><site site="post"/><site site="mid"/><site site="tip"/></spatial>'
+        "</tendon>",
+        "tendon 't': only a tendon straight",
+    ),
+    "a tendon out of the plane": (
+        PENDULUM.replace('pos=".4 0 0"', 'pos=".4 .1 0"'),
+        '<tendon><spatial name="t" stiffness="1"><site site="post"/><site site="tip"/></spatial></tendon>',
+        "tendon 't': its two sites",
+    ),
+    "a muscle": (
+        PENDULUM,
+        '<actuator><muscle name="m" joint="B" lengthrange="0 1"/></actuator>',
+        "actuator 'm': only a motor",
+    ),
+    "nothing moves": ('<body><geom fromto="0 0 0 1 0 0"/></body>', "", "nothing in it can move"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_has_no_ideal_counterpart_is_named(name):
+    bodies, more, sentence = REFUSED[name]
+    model = model_of(bodies, more, 'density="1000"' if name == "a fluid" else "")
+    data = mujoco.MjData(model)
+    data.ctrl[:] = 1.0
+    with pytest.raises(Unsupported) as reason:
+        read(model, data)
+    assert sentence in str(reason.value)
+
+
+def test_a_spring_that_acts_out_of_its_reach_is_told():
+    model = model_of(f'<body name="a"><joint name="S" type="slide" axis="1 0 0" stiffness="1"/>{BOX}</body>')
+    reading = read(model)
+    t, far = np.array([0.0, 1.0]), np.tile(reading.mechanism.pose, (2, 1, 1))
+    far[1, 0, 0] = -1e4
+    assert reading.model.obstacles(t, far) == [
+        (1.0, "joint 'S' slides further than the spring that stands for its own")
+    ]
