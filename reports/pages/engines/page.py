@@ -60,6 +60,7 @@ EXPERIMENTS = (
         title="Compiled models",
         expected="The same model as in C, with an error that no step makes smaller where a loop turns.",
         cells=COMPILED,
+        columns=("angle", "gap", "reaction"),
     ),
 )
 
@@ -122,7 +123,7 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A line an engine, from what it built; empty where nothing was asked yet."""
     body = []
     for task, answer in answers.items():
-        cells = [_short(str(answer.values.get(what, NOTHING))) for what in (*ASKED, "reactions", "width")]
+        cells = [_short(str(answer.values[what])) for what in (*ASKED, "reactions", "width")]
         body.append([task.of.name, *cells])
     return markdown(["engine", *ASKED, "reactions", "numbers"], body, left=len(ASKED) + 3) if body else ""
 
@@ -137,7 +138,7 @@ def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, st
         (task.of.name, what, told)
         for task, answer in answers.items()
         for what in ASKED
-        if _short(told := str(answer.values.get(what, NOTHING))) == "no"
+        if _short(told := str(answer.values[what])) == "no"
     ]
 
 
