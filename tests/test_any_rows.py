@@ -24,6 +24,9 @@ from reports.grid.outcomes import Outcome
 from reports.grid.quantities import QUANTITIES
 from reports.grid.tasks import Answer, Motion, Task, answered
 from reports.pages.catalogue import PAGES
+from reports.pages.engines.capabilities import ASKED, Capabilities
+from reports.pages.engines.open_work import OpenWork
+from reports.pages.engines.velocity_term import VelocityTerm
 from reports.pages.errata import errata_engines as referees
 from reports.pages.faults.equalities import Equalities
 from reports.pages.faults.groove import Grooves, Offsets
@@ -281,6 +284,12 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case Walk():
             values = {"found": json.dumps(WALKED), "errors": "<svg/>", "worst": "<svg/>"}
+        case OpenWork():
+            values = {"lost": np.asarray(-0.1), "work": np.full(8, -0.01)}
+        case VelocityTerm():
+            values = {"t": np.ones(2), "with": np.full(2, 0.5), "without": np.full(2, 1e-6)}
+        case Capabilities():
+            values = {**dict.fromkeys(ASKED, "yes"), "reactions": "yes", "width": "64 bits"}
         case Softened():
             values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:

@@ -53,7 +53,7 @@ def test_a_loop_is_wrong_by_the_velocity_term_and_says_so():
     run = DEFAULT.build(scene.mechanism(), 1e-3)(10, 10)
     assert run.warnings == (NO_VELOCITY_TERM,)
     found = VelocityTerm(TUNED).run()
-    # The accelerations of loops that turn, by MJX, are those of the same softness without J-dot v, to the solver's
-    # tolerance; with it, as the other implementation has them, they differ by a part of themselves.
-    assert np.max(found["without"]) < 1e-6
+    # The law without the velocity term is followed as far as the settings' compliance lets it: an impedance of 0.9999
+    # leaves 1e-4 of the row's own inverse inertia. From the law with it, reactions differ by a part of themselves.
+    assert np.max(found["without"]) < 1e-4
     assert np.max(found["with"]) > 1e-2

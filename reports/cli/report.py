@@ -36,7 +36,7 @@ def report(
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
     from reports.cli.known import registered, with_remembered
-    from reports.cli.selection import page_cells, shown_cells
+    from reports.cli.selection import page_cells, page_tasks, shown_cells
     from reports.grid.running import missing
     from reports.grid.store import Store
     from reports.pages.page import Material
@@ -47,7 +47,7 @@ def report(
         # What is published is of what is registered; a report of one's own shows what else was run.
         known = own if publish else with_remembered(own, store.remembered())
         # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
-        asked = (item for page in own.pages for item in (*page_cells(page), *page.all_tasks()))
+        asked = (item for page in own.pages for item in (*page_cells(page), *page_tasks(page)))
         whole = tuple(dict.fromkeys(asked))
         material = {
             page: Material(store.get(shown_cells(page)), store.answers(page.all_tasks())) for page in known.pages

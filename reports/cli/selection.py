@@ -43,13 +43,15 @@ def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence
 
 def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
     """The engines of this name and variant; None takes all. Raises BadInput."""
+    from engines.registry import ABSENT
+
     chosen = tuple(engines)
     if engine is not None:
+        if engine in ABSENT:
+            raise BadInput(ABSENT[engine])
         chosen = tuple(e for e in chosen if e.name == engine)
         if not chosen:
-            from engines.registry import ABSENT
-
-            raise BadInput(ABSENT[engine]) if engine in ABSENT else nearest("engine", engine, (e.name for e in engines))
+            raise nearest("engine", engine, (e.name for e in engines))
     if variant is not None:
         found = tuple(e for e in chosen if e.variant == variant)
         if not found:
@@ -75,11 +77,12 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
-    from engines.registry import ENGINES, INSTALLED
+    from engines.registry import ENGINES, INSTALLED, missing
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
     kept = (task.engine for page in pages for task in page.all_tasks() if task.engine is not None)
-    return tuple(dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept]))
+    named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept])
+    return tuple(engine for engine in named if not missing(engine))
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
@@ -162,18 +165,26 @@ def _quick(cell: Cell) -> bool:
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell that a page asks for; those that it borrows are asked for by other pages."""
-    from engines.registry import INSTALLED
+    from engines.registry import INSTALLED, missing
 
     cells: list[Cell] = []
     for scene in page.scenes:
         compared = page.engines_of(scene)
         cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
         cells += beside_cells((scene,), INSTALLED)
-    return tuple(dict.fromkeys([*cells, *page.extra_cells()]))
+    return tuple(dict.fromkeys([*cells, *(cell for cell in page.extra_cells() if not missing(cell.engine))]))
+
+
+def page_tasks(page: Page) -> tuple[Task, ...]:
+    """Every task that a page asks for, but those of engines that are not installed here."""
+    from engines.registry import missing
+
+    return tuple(task for task in page.all_tasks() if task.engine is None or not missing(task.engine))
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell whose row a page may tell: its own, those of engines that are not installed here, what it borrows."""
     from engines.registry import OTHERS
 
-    return tuple(dict.fromkeys([*page_cells(page), *beside_cells(page.scenes, OTHERS), *page.borrowed]))
+    further = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())
+    return tuple(dict.fromkeys([*page_cells(page), *further, *page.borrowed]))

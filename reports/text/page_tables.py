@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from reports.gate.theory import ROOM_SOFT
 from reports.grid.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
@@ -83,7 +83,7 @@ def beside_table(rows: Sequence[Measurement], name: str) -> str:
     told = quantity(name)
     found = {
         members[0].method: members
-        for members in groups(rows).values()
+        for members in groups(replace(row, purpose="sweep") for row in rows).values()
         if any(row.outcome != Outcome.UNSUPPORTED for row in members)
     }
     steps = sorted({row.step for members in found.values() for row in members}, reverse=True)

@@ -17,7 +17,7 @@ MEASURED_WITH = ("numpy", "scipy")
 
 def packages(engines: Iterable[Engine] = ()) -> tuple[str, ...]:
     """The distributions whose versions are printed: ours for the measuring, those of registered engines, of these."""
-    told = (name for engine in (*registry.ENGINES, *registry.INSTALLED, *engines) for name in engine.packages)
+    told = (name for engine in (*registry.ENGINES, *engines) for name in engine.packages)
     return tuple(dict.fromkeys([*MEASURED_WITH, *told]))
 
 

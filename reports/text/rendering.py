@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from engines import Engine
+from engines import Engine, registry
 from reference.scene import Scene
 from reports.charts import stability as maps
 from reports.charts import work_precision as charts
@@ -69,7 +69,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
         "maps": [told for told in told_maps if told],
         "outcomes": [outcome for outcome in Outcome if outcome in met],
-        "foot": foot(command, page.engines),
+        "foot": foot(command, (*page.engines, *registry.INSTALLED)),
         **page.words(material),
     }
     texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}

@@ -34,6 +34,7 @@ from reports.text.provenance import told_versions
 from reports.text.tables import NOTHING, markdown, milliseconds, number
 
 NAME = "engines"
+LONGEST_WORD = len("with code of ours")  # what is longer is the sentence of a refusal
 # One of each, as shipped where that is a variant: what is built does not depend on settings, but for constructions.
 ASKED_OF = tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1]
 MATRIX = tuple(map(Capabilities, ASKED_OF))
@@ -59,6 +60,7 @@ EXPERIMENTS = (
         title="Compiled models",
         expected="The same model as in C, with an error that no step makes smaller where a loop turns.",
         cells=COMPILED,
+        columns=("angle", "gap", "reaction"),
     ),
 )
 
@@ -121,22 +123,22 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A line an engine, from what it built; empty where nothing was asked yet."""
     body = []
     for task, answer in answers.items():
-        cells = [_short(str(answer.values[what])) for what in ASKED]
-        body.append([task.of.name, *cells, str(answer.values["reactions"]), str(answer.values["width"])])
+        cells = [_short(str(answer.values[what])) for what in (*ASKED, "reactions", "width")]
+        body.append([task.of.name, *cells])
     return markdown(["engine", *ASKED, "reactions", "numbers"], body, left=len(ASKED) + 3) if body else ""
 
 
 def _short(told: str) -> str:
-    return told if told in ("yes", "with code of ours") else "no"
+    return told if len(told) <= LONGEST_WORD else "no"
 
 
 def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str]]:
     """(engine, what, its own sentence) of what it refuses."""
     return [
-        (task.of.name, what, str(answer.values[what]))
+        (task.of.name, what, told)
         for task, answer in answers.items()
         for what in ASKED
-        if _short(str(answer.values[what])) == "no"
+        if _short(told := str(answer.values[what])) == "no"
     ]
 
 
