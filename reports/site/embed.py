@@ -101,7 +101,7 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
             own_place = joint.rolling.contact(second[:, 2] - first[:, 2]).point
             at = first[:, :2] + rotated(first[:, 2], own_place)
         else:
-            at = drawn.point_path(second, joint.second_point)
+            at = drawn.point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
         found.append({"name": joint.name, "at": _listed(at, 6), "force": _listed(force, 6)})
     return found
 
