@@ -36,8 +36,8 @@ import numpy as np
 
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_own_models, unwrapped
-from reference.joints import Drive, Joint, Pin, Slot
+from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_all_but, unwrapped
+from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Count, Name, Positive, validated
@@ -80,7 +80,7 @@ class Box2D(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_own_models(mechanism, "box2d")
+        refuse_all_but(mechanism, "box2d", (Pin, Slot, Drive, Skate, Roll))
         self.require()
         world = _World(mechanism)
         return SingleRun(

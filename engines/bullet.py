@@ -32,8 +32,8 @@ from numpy.typing import NDArray
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_own_models, tree_states
-from engines.tree import Link, Tree, refuse_all_but_pins_of_loops, spanning_tree, world_offset
+from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_all_but, tree_states
+from engines.tree import Link, Tree, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.joints import Drive, Joint, Pin, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.validation import Count, Fraction, Name, Positive, validated
@@ -86,7 +86,7 @@ class Bullet(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_own_models(mechanism, "bullet")
+        refuse_all_but(mechanism, "bullet", (Pin, Slot, Drive))
         tree = spanning_tree(mechanism)
         drives = _refused(mechanism, tree)
         self.require()
@@ -96,7 +96,7 @@ class Bullet(Optional):
 
 def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
     """Tree coordinates that a motor turns, and their rates [rad/s]; raises Unsupported."""
-    refuse_all_but_pins_of_loops(mechanism, tree, "bullet")
+    refuse_slots_in_loops(tree, "bullet")
     for link in tree.links:
         if len(link.columns) != 1:
             raise Unsupported(

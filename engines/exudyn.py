@@ -34,7 +34,7 @@ from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupport
 from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
-from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_own_models
+from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_all_but
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -91,7 +91,7 @@ class Exudyn(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_own_models(mechanism, "exudyn")
+        refuse_all_but(mechanism, "exudyn", (Pin, Slot, Drive, Skate, Roll))
         self.require()
         system = _System(mechanism)
         return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(self, dt, samples, every))
@@ -180,7 +180,7 @@ class _System:
             case Roll():
                 return self._roll(joint)
             case _:
-                raise Unsupported(f"joint {joint.name!r}: exudyn's adapter knows no {type(joint).__name__.lower()}")
+                raise Unsupported(f"joint {joint.name!r}: exudyn is given none of its kind here")
 
     def _disc(self, ends: list[int], held: list[int], radius: float, axle: list[float], normal: list[float]) -> None:
         """A disc of the second marker on the plane of the first; held: along the axle, forwards, along the normal."""

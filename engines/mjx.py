@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
 
@@ -34,9 +34,9 @@ from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import Model
-from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_all_but, tree_states
 from engines.tree import spanning_tree
-from reference.joints import Joint, Skate
+from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Name, Positive, validated
@@ -86,9 +86,8 @@ class Mjx(Optional):
         return self.settings.holder(joint, mechanism)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        """MuJoCo's, without the term of velocities."""
-        soft = self.settings.softness(mechanism, dt)
-        return None if soft is None else replace(soft, complete=False)
+        """As the settings declare it in MuJoCo; that the velocity term is missing is declared nowhere."""
+        return self.settings.softness(mechanism, dt)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
@@ -97,6 +96,7 @@ class Mjx(Optional):
             if isinstance(joint, Skate | Roll):
                 what = f"a {type(joint).__name__.lower()} is held by contacts or callbacks of MuJoCo's C code"
                 raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
+        refuse_all_but(mechanism, "mjx", (Pin, Slot, Drive))
         self.require()
         model = self.settings.model(mechanism, dt)
         hooks = model.hooks
@@ -104,7 +104,11 @@ class Mjx(Optional):
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         data = model.start()
         size = Size(model.compiled.nbody - 1, model.compiled.nq, model.rows + len(model.driven), data.nefc)
-        return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, data, samples, every))
+        try:
+            held = _programs()[0].put_model(model.compiled)
+        except NotImplementedError as reason:
+            raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
+        return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, held, data, samples, every))
 
 
 @cache
@@ -124,12 +128,9 @@ def _programs() -> tuple[Any, Any, Any]:
     return mjx, jax.jit(steps), jax.jit(mjx.forward)
 
 
-def _record(model: Model, data: Any, samples: int, every: int) -> Recorded:
+def _record(model: Model, held: Any, data: Any, samples: int, every: int) -> Recorded:
     mjx, steps, forward = _programs()
-    try:
-        held, now = mjx.put_model(model.compiled), mjx.put_data(model.compiled, data)
-    except NotImplementedError as reason:
-        raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
+    now = mjx.put_data(model.compiled, data)
     steps(held, now, 0).qpos.block_until_ready()  # compiles
     position, velocity, acceleration = np.full((3, samples + 1, model.compiled.nq), np.nan)
     states = [now]

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, refuse_own_models, tree_states
-from engines.tree import Link, Tree, refuse_all_but_pins_of_loops, spanning_tree, world_offset
+from engines.single_run import Optional, Recorded, SingleRun, refuse_all_but, tree_states
+from engines.tree import Link, Tree, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.joints import Drive, Joint, Pin, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.validation import Name, Positive, validated
@@ -77,9 +77,9 @@ class Pinocchio(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_own_models(mechanism, "pinocchio")
+        refuse_all_but(mechanism, "pinocchio", (Pin, Slot, Drive))
         tree = spanning_tree(mechanism)
-        refuse_all_but_pins_of_loops(mechanism, tree, "pinocchio")
+        refuse_slots_in_loops(tree, "pinocchio")
         self.require()
         model = _Model(mechanism, tree)
         return SingleRun(

@@ -7,7 +7,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from typing import ClassVar
@@ -15,10 +15,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Size, Softness, Unsupported, refuse_forces
+from engines.contract import Size, Softness, Unsupported
 from engines.read_reactions import reactions
 from engines.tree import Tree
-from reference.joints import Gear, Rod, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, Valid, validated
@@ -75,6 +74,15 @@ class Optional(Valid):
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """None, unless an engine says otherwise: nothing is declared that the judge could follow."""
         return None
+
+
+def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...]) -> None:
+    """Raises Unsupported for joints of other kinds, and for springs and dampers, which these adapters don't build."""
+    for joint in mechanism.joints:
+        if not isinstance(joint, kinds):
+            raise Unsupported(f"joint {joint.name!r}: {engine} is given no {type(joint).__name__.lower()} here")
+    for force in mechanism.forces:
+        raise Unsupported(f"force {force.name!r}: {engine} is given no springs, dampers and the like here")
 
 
 @contextmanager
@@ -138,40 +146,29 @@ def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
     return out
 
 
-def refuse_own_models(mechanism: Mechanism, engine: str) -> None:
-    """Raise Unsupported for rods, gears, welds and force elements: only users' own models have them."""
-    refuse_forces(mechanism, engine)
-    for joint in mechanism.joints:
-        if isinstance(joint, Rod | Gear | Weld):
-            kind = type(joint).__name__.lower()
-            raise Unsupported(f"joint {joint.name!r} is a {kind}; the adapter of {engine} knows pins, slots and drives")
-
-
-@dataclass
 class SingleRun:
-    """A model, ready to be stepped once: `record(samples, every)` steps it. See `engines.Run`."""
+    """A model, ready to be stepped once; see `engines.Run`."""
 
-    mechanism: Mechanism
-    dt: float  # s
-    size: Size
-    record: Callable[[int, int], Recorded]
-    _over: bool = field(default=False, init=False)
+    def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
+        """`record(samples, every)` steps the model, with steps of dt [s]."""
+        self._mechanism, self._dt, self._record, self._over = mechanism, dt, record, False
+        self.size = size
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
-        self.mechanism.require_room(samples)
+        self._mechanism.require_room(samples)
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True
-        found = self.record(samples, every)
+        found = self._record(samples, every)
         pose, twist = found.pose.copy(), found.twist.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.
-        pose[0], twist[0] = self.mechanism.pose, self.mechanism.twist
+        pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         sound = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
         lost = int(np.argmin(sound)) if not sound.all() else samples + 1
         acceleration = found.acceleration.copy()
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
-        reaction = reactions(self.mechanism, pose, twist, acceleration, found.inertias, found.gravity)
-        t = np.arange(samples + 1, dtype=np.float64) * (every * self.dt)
+        reaction = reactions(self._mechanism, pose, twist, acceleration, found.inertias, found.gravity)
+        t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         return Trajectory(t, pose, twist, reaction, found.stepping, found.warnings)

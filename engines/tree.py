@@ -256,11 +256,8 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
     return float(x), float(y)
 
 
-def refuse_all_but_pins_of_loops(mechanism: Mechanism, tree: Tree, engine: str) -> None:
-    """Raises Unsupported for skates and rolls, and for slots that no coordinate of the tree stands for."""
-    for joint in mechanism.joints:
-        if not isinstance(joint, Pin | Slot | Drive):
-            raise Unsupported(f"joint {joint.name!r}: {engine} has no constraint of a {type(joint).__name__.lower()}")
+def refuse_slots_in_loops(tree: Tree, engine: str) -> None:
+    """Raises Unsupported for slots that no coordinate of the tree stands for."""
     for joint in tree.loops:
         if isinstance(joint, Slot):
             raise Unsupported(f"joint {joint.name!r}: a slot closes a loop, and {engine} closes loops at points alone")

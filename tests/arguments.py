@@ -41,7 +41,7 @@ from reference.validation import (
     Times,
 )
 from tests.mechanisms import four_bar
-from tests.samples import INSTANCES
+from tests.samples import INSTANCES, RUN
 
 NAN, INF = float("nan"), float("inf")
 NOTHING_AT_ALL = [None, object(), {}, {"x": 1.0}, float, Ellipsis]
@@ -206,7 +206,7 @@ def functions_of_the_suite() -> Iterator[tuple[Callable[..., Any], Any]]:
 
 
 def _object_of(owner: type) -> Any:
-    for each in INSTANCES:
+    for each in (*INSTANCES, RUN):
         if isinstance(each, owner):
             return each
     for engine in (*registry.ENGINES, Reflected("mine")):

@@ -94,7 +94,7 @@ class Mistake:
             case _:
                 index = [joint.name for joint in joints].index(self.owner)
                 joints[index] = _wrong_joint(joints[index], self.kind, self.detail, relative, length, time)
-        wrong = Misbuilt(tuple(bodies), tuple(joints), gravity, right=right)
+        wrong = Misbuilt(tuple(bodies), tuple(joints), gravity, right.forces, right=right)
         pose, closed = right.pose, twist
         for _ in range(CLOSING_STEPS):
             pose, closed = projected(wrong, pose, twist, 0.0)

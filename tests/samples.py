@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import registry
+from engines import Size, registry
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange, stacked
 from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
@@ -17,6 +17,7 @@ from engines.pymunk.engine import Pymunk
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
 from engines.pymunk.reflection import Reflected
+from engines.single_run import Recorded, SingleRun
 from reference import centrodes, shapes
 from reference.andrews import Dyad
 from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
@@ -57,9 +58,16 @@ _chain = LongPendulum().mechanism()
 _crank = SliderCrank(0.3, 1.0)
 _curve = CurveMotion(FourBar(1.0, 2.0, 2.0, (2.0, 0.0)), (1.0, 1.0, 1.0), (0.0, -9.81))
 
+
+def _nothing_recorded(samples: int, every: int) -> Recorded:
+    raise AssertionError("a run with arguments that can't be was begun")
+
+
+# A run of engines that need not be installed.
+RUN = SingleRun(four_bar(), 1e-3, Size(3, 9, 8, 8), _nothing_recorded)
 # One valid instance of each class that checks its fields.
 INSTANCES: tuple[Any, ...] = (
-    *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES),
+    *(*SCENES, *SCENES_OF_LIMITS, *registry.ENGINES, *registry.OTHERS),
     *(Body("b", 1.0, 2.0, (0.0, 0.0, 0.0)), four_bar(), OpenChain(_chain.bodies, _chain.joints, _chain.gravity)),
     *(Pin("p", None, "b", (0.0, 0.5), (1.0, 0.0)), Drive("d", None, "b", 1.0, 0.5)),
     *(Slot("s", None, "b", (0.0, 0.5), 0.5, (1.0, 0.0)), Skate("k", None, "b", (0.5, 0.0), 0.5)),

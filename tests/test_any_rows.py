@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import math
 import random
 import re
@@ -42,6 +43,7 @@ from reports.pages.skate.slipping import slipping
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels.folding import Folding
+from reports.pages.your_model.answers import Walk
 from reports.text.rendering import render_index, render_page, render_readme
 from reports.text.templates import environment
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
@@ -241,6 +243,19 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
     assert without_marks(environment().from_string(template).render(given)) == said
 
 
+# Of a user's model of which no setting that was tried is exact enough, and one gave up.
+WALKED = {
+    "duration": 2.0,
+    "error": 0.5,
+    "judge_errors": {"angle": 1e-12},
+    "parts": {"softness": 0.1, "step": 0.4, "smallest": 1e-5, "rest": 0.1, "falling": False},
+    "opening": {"row": "loop x", "gap": 0.5, "t": 2.0},
+    "notes": [],
+    "tried": [{"words": "as it is", "error": 0.5, "reaction": None}, {"words": "1 ms", "error": None, "reaction": 0.5}],
+    "advised": None,
+}
+
+
 def still(task: Task, lost: bool = False) -> Answer:
     """An invented answer: a body that stays where it started, or whose numbers are lost half-way."""
     match task:
@@ -264,6 +279,8 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
+        case Walk():
+            values = {"found": json.dumps(WALKED), "errors": "<svg/>", "worst": "<svg/>"}
         case Softened():
             values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
         case _:

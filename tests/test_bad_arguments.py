@@ -47,12 +47,12 @@ NOT_MADE_BY_USERS = {
     *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.tree.Link"),
     *("engines.tree.Tree", "engines.mujoco.written_rows.WrittenJoint"),
     *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
-    "engines.conformance.changes.Isometry",
     *("engines.reading.Note", "engines.reading.Change", "engines.reading.Give", "engines.reading.Reading"),
     *("engines.mujoco.reading.frame.Frame", "engines.mujoco.reading.frame.Groups", "engines.mujoco.writers.Mjcf"),
     *("engines.mujoco.reading.joints.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
     "engines.mujoco.writers.Urdf",
     *("engines.pymunk.reading.joints.Described", "engines.pymunk.reading.own_model.OwnPymunk"),
+    *("engines.single_run.Recorded", "engines.conformance.changes.Isometry"),
     *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
     *("engines.conformance.worlds.world.Motion", "engines.conformance.worlds.world.World"),
 }

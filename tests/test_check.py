@@ -175,6 +175,15 @@ def test_the_report_can_be_read_by_people_and_programs(tmp_path):
     assert len(numbers["over_time"]["t"]) == len(found.own_errors.t)
 
 
+def test_a_model_at_rest_says_that_nothing_moves(tmp_path):
+    bodies = '<body><joint axis="0 0 1"/><geom size=".1" pos=".2 0 0"/></body>'
+    found = found_in(tmp_path, f"<mujoco><worldbody>{bodies}</worldbody></mujoco>", duration=0.1)
+    text = rendering.plain(sections(found))
+    assert "Nothing moves" in text
+    assert found.met
+    assert "A tenth of that error" not in text
+
+
 def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(tmp_path):
     found = found_in(tmp_path, FOUR_BAR)
     allowed = [each for each in found.table if each.error <= 1e-3]

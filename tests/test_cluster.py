@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import os
-import pickle
 import random
 import signal
 import subprocess
@@ -12,7 +11,7 @@ import sys
 import threading
 import time
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,12 @@ import pytest
 from engines.registry import VARIANTS
 from reference.four_bar.scenes import FreeFourBar
 from reports.grid import cluster as clusters
+from reports.grid import fingerprint
 from reports.grid.cells import Cell
 from reports.grid.cluster import cluster
 from reports.grid.ending import REFUSED, BadInput
-from reports.grid.foreman import Refusal, Request, reply
+from reports.grid.fingerprint import digest_of, modules_of
+from reports.grid.foreman import Request, refused
 from reports.grid.measure import TIMINGS
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import run_cells
@@ -153,23 +154,35 @@ def test_a_worker_with_another_version_is_refused_and_both_are_named(no_workers,
     assert f"pymunk 99.0 there, {version('pymunk')} here" in one_line(capsys.readouterr().err)
 
 
-def test_a_foreman_with_other_source_files_runs_nothing():
-    cell = Cell(Disc(), Toy(), 1)
-    own = cell.key
-    request = Request(pickle.dumps(pytest.fail), (("of another file", pickle.dumps(cell)),), 1.0, 1.0)
-    told = reply(None, request)  # type: ignore[arg-type]
-    assert isinstance(told, Refusal)
-    assert told.versions["our source files"]
-    assert own == cell.key
-    unreadable = Request(pickle.dumps(pytest.fail), ((own, b"cmissing_module\nX\n."),), 1.0, 1.0)
-    assert "missing_module" in reply(None, unreadable).reason  # type: ignore[arg-type,union-attr]
+def test_what_has_other_source_files_behind_it_is_not_run():
+    modules = modules_of(Disc(), Toy())
+    own = Request(b"", (), frozenset({(modules, digest_of(modules))}), 1.0, 1.0)
+    assert refused(own) is None
+    other = replace(own, sources=frozenset({(modules, digest_of(modules)), (modules, "of another file")}))
+    told = refused(other)
+    assert told is not None
+    assert told.versions.keys() >= {"Python", "numpy", "our source files"}
 
 
-def test_a_key_that_travels_with_an_item_is_made_anew():
-    cell = Cell(Disc(), Toy(), 1)
-    vars(cell)["key"] = "of another file"  # as a client with other sources has it
-    request = Request(pickle.dumps(pytest.fail), ((cell.key, pickle.dumps(cell)),), 1.0, 1.0)
-    assert isinstance(reply(None, request), Refusal)  # type: ignore[arg-type]
+def test_a_file_that_is_not_at_the_worker_is_another_file(tmp_path, monkeypatch):
+    def forgotten() -> None:
+        for cached in (fingerprint._place, fingerprint._closure, fingerprint._behind, digest_of):
+            cached.cache_clear()
+
+    (tmp_path / "a_file_of_somebody.py").write_text("TEN = 10\n")
+    modules = frozenset({*modules_of(Disc(), Toy()), "a_file_of_somebody"})
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "path", [*sys.path, str(tmp_path)])
+        forgotten()
+        request = Request(b"", (), frozenset({(modules, digest_of(modules))}), 1.0, 1.0)
+        assert refused(request) is None
+    forgotten()
+    assert refused(request) is not None
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "path", [*sys.path])
+        forgotten()
+        assert refused(replace(request, paths=(str(tmp_path),))) is None  # on the same machine it is found
+    forgotten()
 
 
 def test_without_workers_a_run_ends_after_a_while_in_a_sentence(no_workers, monkeypatch):

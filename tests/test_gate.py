@@ -96,6 +96,35 @@ def test_softness_costs_in_proportion_to_compliance_over_stiffness():
     assert JUDGE.give("angle", None) == 0
 
 
+def test_a_row_without_a_gap_gives_way_by_its_damper_and_not_by_its_spring():
+    judge = replace(JUDGE, gapped=(False, False))
+    soft = Softness(25000.0, 50.0, 0.01, (True, True))
+    assert judge.give("angle", soft) == pytest.approx(2e-3, rel=1e-12)
+    assert JUDGE.give("angle", soft) == pytest.approx(1e-4, rel=1e-12)
+
+
+def test_of_first_order_a_positions_and_an_energys_time_scale_are_no_longer_than_the_angles():
+    drifting = replace(JUDGE, fourth={**JUDGE.fourth, "position": 1e-6})
+    assert drifting.error("position", 1, FINE) == pytest.approx(JUDGE.error("position", 1, FINE), rel=1e-12)
+    assert drifting.error("position", 2, FINE) == pytest.approx(JUDGE.error("position", 2, FINE), rel=1e-12)
+
+
+def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
+    told = [
+        dict(of(theory(JUDGE, Promise(2, differences=8, amplified=carried), None, row()), "reaction").terms)["rounding"]
+        for carried in (1.0, 17.0)
+    ]
+    # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
+    assert told == pytest.approx([8e-8 + 1e-9, 17 * 8e-8 + 1e-9], rel=1e-12)
+
+
+def test_one_coarser_step_may_be_luck_and_bounds_nothing_unless_the_judge_is_lost():
+    lucky = [row(every=1, angle=1e-9)]
+    assert of(theory(JUDGE, Promise(2), None, row(angle=1e-8), lucky), "angle").passed
+    lost = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
+    assert not of(theory(lost, Promise(2), None, row(angle=1e-8), [row(every=1, angle=1e-7)]), "angle").passed
+
+
 def test_a_promise_for_one_quantity_is_for_that_alone():
     promise = Promise(4, rate=2, gap=EXACT, reaction=0)
     named = ("angle", "position", "rate", "velocity", "gap", "slip", "energy", "reaction")

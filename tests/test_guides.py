@@ -11,7 +11,9 @@ from dataclasses import replace
 
 import mujoco
 import pytest
+import typer
 
+from reports.cli.commands import app
 from reports.cli.selection import choose_cells, page_cells, shown_cells
 from reports.pages.guides.page import EVERY, FOUR_BAR, PAGES, SCENES, VARIANTS
 from reports.pages.page import Material
@@ -19,7 +21,7 @@ from reports.text.lookups import told
 from reports.text.rendering import render_page
 from tests.committed_rows import page_rows
 
-GLOSSARY, REACTIONS, INTEGRATORS = PAGES
+GLOSSARY, REACTIONS, INTEGRATORS, CLUSTER = PAGES
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
 FOOT = re.compile(r"^---\n.*", re.DOTALL | re.MULTILINE)
@@ -165,3 +167,13 @@ def test_the_glossary_has_a_sentence_for_each_of_its_words():
     entries = re.findall(r"^- \*\*(.+?)\*\*.*?: ?(.+)$", text_of(GLOSSARY, {}), re.MULTILINE)
     assert len(entries) >= 25
     assert len({word.lower() for word, _ in entries}) == len(entries)
+
+
+def test_the_guide_to_clusters_names_commands_and_options_that_exist():
+    text = render_page(CLUSTER, Material({}), "crosscheck report")["cluster.md"]
+    commands = set(re.findall(r"^crosscheck ([a-z]+).*--scheduler (tcp://HOST:8786|local:4)$", text, re.MULTILINE))
+    assert commands == {("search", "local:4"), ("run", "tcp://HOST:8786")}
+    known = typer.main.get_command(app)
+    for name, _ in commands:
+        options = [option for each in known.commands[name].params for option in each.opts]  # type: ignore[attr-defined]
+        assert "--scheduler" in options

@@ -75,6 +75,7 @@ def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
     store = tmp_path / "cells.sqlite"
     while process.poll() is None and count_of_rows(store) == 0:
         time.sleep(0.1)
+    assert process.poll() is None, process.communicate()  # it had ended before anything was stored
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate()
     assert process.returncode == INTERRUPTED

@@ -232,7 +232,9 @@ def test_processes_that_start_at_once_compile_once(tmp_path):
     compiled = list(tmp_path.rglob("*.nbc"))
     assert len(compiled) == 1
     before = compiled[0].stat().st_mtime_ns
-    assert started(NUMBA_CACHE_DIR=str(tmp_path)).wait() == 0
+    with started(NUMBA_CACHE_DIR=str(tmp_path)) as later:
+        assert later.communicate()[1] == ""
+    assert later.returncode == 0
     assert compiled[0].stat().st_mtime_ns == before
 
 

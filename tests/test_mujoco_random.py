@@ -15,6 +15,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.solver_check import _lost
+from engines.mujoco.stiffness import Hardened
 from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reports.search.mechanisms import mechanism
@@ -94,6 +95,16 @@ def test_a_light_body_that_carries_a_heavy_one_makes_rows_softer_and_loses_nothi
     found = miss(own)
     assert found.angle < 1e-9
     assert found.reaction < 1e-8
+
+
+def test_a_softness_that_is_asked_for_is_kept() -> None:
+    own = mechanism(1, 130, HELD)
+    asked, eased = (
+        replace(EXTENDED, stiffness=Hardened(eased=eased)).model(own, STEP).compiled for eased in (False, True)
+    )
+    shipped = replace(EXTENDED, stiffness=Hardened(softening=1.0)).model(own, STEP).compiled
+    assert np.allclose(asked.dof_invweight0, 1e-8 * shipped.dof_invweight0, rtol=1e-12, atol=0.0)
+    assert np.all(eased.dof_invweight0 > 9 * asked.dof_invweight0)
 
 
 def test_the_judges_own_error_is_far_below_the_goal() -> None:

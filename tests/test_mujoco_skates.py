@@ -330,3 +330,15 @@ def test_a_long_coast_ends_straight_and_raises_no_alarm() -> None:
     assert np.abs(motion.pose - truth.pose)[..., 2].max() < 2e-9
     assert np.abs(motion.pose - truth.pose).max() < 140 * 2e-9
     assert motion.warnings == ()
+
+
+def test_the_softness_that_is_declared_of_a_written_row_is_what_it_slips_by():
+    engine, mechanism = NAMED["rows, shipped compliance"], SLEIGH.mechanism()
+    soft = engine.softness(mechanism, 1e-3)
+    assert soft is not None
+    found = engine.build(mechanism, 1e-3)(SLEIGH.samples, 10)
+    rows = mechanism.rows(mechanism.pose)
+    inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
+    # slip' + damping slip = compliance A F: behind a force that rises and falls, the slip reaches half of its limit.
+    limit = soft.compliance * inverse * np.abs(found.reaction).max() / soft.damping
+    assert 0.3 * limit < np.abs(mechanism.slip(found.pose, found.twist)).max() < limit

@@ -103,7 +103,7 @@ def torsion(space, first, second):
 
 def kinematic(space, first, second):
     crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    crank.position, crank.angular_velocity = second.position - pymunk.Vec2d(0.2, 0), 3.0
+    crank.position, crank.angular_velocity = second.position - pymunk.Vec2d(0.2, 0.0), 3.0
     second.velocity, second.angular_velocity = (0.0, 0.6), 1.0
     space.add(crank)
     return PivotJoint(crank, second, (0.2, 0), (0, 0))
@@ -122,7 +122,7 @@ def off_centre(space, first, second):
     odd.position, odd.angle = (2.0, 2.0), 0.5
     space.add(odd)
     place = odd.local_to_world((0.3, 0.3))
-    return PivotJoint(space.static_body, odd, tuple(place), (0.3, 0.3))
+    return PivotJoint(space.static_body, odd, (place.x, place.y), (0.3, 0.3))
 
 
 MAKERS = {
@@ -256,7 +256,7 @@ def travelling(space, first, second):
 
 def own_spring(space, first, second):
     joint = spring(space, first, second)
-    joint.force_func = lambda each, distance: 1.0
+    joint.force_func = lambda each, distance: 1.0  # type: ignore[assignment]
     return joint
 
 

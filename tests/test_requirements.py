@@ -50,11 +50,11 @@ def test_pymunk_rows_depend_on_the_version_of_cffi_and_mujoco_rows_do_not(monkey
     before = fingerprint.fingerprint(PYMUNK), fingerprint.fingerprint(MUJOCO)
     true_version = metadata.version
     monkeypatch.setattr(fingerprint.metadata, "version", lambda name: "0" if name == "cffi" else true_version(name))
-    fingerprint._digest.cache_clear()
+    fingerprint.digest_of.cache_clear()
     try:
         after = fingerprint.fingerprint(PYMUNK), fingerprint.fingerprint(MUJOCO)
     finally:
-        fingerprint._digest.cache_clear()
+        fingerprint.digest_of.cache_clear()
     assert after[0] != before[0]
     assert after[1] == before[1]
 

@@ -118,6 +118,7 @@ def test_a_welded_pair_is_one_body():
     own = np.array([cosine * shift[0] + sine * shift[1], -sine * shift[0] + cosine * shift[1]])
     merged = Body("b", mass, inertia, (float(centre[0]), float(centre[1]), b.pose[2]))
     hung = pair.joints[1]
+    assert isinstance(hung, Pin)
     moved = replace(hung, second_point=tuple((np.array(hung.second_point) - own).tolist()))
     single = Mechanism((a, merged), (pair.joints[0], moved), GRAVITY)
     one, other = (TRUTH.build(each, 0.05)(12, 1) for each in (pair, single))

@@ -25,7 +25,7 @@ class OpenChain(Mechanism):
         """One angle a body, whatever the pose."""
         return len(self.bodies), len(self.bodies)
 
-    def forces(
+    def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Newton's law from the free end upwards: pin i carries what all bodies below it need (..., rows) [N]."""

@@ -102,7 +102,7 @@ class SquareOnCatenaries(RollingScene):
         return self.mass * self.side**2 / 6
 
     @cached_property
-    def motion_law(self) -> RollingBody:
+    def motion_law(self) -> RollingBody:  # type: ignore[override]
         """From the middle of the side at the top of the arch: a straight side doesn't tell the place by its angle."""
         rolling = Rolling.at_arcs(self.body_curve(), self.ground_curve())
         return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)

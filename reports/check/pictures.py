@@ -8,7 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from reference.forces import Spring
+from reference.joints import Rod, Slot
 from reference.mechanism import Mechanism
+from reference.plane import rotated
 from reports.charts.drawings import ground_points
 from reports.charts.theme import LIGHT, new_figure, settings, style_axes, svg
 from reports.check.checked import Checked
@@ -81,6 +84,8 @@ def _worst(found: Checked) -> Figure:
             panel.plot(
                 *points.T, linestyle="none", marker="^", markersize=8, color=theme.quiet, label="held to the ground"
             )
+        _draw_links(panel, mechanism, truth, color=theme.ink, linewidth=1.0)
+        _draw_links(panel, mechanism, own, color=theme.first, linewidth=0.8, linestyle="--")
         _draw(panel, mechanism, truth, "ideal joints", color=theme.ink, linewidth=3.0, markersize=6)
         _draw(panel, mechanism, own, "your settings", color=theme.first, linewidth=1.5, linestyle="--", markersize=4)
         panel.set_xlabel("x in the plane of motion, m")
@@ -89,6 +94,32 @@ def _worst(found: Checked) -> Figure:
         for text in legend.get_texts():
             text.set_color(theme.ink)
     return figure
+
+
+def _draw_links(panel: Any, mechanism: Mechanism, pose: Array, **line: Any) -> None:
+    """Rods and springs as thin lines between their points, and lines that stand still on which something slides."""
+    reach = 2 * max(mechanism.length_scale, float(np.ptp(mechanism.pose[:, :2], axis=0).max()))
+    for joint in mechanism.joints:
+        if isinstance(joint, Slot) and joint.first is None:
+            way = 0.5 * reach * np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
+            place = _place(mechanism, pose, joint.second, joint.second_point)
+            panel.plot(*np.array([place - way, place + way]).T, linewidth=0.6, color=line["color"], alpha=0.5)
+    for link in (*mechanism.joints, *mechanism.forces):
+        if isinstance(link, Rod | Spring):
+            ends = [
+                _place(mechanism, pose, name, point)
+                for name, point in ((link.first, link.first_point), (link.second, link.second_point))
+            ]
+            if np.linalg.norm(ends[1] - ends[0]) < 3 * reach:  # not one that stands for a spring along a slide
+                panel.plot(*np.array(ends).T, **line)
+
+
+def _place(mechanism: Mechanism, pose: Array, name: str | None, point: tuple[float, float]) -> Array:
+    """A body's own point in the world (2,) [m]."""
+    if name is None:
+        return np.array(point)
+    x, y, angle = pose[mechanism.body_index(name)]
+    return np.array([x, y]) + rotated(angle, np.array(point))
 
 
 def _draw(panel: Any, mechanism: Mechanism, pose: Array, label: str, **line: Any) -> None:
@@ -102,8 +133,5 @@ def _draw(panel: Any, mechanism: Mechanism, pose: Array, label: str, **line: Any
         }
         if len(points) < 2:
             points.add((0.0, 0.0))
-        own = np.array(sorted(points))
-        x, y, angle = pose[index]
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        world = own @ turn.T + (x, y)
+        world = np.array([_place(mechanism, pose, body.name, point) for point in sorted(points)])
         panel.plot(*world.T, marker="o", solid_capstyle="round", label=label if index == 0 else None, **line)

@@ -84,7 +84,7 @@ def _advice(found: Checked) -> tuple[str, ...]:
 
 def _decade(found: Checked) -> tuple[str, ...]:
     advised, decade = found.advised, found.decade
-    if advised is None:
+    if advised is None or advised.error == 0:
         return ()
     if decade is None:
         return ("A tenth of that error was not reached by any setting that was tried.",)
@@ -124,11 +124,17 @@ def _read(found: Checked) -> Section:
         told = "; ".join(f"{name} at {t:.3g} s" for t, name in facts.dead_centres[:MOST_NAMED])
         more = len(facts.dead_centres) - MOST_NAMED
         sentences.append(f"Dead centres, where a body turns back: {told}{f'; {more} more' if more > 0 else ''}.")
+    fastest = max(facts.fastest_rotation, facts.stiffest_mode)
+    if not found.judge.trajectory.twist.any():
+        sentences.append("Nothing moves: no force has a share in the plane of motion, and the start is at rest.")
     sentences.append(
         f"Fastest rotation {facts.fastest_rotation:.3g} rad/s; stiffest small motion at the start "
-        f"{facts.stiffest_mode:.3g} rad/s; one radian of the fastest takes "
-        f"{1 / max(facts.fastest_rotation, facts.stiffest_mode, 1e-12):.2g} s, "
-        f"{1 / max(facts.fastest_rotation, facts.stiffest_mode, 1e-12) / reading.model.dt:.2g} of your steps."
+        f"{facts.stiffest_mode:.3g} rad/s"
+        + (
+            f"; a radian of the fastest takes {1 / fastest:.2g} s, {1 / fastest / reading.model.dt:.2g} of your steps."
+            if fastest > 0
+            else "."
+        )
     )
     growth = float(found.judge.growth[-1])
     if found.judge.horizon < found.duration:
@@ -169,8 +175,8 @@ def _parts(found: Checked) -> tuple[str, ...]:
         )
         return (
             f"Step: your run is off the ideal motion by {number(parts.step)}; {smallest}, and {kind}.",
-            f"Softness: how far joints give way in {model.engine} follows from the step and the iterations, so no "
-            "part of the error is its own.",
+            f"Softness: {model.engine} declares no law for all of these joints that no step takes part in, so its "
+            "share is not told apart.",
         )
     if model.softly_held:
         out.append(

@@ -24,7 +24,7 @@ Force = Annotated[bool, typer.Option("--force", help="Replace a file that is the
 
 def export(
     scene: SceneName,
-    to: Annotated[str, typer.Option("--to", help="mjcf, pymunk or urdf.")] = "mjcf",
+    to: Annotated[str, typer.Option("--to", help="mjcf, urdf, or the engine whose script it is.")] = "mjcf",
     variant: Annotated[str, typer.Option(help="The variant whose settings the file has.")] = "default",
     step: Annotated[float, typer.Option(help="The step in the file [s].")] = 1e-3,
     out: Out = None,
@@ -118,9 +118,12 @@ def told(scene: Scene) -> list[str]:
     """The truth at ten instants: poses of all bodies, in the plane of the scene."""
     import numpy as np
 
-    names = [body.name for body in scene.mechanism().bodies]
+    mechanism = scene.mechanism()
+    names = [body.name for body in mechanism.bodies]
     times = np.linspace(0.0, scene.duration, INSTANTS)
     lines = [f"{scene.name} ({scene.source}): where the centres of mass are [m], and the angles [rad], in truth."]
+    x, y = mechanism.gravity
+    lines.append(f"Gravity: {x:.12g}, {y:.12g} m/s^2 in the plane, x and y as below; some formats can't hold it.")
     for t, poses in zip(times, scene.motion(times).pose, strict=True):
         lines.append(f"t = {t:.6g} s")
         lines += [

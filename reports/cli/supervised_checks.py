@@ -24,6 +24,8 @@ from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import TIME_LIMIT
 from reports.grid.supervisor import supervise
 
+MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
+
 
 @dataclass(frozen=True)
 class Named:
@@ -76,12 +78,14 @@ def ask(question: Question) -> tuple[Result, ...]:
 
 
 def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Iterator[tuple[Case, Result]]]]:
-    """Every engine that is named, and what comes of its checks, in their order. `limit`: CPU seconds of a check.
+    """Every engine that is named, and what comes of its checks, in their order. `limit`: CPU seconds of a check, and
+    more where an engine says that its models take long to build.
 
     One worker at a time, so that what an engine has run is kept. Raises BadInput, and WorkersLost (`supervise`).
     """
     for place, engine in enumerate(named.engines()):
-        yield engine, _answers(named, place, engine, limit)
+        building = MODELS * getattr(engine, "building", 0.0)
+        yield engine, _answers(named, place, engine, limit + building)
 
 
 def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:

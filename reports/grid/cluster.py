@@ -2,8 +2,8 @@
 
 The client keeps some chunks ahead for every thread of every worker and hands out the next as answers arrive, so that
 workers may come, go and be killed: Dask runs a chunk again whose worker has vanished, and an item is answered once. A
-worker runs cells through a foreman (`reports.grid.foreman`), which first compares every item's key with its own: rows
-of other versions of an engine, or of other files of ours, are never mixed.
+worker runs cells through a foreman (`reports.grid.foreman`), and before that it compares the digest of what is behind
+every item with its own: rows of other versions of an engine, or of other files of ours, are never mixed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any
 from reports.grid import foreman
 from reports.grid.cells import Cell, estimated_cost
 from reports.grid.ending import BadInput
-from reports.grid.fingerprint import versions_behind
+from reports.grid.fingerprint import digest_of, modules_of, versions_of
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.supervisor import TICK, Answer, Watch, WorkersLost, wall_limit
 from reports.grid.worker import describe
@@ -81,6 +81,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                     where = stack.enter_context(
                         distributed.LocalCluster(
                             n_workers=int(local[1]),
+                            processes=False,  # each has a foreman, which is one
                             threads_per_worker=1,
                             dashboard_address="127.0.0.1:0",  # any free port, seen from this machine alone
                             memory_limit=None,  # cells have processes of their own, which it would not see
@@ -94,6 +95,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                     f"--scheduler is {scheduler!r}: no Dask scheduler answers there within {ANSWERS_WITHIN:g} s "
                     f"({said}); start one with: dask scheduler"
                 ) from None
+        stack.callback(foreman.dismiss)  # those of workers in this process
         yield Cluster(client, scheduler)
 
 
@@ -164,7 +166,7 @@ class Cluster:
                     send(Chunk(tuple(taken), estimate))
                 for chunk, told in send.heard():
                     if isinstance(told, foreman.Refusal):
-                        raise _refused(told, chunk.items[0], self._name)
+                        raise _refused(told, self._name)
                     if isinstance(told, Exception):
                         yield from self._lost(chunk, told, again)
                         continue
@@ -201,8 +203,12 @@ class _Sender:
         self.running: dict[Any, Chunk] = {}
 
     def __call__(self, chunk: Chunk) -> None:
-        packed = tuple((item.key, pickle.dumps(item)) for item in chunk.items)
-        request = foreman.Request(self._function, packed, self._limit, self._wall, self._paths)
+        packed = tuple(pickle.dumps(item) for item in chunk.items)
+        behind = {
+            modules_of(item.scene, item.engine) if isinstance(item, Cell) else modules_of(item) for item in chunk.items
+        }
+        sources = frozenset((modules, digest_of(modules)) for modules in behind)
+        request = foreman.Request(self._function, packed, sources, self._limit, self._wall, self._paths)
         # A number in the key: the same chunk sent again is another task, not the answer that was lost.
         key = f"chunk-{id(self)}-{next(self._numbers)}-{time.time_ns()}"
         future = self._client.submit(foreman.answered, pickle.dumps(request), key=key, pure=False)
@@ -237,15 +243,14 @@ class _Sender:
         self.running.clear()
 
 
-def _refused(refusal: foreman.Refusal, item: Any, name: str) -> BadInput:
+def _refused(refusal: foreman.Refusal, name: str) -> BadInput:
     """The line about a worker that would run something else."""
-    if refusal.reason:
-        return BadInput(f"a worker at {name} {refusal.reason}; install there what is installed here")
-    own, theirs = versions_behind(item), refusal.versions
+    own, theirs = versions_of(refusal.modules), refusal.versions
     told = [
         f"{each} {theirs.get(each, 'missing')} there, {own.get(each, 'missing')} here"
         for each in sorted({*own, *theirs})
         if own.get(each) != theirs.get(each)
     ]
-    differing = "; ".join(told) or "other numbers of the scene or of the engine"
-    return BadInput(f"a worker at {name} would give other rows ({differing}): nothing was run there; install the same")
+    return BadInput(
+        f"a worker at {name} would give other rows ({'; '.join(told)}): nothing was run there; install the same"
+    )

@@ -190,7 +190,8 @@ def _behind(modules: frozenset[str]) -> tuple[frozenset[tuple[str, Path]], froze
 
 
 @cache
-def _digest(modules: frozenset[str]) -> str:
+def digest_of(modules: frozenset[str]) -> str:
+    """A digest of the source files and package versions behind these modules; none of them is imported for it."""
     files, distributions = _behind(modules)
     digest = hashlib.sha256(f"Python=={platform.python_version()}\0".encode())
     # By name, not by place: a checkout in another folder has the same results.
@@ -201,14 +202,19 @@ def _digest(modules: frozenset[str]) -> str:
     return digest.hexdigest()
 
 
+def modules_of(*values: Any) -> frozenset[str]:
+    """The modules behind these scenes and engines, or behind a task, and behind the measuring."""
+    return frozenset({*modules_behind(*values), *MEASURING})
+
+
 def fingerprint(*values: Any) -> str:
     """A digest of the sources and package versions behind these scenes and engines, and behind the measuring."""
-    return _digest(frozenset({*modules_behind(*values), *MEASURING}))
+    return digest_of(modules_of(*values))
 
 
-def versions_behind(*values: Any) -> dict[str, str]:
-    """What differs where `fingerprint` does: versions by distribution, that of Python, a digest of all source files."""
-    files, distributions = _behind(frozenset({*modules_behind(*values), *MEASURING}))
+def versions_of(modules: frozenset[str]) -> dict[str, str]:
+    """What differs where `digest_of` does: versions by distribution, that of Python, a digest of all source files."""
+    files, distributions = _behind(modules)
     sources = hashlib.sha256(b"".join(name.encode() + b"\0" + path.read_bytes() for name, path in sorted(files)))
     own = {"Python": platform.python_version(), "our source files": sources.hexdigest()[:12]}
     return {**{name: metadata.version(name) for name in sorted(distributions)}, **own}

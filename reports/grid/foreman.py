@@ -2,7 +2,7 @@
 
 A Dask worker is a process that may have no children of its own, and one that native code must not end. So each of its
 threads has a foreman: a plain process that reads chunks of items, runs them as `supervise` does, and writes the
-answers. It ends with the worker. The worker itself passes bytes on: it imports no engine.
+answers. It ends with the worker. Worker and foreman pass items on as bytes: neither imports an engine.
 """
 
 from __future__ import annotations
@@ -14,28 +14,30 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
-from reports.grid.fingerprint import ROOT, versions_behind
-from reports.grid.supervisor import Crew, crew
-from reports.grid.worker import describe
+from reports.grid.fingerprint import ROOT, digest_of, versions_of
+from reports.grid.supervisor import Crew, Watch, crew
 
 _own = threading.local()  # a worker with several threads runs as many chunks at a time
+_all: set[Foreman] = set()
 
 
 @dataclass(frozen=True)
 class Request:
-    """A chunk: (key, pickled item) of every item, what is run of them, and the limits of `supervise` [s].
+    """A chunk: pickled items, the pickled function that is run of each, and the limits of `supervise` [s].
 
-    paths: where the client finds modules; on the same machine a file of its user is found there too.
+    sources: (modules, digest) of all items, see `reports.grid.fingerprint`. paths: where the client finds modules; on
+    the same machine a file of its user is found there too.
     """
 
     function: bytes
-    items: tuple[tuple[str, bytes], ...]
+    items: tuple[bytes, ...]
+    sources: frozenset[tuple[frozenset[str], str]]
     limit: float
     wall: float
     paths: tuple[str, ...] = ()
@@ -43,9 +45,9 @@ class Request:
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why nothing of a chunk was run: an item can't be read, or would be run with other versions than the client's."""
+    """Nothing of a chunk was run: some of its `modules` have other files or `versions` here than at the client."""
 
-    reason: str
+    modules: frozenset[str]
     versions: dict[str, str]
 
 
@@ -72,6 +74,7 @@ class Foreman:
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": paths},
         )
+        _all.add(self)
         self._send(pickle.dumps(self.terms))
 
     def answered(self, data: bytes) -> bytes:
@@ -81,6 +84,7 @@ class Foreman:
         return _read(self._process.stdout)
 
     def end(self) -> None:
+        _all.discard(self)
         self._process.kill()
         self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout):
@@ -93,12 +97,24 @@ class Foreman:
         _write(self._process.stdin, data)
 
 
+@dataclass(frozen=True)
+class Unpacked:
+    """A function of an item, of the item's place and bytes."""
+
+    function: bytes
+
+    def __call__(self, item: tuple[int, bytes]) -> Any:
+        return pickle.loads(self.function)(pickle.loads(item[1]))
+
+
 def answered(data: bytes) -> bytes:
     """What a Dask worker runs: a pickled Request in, a pickled Reply out, by the foreman of this thread.
 
     Raises EOFError or OSError if the foreman ends meanwhile: the chunk is then run again somewhere.
     """
     request: Request = pickle.loads(data)
+    if refusal := refused(request):
+        return pickle.dumps(refusal)
     foreman: Foreman | None = getattr(_own, "foreman", None)
     if foreman is not None and foreman.terms != (request.limit, request.wall, request.paths):
         foreman.end()
@@ -114,6 +130,26 @@ def answered(data: bytes) -> bytes:
         raise
 
 
+def refused(request: Request) -> Refusal | None:
+    """Whether what is behind the items is something else here than where they come from."""
+    add_paths(request.paths)
+    for modules, digest in request.sources:
+        if digest_of(modules) != digest:
+            return Refusal(modules, versions_of(modules))
+    return None
+
+
+def add_paths(paths: Sequence[str]) -> None:
+    """To the end of the search for modules, those that are here."""
+    sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
+
+
+def dismiss() -> None:
+    """End all foremen of this process, in whatever threads they were started."""
+    while _all:
+        _all.pop().end()
+
+
 def main() -> None:
     """The process: answers requests until nobody asks any more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends with the worker, and not before
@@ -127,28 +163,17 @@ def main() -> None:
 
     with suppress(EOFError, OSError):
         limit, wall, paths = pickle.loads(_read(requests))
-        sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
+        add_paths(paths)
         with crew(limit, 1, wall) as own:
             while True:
                 _write(replies, pickle.dumps(reply(own, pickle.loads(_read(requests)), watch)))
 
 
-def reply(own: Crew, request: Request, watch: Callable[[list[Any]], None] | None = None) -> Reply:
-    """Run a chunk, unless an item's key would be another one here."""
-    items: list[Any] = []
-    for key, data in request.items:
-        try:
-            item = pickle.loads(data)
-        except Exception as error:
-            return Refusal(f"can't read an item: {describe(error)}", {})
-        vars(item).pop("key", None)  # it was made where the item comes from
-        if item.key != key:
-            return Refusal("", versions_behind(item))
-        items.append(item)
+def reply(own: Crew, request: Request, watch: Watch | None = None) -> Answers:
+    """Run a chunk."""
     start = time.monotonic()
-    own.give(pickle.loads(request.function), items)
-    places = {id(item): index for index, item in enumerate(items)}
-    told = tuple((places[id(item)], result, note) for item, result, note in own.answers(watch))
+    own.give(Unpacked(request.function), enumerate(request.items))
+    told = tuple((place, result, note) for (place, _), result, note in own.answers(watch))
     return Answers(told, time.monotonic() - start)
 
 

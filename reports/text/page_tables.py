@@ -75,6 +75,36 @@ def scene_table(
     return markdown(header, body, left=1, held=held)
 
 
+def beside_table(rows: Sequence[Measurement], name: str) -> str:
+    """A line a method of engines that are extras: its error at each step, and what else is told at the finest.
+
+    Empty without rows; methods that build nothing here are left out.
+    """
+    told = quantity(name)
+    found = {
+        members[0].method: members
+        for members in groups(rows).values()
+        if any(row.outcome != Outcome.UNSUPPORTED for row in members)
+    }
+    steps = sorted({row.step for members in found.values() for row in members}, reverse=True)
+    body = []
+    for method, members in found.items():
+        at = {row.step: row for row in members}
+        errors = [_told_error(at.get(step), name) for step in steps]
+        finest = members[-1]
+        cost = milliseconds(finest.cpu) if finest.cpu > 0 else NOTHING
+        body.append([method, *errors, number(finest.gap), number(finest.reaction), cost])
+    heads = [f"{told.label} error [{told.unit}] at {number(step)} s" for step in steps]
+    header = ["method", *heads, "gap [m]", "reaction [relative]", "CPU [ms/s]"]
+    return markdown(header, body) if body else ""
+
+
+def _told_error(row: Measurement | None, name: str) -> str:
+    if row is None:
+        return NOTHING
+    return number(getattr(row, name)) if Outcome(row.outcome).comparable else f"**{row.outcome}**"
+
+
 def as_the_step_shrinks(sweep: Sweep, members: Sequence[Measurement]) -> str:
     """'order 2.0 (4 points)', 'order 1.0 (3 points), plateau **1.1e-3**', 'to rounding', 'then **torn**'."""
     words = []

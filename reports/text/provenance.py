@@ -26,6 +26,11 @@ def versions(engines: Iterable[Engine] = ()) -> str:
     return ", ".join([f"Python {platform.python_version()}", *map(_version, packages(engines))])
 
 
+def told_versions(engines: Iterable[Engine]) -> str:
+    """'exudyn 1.13.6, pin 4.1.0, ...' of these engines alone."""
+    return ", ".join(dict.fromkeys(_version(package) for engine in engines for package in engine.packages))
+
+
 def _version(package: str) -> str:
     try:
         return f"{package} {metadata.version(package)}"

@@ -63,6 +63,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "settings": advised_settings(
             scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
         ),
+        "beside": page_tables.beside_table(material.beside([scene]), page.quantity),
         "work": tables.work_table(rows, page.quantity, held=held) if rows else "",
         "orders": tables.order_table(sweeps(rows), held=held) if rows else "",
         "reactions": tables.reaction_table(rows, held) if rows else "",

@@ -14,10 +14,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.reading.forces import forces, off, turns
+from engines.mujoco.reading.along_joints import off, turns
+from engines.mujoco.reading.equalities import equalities
+from engines.mujoco.reading.forces import forces
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
-from engines.mujoco.reading.joints import Scene, equalities, tree_joints
-from engines.mujoco.reading.own_model import OwnMuJoCo, switch_off
+from engines.mujoco.reading.joints import Scene, tree_joints
+from engines.mujoco.reading.other_settings import switch_off
+from engines.mujoco.reading.own_model import OwnMuJoCo
 from engines.reading import Reading, refuse
 from reference.forces import Force
 from reference.mechanism import Mechanism

@@ -16,45 +16,22 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from engines.mujoco.reading.along_joints import beyond_springs
 from engines.mujoco.reading.declared import declared
-from engines.mujoco.reading.forces import beyond_springs
 from engines.mujoco.reading.frame import angles_of, name_of
 from engines.mujoco.reading.joints import Scene
+from engines.mujoco.reading.other_settings import TIED_STEPS, changes, switch_off
 from engines.mujoco.reading.places import positions
 from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
+from engines.mujoco.written_file import INTEGRATORS, SOLVERS
 from engines.reading import Change, Give
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-ELEMENTS = {
-    "contact": "CONTACT",
-    "limit": "LIMIT",
-    "frictionloss": "FRICTIONLOSS",
-    "equality": "EQUALITY",
-    "actuation": "ACTUATION",
-    "spring": "SPRING",
-    "damper": "DAMPER",
-    "gravity": "GRAVITY",
-}
-TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
-HALVINGS = (1, 2, 4, 8, 16, 32)
-
-
-def switch_off(model: Any, element: str) -> None:
-    """Change a model so that this kind of element no longer acts. Raises ValueError for a word that is none."""
-    if element == "armature":
-        model.dof_armature[:] = 0.0
-    elif element == "fluid":
-        model.opt.density = model.opt.viscosity = 0.0
-    elif element in ELEMENTS:
-        model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{ELEMENTS[element]}"))
-    else:
-        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, 'armature', 'fluid'))}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +68,8 @@ class OwnMuJoCo:
         option = model.opt
         out = {
             "timestep": f"{option.timestep:g} s",
-            "integrator": mujoco.mjtIntegrator(option.integrator).name.split("_")[1],
-            "solver": mujoco.mjtSolver(option.solver).name.split("_")[1],
+            "integrator": _spelled(INTEGRATORS, mujoco.mjtIntegrator(option.integrator)),
+            "solver": _spelled(SOLVERS, mujoco.mjtSolver(option.solver)),
             "iterations": f"{option.iterations}",
             "tolerance": f"{option.tolerance:g}",
             "cone": mujoco.mjtCone(option.cone).name.split("_")[1].lower(),
@@ -157,25 +134,7 @@ class OwnMuJoCo:
         return sorted((at, words) for words, at in found.items())
 
     def changes(self, smallest: float) -> list[Change]:
-        own = mujoco.mjtIntegrator(self.scene.model.opt.integrator).name.split("_")[1]
-        integrators = list(dict.fromkeys([own, "RK4"]))
-        out = []
-        for tied in (False, True) if self.softly_held else (False,):
-            for integrator in integrators:
-                for divisor in HALVINGS:
-                    dt = self.dt / divisor
-                    if dt < smallest:
-                        break
-                    spelled = {"EULER": "Euler", "IMPLICIT": "implicit", "IMPLICITFAST": "implicitfast"}
-                    name = spelled.get(integrator, integrator if integrator == "RK4" else integrator.lower())
-                    words = f"{name}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
-                    lines = [f'<option timestep="{dt!r}" integrator="{name}"/>']
-                    if tied:
-                        impedance = " ".join(f"{value:g}" for value in STIFFEST)
-                        values = f'solref="{TIED_STEPS * dt:g} 1" solimp="{impedance}"'
-                        lines.append(f"<default><equality {values}/></default>")
-                    out.append(Change(words, dt, tuple(lines), (("integrator", integrator), ("tied", tied))))
-        return out
+        return changes(self.scene.model, self.softly_held, smallest)
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         model, spacing = copy.copy(self.scene.model), every * self.dt
@@ -268,3 +227,9 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
+
+
+def _spelled(words: Mapping[str, str], value: Any) -> str:
+    """MuJoCo's constant as MJCF spells it."""
+    word = value.name.split("_")[1]
+    return words.get(word, word.lower())

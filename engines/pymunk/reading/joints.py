@@ -128,7 +128,8 @@ def _add_body(out: Described, body: pymunk.Body) -> None:
 
 def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
     a, b = constraint.a, constraint.b
-    if any(body is not out.space.static_body and body.space is not out.space for body in (a, b)):
+    # A body that stands still need not be in the space.
+    if any(_moves(body) and body.space is not out.space for body in (a, b)):
         raise refuse(label, "it holds a body that is not in the space; add the body too")
     first, second = out.name(a), out.name(b)
     if isinstance(constraint, LIMITS):

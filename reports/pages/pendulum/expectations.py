@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from reports.gate.checks import Deviation
 
-# At any step: an angle 1.2 to 1.3 times its bound from 3e-4 s down to 1e-5 s.
+# At any step: one link's angle is 1.2 to 1.3 times its bound from 3e-4 s down to 1e-5 s.
 EULER = (
-    "ours: what order 1 costs is drawn from the judge's orders 2 and 4, and comes out 1.3 times too low for this motion"
+    "ours: what order 1 costs is drawn from the judge's orders 2 and 4, up to 1.7 times too little for these motions"
 )
 SOFT = "by design: as shipped every equality is a spring of 0.02 s, and their softness adds up along the chain"
 LONG = (
@@ -35,4 +35,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("pendulum_1", "lagrange euler projection", "rate"): Deviation(EULER, 1.3),
     ("pendulum_1", "lagrange euler projection", "reaction"): Deviation(EULER, 1.4),
     ("pendulum_100", "pymunk extended", "outcome"): Deviation(HUNDRED),
+    ("pendulum_100", "mujoco default", "energy"): Deviation(EULER, 1.2),
+    ("pendulum_100", "lagrange euler projection", "energy"): Deviation(EULER, 1.7),
 }

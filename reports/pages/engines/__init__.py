@@ -1,0 +1,1 @@
+"""The page that compares engines: pymunk, MuJoCo and the extras."""
