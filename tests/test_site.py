@@ -248,13 +248,15 @@ def test_every_place_of_the_sliders_is_a_linkage_that_turns_fully():
 
 
 def test_the_text_of_a_model_gives_back_the_model_that_the_adapter_compiles():
-    import mujoco
+    import mujoco  # its bindings carry no types
+
+    compiler: Any = mujoco
 
     scene = live.with_sliders(0.3, 0.65, 10.0, 10.0)
     table = live.told([live.place(scene), live.place(live.with_sliders(0.2, 0.9, 0.1, 10.0))])
     numbers = table["numbers"][0].split(",")
     text = "".join(part + number for part, number in zip(table["mjcf"], [*numbers, ""], strict=True))
-    again, ours = mujoco.MjModel.from_xml_string(text), TUNED.model(scene.mechanism(), 1e-3).compiled
+    again, ours = compiler.MjModel.from_xml_string(text), TUNED.model(scene.mechanism(), 1e-3).compiled
     for field in ("body_pos", "body_mass", "body_inertia", "jnt_pos", "dof_armature", "eq_data"):
         assert np.allclose(getattr(again, field), getattr(ours, field), rtol=1e-15, atol=1e-17), field
 

@@ -156,7 +156,7 @@ def python_of(setting: dict[str, Any]) -> tuple[Any, Any, Any, int, int]:
     stiffness: Any = tied if setting["impedance"] > 0 else shipped
     if setting["impedance"] > 0:
         assert setting["impedance"] == STIFFEST[0]
-    integrator = {0: "Euler", 1: "RK4", 3: "implicitfast"}[setting["integrator"]]
+    integrator: Any = {0: "Euler", 1: "RK4", 3: "implicitfast"}[setting["integrator"]]
     first = mujoco.MuJoCo("x", integrator, stiffness, tolerance=setting["tolerance"], jacobian="auto")
     second = replace(pymunk.DEFAULT, iterations=setting["iterations"], error_bias=setting["bias"])
     return scene, first, second, samples, setting["every"]

@@ -22,6 +22,7 @@ from reports.site.lesson import Take
 Array = NDArray[np.float64]
 
 TRUTH_DIGITS = 13  # of poses, after the point: half of the last is below 1e-13, so that a page holds the truth to 1e-12
+METHOD_DIGITS = 11  # of a method's poses: far below the errors that are shown
 DIGITS = 9  # of twists, which only place the instant centre
 
 
@@ -72,7 +73,7 @@ def data(shown: Shown) -> dict[str, Any]:
         "joints": joints,
         "size": mechanism.length_scale,
         "truth": {"pose": _listed(truth.pose), "twist": _listed(truth.twist, DIGITS)},
-        "motions": [{"name": name, "pose": _listed(pose)} for name, pose in shown.motions.items()],
+        "motions": [{"name": name, "pose": _listed(pose, METHOD_DIGITS)} for name, pose in shown.motions.items()],
         "lost": [{"name": name, "why": why} for name, why in shown.lost.items()],
         "forces": forces(mechanism, truth),
         "centre": None if shown.take.centre is None else mechanism.body_index(shown.take.centre),
@@ -101,7 +102,7 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
             own_place = joint.rolling.contact(second[:, 2] - first[:, 2]).point
             at = first[:, :2] + rotated(first[:, 2], own_place)
         else:
-            at = drawn.point_path(second, joint.second_point)
+            at = drawn.point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
         found.append({"name": joint.name, "at": _listed(at, 6), "force": _listed(force, 6)})
     return found
 

@@ -29,7 +29,7 @@ def reference_pages() -> dict[str, bytes]:
         theme, output = Path(folder) / "theme", Path(folder) / "pages"
         theme.mkdir()
         (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
-        words = [sys.executable, "-m", "pdoc", "--no-show-source", "--template-directory", str(theme)]
+        words = [sys.executable, "-m", "pdoc", "--no-show-source", "--no-search", "--template-directory", str(theme)]
         words += ["--footer-text", "crosscheck", "--output-directory", str(output), *MODULES]
         ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
         if ended.returncode:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from engines import mujoco, pymunk
-from engines.lagrange import Lagrange
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.pendulum.link import BarPendulum
@@ -151,13 +150,13 @@ PENDULUM = Lesson(
 )
 
 
-def centrode_take(exact_one: bool) -> Take:
+def centrode_take(alone: bool) -> Take:
     """The four-bar with both curves of its coupler's instant centre, over the arc on which that turns one way."""
     truth, curves = exact()
     scene = DrivenFourBar()
     fixed = tuple(map(tuple, curves.space_curve.point(_arcs(curves.space_arc)).tolist()))
     moving = tuple(map(tuple, curves.body_curve.point(_arcs(curves.body_arc)).tolist()))
-    methods = (("exact multipliers", Lagrange("rk4", "projection"), 1),) if exact_one else with_steps(SHIPPED, 1)
+    methods = () if alone else with_steps(SHIPPED, 1)
     return Take(
         scene,
         methods,

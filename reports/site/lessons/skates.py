@@ -86,7 +86,7 @@ WHEELS = Lesson(
                     "Reverse with the trailer",
                     "reversing",
                     "A trailer that is pushed folds: a small angle grows until it jack-knifes. The reference shows "
-                    "when; an engine's error grows at the same rate.",
+                    "when.",
                 ),
             ),
         ),
