@@ -29,6 +29,8 @@ from reports.text.provenance import machine, today, versions
 from reports.text.templates import environment, template_of
 from reports.text.told_scene import told_scene
 
+FEW = 100  # steps: a scene of fewer is no example of a step
+
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     """The page's Markdown, that of its data page where it has scenes, and its SVG pictures, by file name.
@@ -126,11 +128,17 @@ def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> l
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
     """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
 
-    Nothing in it depends on timings. Raises ValueError where the marks of a part are missing.
+    Nothing in it depends on timings. A scene that is over within a hundred of the steps is left to the index: at such a
+    step nobody would run it. Raises ValueError where the marks of a part are missing.
     """
-    firsts = [(page, _overview_rows(page, material, page.scenes[:1])) for page, material in pages.items()]
+    step = USUAL_STEPS["1 ms"]
+    firsts = [
+        (page, _overview_rows(page, material, page.scenes[:1]))
+        for page, material in pages.items()
+        if page.scenes and page.scenes[0].duration > FEW * step
+    ]
     shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
-    told = overviews(firsts, {"1 ms": USUAL_STEPS["1 ms"]}, "reports/results/")
+    told = overviews(firsts, {"1 ms": step}, "reports/results/")
     text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
     return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
 
