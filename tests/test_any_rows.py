@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from reports.charts import theme
+from reports.check.shown import Pose, Shown
 from reports.cli.selection import shown_cells
 from reports.gate.declared import Softened
 from reports.grid.cells import Cell
@@ -247,6 +248,9 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
 
 
 # Of a user's model of which no setting that was tried is exact enough, and one gave up.
+STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
+ERRORS = {"angle": [0.0, 1e-3]}
+SHOWN = Shown([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
 WALKED = {
     "duration": 2.0,
     "error": 0.5,
@@ -283,7 +287,7 @@ def still(task: Task, lost: bool = False) -> Answer:
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case Walk():
-            values = {"found": json.dumps(WALKED), "errors": "<svg/>", "worst": "<svg/>"}
+            values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
         case OpenWork():
             values = {"lost": np.asarray(-0.1), "work": np.full(8, -0.01)}
         case VelocityTerm():

@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from engines import registry
 from reports.charts import families
 from reports.charts import work_precision as charts
 from reports.charts.families import role
@@ -25,6 +26,8 @@ from tests.rows import falling, row_of
 from tests.toys import Toy
 
 ENGINES = ("pymunk", "mujoco", "lagrange", "other")
+# A stranger comes after all that are registered, installed or not.
+FAMILIES = [*dict.fromkeys(each.family for each in (*registry.ENGINES, *registry.OTHERS)), "other"]
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -194,8 +197,9 @@ def test_an_engine_is_a_colour_and_a_mark_and_a_variant_a_line_and_a_filling(the
     looks = {(engine, v): families.look(engine, v, shown, theme) for engine in ENGINES for v in variants}
     for engine in ENGINES:
         own = [looks[engine, variant] for variant in variants]
-        assert {look["color"] for look in own} == {getattr(theme, SERIES[ENGINES.index(engine)])}
-        assert {look["marker"] for look in own} == {families.MARKS[ENGINES.index(engine)]}
+        place = FAMILIES.index(engine)
+        assert {look["color"] for look in own} == {getattr(theme, SERIES[place % len(SERIES)])}
+        assert {look["marker"] for look in own} == {families.MARKS[place % len(families.MARKS)]}
         fillings = {(str(look["linestyle"]), look["fillstyle"], look["markerfacecolor"]) for look in own}
         assert len(fillings) == len(variants)
         assert len({str(look["linestyle"]) for look in own}) == len(variants)

@@ -21,6 +21,7 @@ from reports.check.law import accelerations
 from reports.check.pictures import pictures
 from reports.check.request import Answer, Refused, Request, answered, read
 from reports.check.settings import best, cheapest
+from reports.check.shown import from_text, shown_of
 from reports.check.telling import data, sections, verdict
 
 FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
@@ -160,7 +161,7 @@ def test_chaos_ends_the_horizon_and_a_single_pendulum_has_none():
 
 def test_the_report_can_be_read_by_people_and_programs(tmp_path):
     found = found_in(tmp_path, FOUR_BAR)
-    drawn = pictures(found)
+    drawn = pictures(from_text(shown_of(found).as_text()))
     told = sections(found, drawn)
     text = rendering.plain(told)
     for words in ("redundant", "near-singular", "the judge's own", "Softness", "What to change"):

@@ -38,7 +38,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engines import Promise, Size
+from engines import Promise, Size, refuse_forces
 from reference.trajectory import Trajectory
 from reference.validation import Count, Fraction, Name, Positive, Valid, validated
 
@@ -65,6 +65,7 @@ class Impulses(Valid):
 
     @validated
     def build(self, mechanism: object, dt: Positive):
+        refuse_forces(mechanism, self.name)
         return Model(self, mechanism, dt)
 
 

@@ -17,6 +17,7 @@ from engines.loading import Kind
 from engines.reading import Reader, Reading
 from reference.validation import InvalidMechanism
 from reports.check.checked import check
+from reports.check.shown import shown_of
 from reports.check.telling import Section, data, sections, verdict
 
 MEMBERS = ("words", "reads", "read")
@@ -92,7 +93,7 @@ def answered(request: Request) -> Answer | Refused:
             told("drawing")
             from reports.check.pictures import pictures  # a second of imports
 
-            drawn = pictures(found)
+            drawn = pictures(shown_of(found))
     except (Unsupported, InvalidMechanism, ValueError) as reason:
         return Refused(_one_line(request, reason))
     told_sections = tuple(sections(found, drawn))

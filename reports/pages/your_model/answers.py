@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.check.checked import Checked, check
-from reports.check.pictures import pictures
 from reports.check.request import read
 from reports.check.settings import Tried
+from reports.check.shown import shown_of
 from reports.check.telling import data
 from reports.grid.tasks import Task, Values
 
@@ -37,7 +37,7 @@ class Walk(Task):
         return f"check: {self.file}"
 
     def run(self) -> Values:
-        """All that `crosscheck check --json` tells but CPU times, which are others on every machine; and two SVGs."""
+        """All that `crosscheck check --json` tells but CPU times, others on every machine; and what is drawn."""
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
             (Path(folder) / self.file).write_text(self.text, encoding="utf-8")
             reading = read(self.word, Path(folder), step=self.step)
@@ -49,8 +49,7 @@ class Walk(Task):
         coarsest = coarsest_enough(found)
         told["advised"] = None if coarsest is None else {**_setting(coarsest)}
         del told["next_decade"], told["over_time"]
-        drawn = pictures(found, coarsest)
-        return {"found": json.dumps(told, sort_keys=True), **{key: drawing for key, (_, drawing) in drawn.items()}}
+        return {"found": json.dumps(told, sort_keys=True), "shown": shown_of(found, coarsest).as_text()}
 
 
 def coarsest_enough(found: Checked) -> Tried | None:

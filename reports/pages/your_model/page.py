@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from reference.four_bar import FreeFourBar
+from reports.check.pictures import pictures
+from reports.check.shown import from_text
 from reports.pages.page import Material, Page
 from reports.pages.your_model.answers import WALKS, Walk
 from reports.text.tables import markdown, number
@@ -28,7 +30,8 @@ def figures(material: Material) -> dict[str, str]:
         answer = material.finished(walk)
         if answer is not None:
             stem = walk.file.split(".")[0]
-            out |= {f"{stem}_{key}": str(answer.values[key]) for key in ("errors", "worst")}
+            drawn = pictures(from_text(str(answer.values["shown"])))
+            out |= {f"{stem}_{key}": drawing for key, (_, drawing) in drawn.items()}
     return out
 
 
