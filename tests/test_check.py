@@ -19,7 +19,8 @@ from reports.check.facts import facts_of
 from reports.check.judging import judged
 from reports.check.law import accelerations
 from reports.check.pictures import pictures
-from reports.check.request import Answer, Refused, Request, answered, read
+from reports.check.readers import read
+from reports.check.request import Answer, Refused, Request, answered
 from reports.check.settings import best, cheapest
 from reports.check.shown import from_text, shown_of
 from reports.check.telling import data, sections, verdict

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.check.checked import Checked, check
-from reports.check.request import read
+from reports.check.readers import read
 from reports.check.settings import Tried
 from reports.check.shown import shown_of
 from reports.check.telling import data
