@@ -11,6 +11,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -265,6 +266,7 @@ WALKED = {
 
 def still(task: Task, lost: bool = False) -> Answer:
     """An invented answer: a body that stays where it started, or whose numbers are lost half-way."""
+    values: dict[str, Any]
     match task:
         case Motion(cell=cell):
             mechanism, times = cell.scene.mechanism(), cell.sample_count + 1
