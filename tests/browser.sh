@@ -3,6 +3,13 @@
 # Run it as root, with the environment active; it takes about two minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-apt-get update
-apt-get install --yes --no-install-recommends chromium nodejs npm emscripten
+wanted=()
+command -v chromium > /dev/null || wanted+=(chromium)
+# A Node.js that is no package of Debian's brings its own npm, beside which Debian's can't be installed.
+command -v npm > /dev/null || wanted+=(nodejs npm)
+command -v emcc > /dev/null || wanted+=(emscripten)
+if [ "${#wanted[@]}" -gt 0 ]; then
+  apt-get update
+  apt-get install --yes --no-install-recommends "${wanted[@]}"
+fi
 python -m pip install --quiet --editable ".[test,browser]"
