@@ -99,14 +99,12 @@ COARSE = "of first order: at the finest step that is run its own error is as lar
 POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"
 PRESSED = "pins already hold the gears apart: how hard they press is a matter of softness, of which nothing is promised"
 # Of these some don't even show in the digits that are compared.
-FAST = "within 0.05 s the last link hardly moves: what the mistake makes is below what theory allows this order there"
 SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
 
 LARGER: dict[tuple[str, str], str] = {
     **{(scene, "pymunk extended"): SWEPT for scene in ("pendulum_100", "n_four_bar_40")},
     **{("driven_slider_crank", f"{name} tuned"): FORCES for name in ("pymunk", "mujoco")},
     ("pinned_body_free", "pymunk tuned"): FORCES,
-    ("andrews", "pymunk extended"): FAST,
     **{(scene, f"{name} tuned"): COARSE for scene in ("car_and_trailer", "cart") for name in ("pymunk", "mujoco")},
     ("free_slider_crank", "pymunk tuned"): COARSE,
     **{("elliptic_gears", f"{name} tuned"): PRESSED for name in ("pymunk", "mujoco")},
@@ -145,11 +143,20 @@ def all_mistakes(scene: Scene) -> tuple[Mistake, ...]:
     return mistakes(scene.mechanism())
 
 
+def limit(scene: Scene) -> float:
+    """Andrews' spring is so stiff that at its two coarsest steps a method's own error hides what a mistake makes."""
+    return 2 * LIMIT if scene.name == "andrews" else LIMIT
+
+
 def whole(engines: Mapping[Engine, float]) -> list[Trial]:
     """Every mistake in every scene."""
     return [
         Trial(
-            short(scene), engine, relative, all_mistakes(scene), CONTROL_LIMIT if engine.name == "lagrange" else LIMIT
+            short(scene),
+            engine,
+            relative,
+            all_mistakes(scene),
+            CONTROL_LIMIT if engine.name == "lagrange" else limit(scene),
         )
         for scene in SCENES
         for engine, relative in engines.items()
