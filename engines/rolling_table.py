@@ -29,6 +29,7 @@ NODES = 6
 COARSEST = 2 * math.pi / 256
 FINEST = 2 * math.pi / 2**17  # beyond, a table would be larger than the number of its uses
 BLOCK = 64  # cells that are laid together
+APART = 4  # from one cell of a block that is examined to the next: P'' is smooth over a block
 # Of the largest P'' nearby: a few roundings of a contact.
 ROUNDING = 1e-14
 # A table that misses more than this falls back on exact contacts, which cost about a hundred times as much.
@@ -197,10 +198,7 @@ class Table:
                 break
             width, before = width / 2, error
         self.exact_only = not error < POOR
-        if not self.exact_only:
-            for turn in (-1, 1):  # a turn to both sides; what is met beyond is laid when it is met
-                for block in range(min(16, math.ceil(2 * math.pi / (BLOCK * width)))):
-                    self.place(rolling.theta + turn * block * BLOCK * width)
+        self.place(rolling.theta)  # the block about the start; others are laid when they are met
 
     def place(self, theta: float) -> Place:
         if not self._low <= theta <= self._high:
@@ -276,8 +274,8 @@ class Table:
         )
 
     def _error(self) -> float:
-        """How far a block about the start misses P'' half way between its nodes, in parts of the largest P''."""
-        around = np.arange(BLOCK) + math.floor(self._rolling.theta * self._per_radian) - BLOCK // 2
+        """How far cells about the start miss P'' half way between their nodes, in parts of the largest P''."""
+        around = np.arange(0, BLOCK, APART) + math.floor(self._rolling.theta * self._per_radian) - BLOCK // 2
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf
