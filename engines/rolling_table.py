@@ -28,8 +28,8 @@ from reference.rolling.kinematics import Rolling
 NODES = 6
 COARSEST = 2 * math.pi / 256
 FINEST = 2 * math.pi / 2**17  # beyond, a table would be larger than the number of its uses
-BLOCK = 64  # cells that are laid together
-APART = 4  # from one cell of a block that is examined to the next: P'' is smooth over a block
+BLOCK = 16  # cells that are laid together
+EXAMINED = np.arange(-32, 32, 4)  # cells that tell how wide a cell may be, from that of the start
 # Of the largest P'' nearby: a few roundings of a contact.
 ROUNDING = 1e-14
 # A table that misses more than this falls back on exact contacts, which cost about a hundred times as much.
@@ -196,7 +196,9 @@ class Table:
             # Where curves nearly fit the contact itself is rounded so coarsely that finer cells bring no more.
             if error < ROUNDING or width <= FINEST or (error < POOR and error > before / 4):
                 break
-            width, before = width / 2, error
+            # The error falls with the power NODES: halvings that can't be enough are not tried.
+            halvings = math.ceil(math.log2(error / ROUNDING) / NODES) if error < math.inf else 1
+            width, before = max(width / 2 ** min(halvings, 3), FINEST), error
         self.exact_only = not error < POOR
         self.place(rolling.theta)  # the block about the start; others are laid when they are met
 
@@ -275,7 +277,7 @@ class Table:
 
     def _error(self) -> float:
         """How far cells about the start miss P'' half way between their nodes, in parts of the largest P''."""
-        around = np.arange(0, BLOCK, APART) + math.floor(self._rolling.theta * self._per_radian) - BLOCK // 2
+        around = EXAMINED + math.floor(self._rolling.theta * self._per_radian)
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf
