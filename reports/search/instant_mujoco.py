@@ -21,7 +21,7 @@ from engines import Softness
 from engines.mujoco import MuJoCo
 from engines.mujoco.joints.skate import STEPWISE
 from engines.mujoco.model import Model
-from reference.joints import Skate
+from reference.joints import Drive, Skate
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, constrained, difference, driving_force, force_difference
 
@@ -80,11 +80,12 @@ def _at(mechanism: Mechanism, model: Model, data: Any, softness: Softness | None
     rows = mechanism.rows(pose)
     give, aimed = _declared(mechanism, model, data, rows, softness, pose, twist)
     right = mechanism.bias(pose, twist) + aimed
-    law = constrained(rows, right, mechanism.inertias, mechanism.free_fall, give)
+    free = mechanism.unconstrained(pose, twist)
+    law = constrained(rows, right, mechanism.inertias, free, give)
     force = driving_force(mechanism, twist)
     swing = np.abs(twist[:, 2]).max()
-    # What a motion needs is compared with gravity, and with what the rotations themselves ask for.
-    others = (mechanism.free_fall, swing * twist)
+    # What a motion needs is compared with what acts, and with what the rotations themselves ask for.
+    others = (free, swing * twist)
     return {
         "acceleration": difference(mechanism, change, law.motion, others),
         "reaction": force_difference(mechanism, reaction, law.force, (force,)),
@@ -111,8 +112,8 @@ def _declared(
         begin = own.stop
         if not loose[own].any():
             continue
-        turned = np.flatnonzero(in_tree[own.start]) if mechanism.turning[own].all() else np.zeros(0, dtype=int)
-        if len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
+        turned = np.flatnonzero(in_tree[own.start])
+        if isinstance(joint, Drive) and len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
             # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
             give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
             continue
@@ -126,11 +127,11 @@ def _declared(
         clock = np.sum(lines[found][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
         give[own, own] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[found] + clock) / model.unit)))
         if softness is not None and _is_written(compiled, data.efc_id[found[0]]):
-            stiffness, damping = softness.stiffness, softness.damping  # a row that callbacks write
-        else:
-            stiffness, damping, impedance, _ = data.efc_KBIP[found[0]]
-            stiffness = stiffness * impedance
-        aimed[own] = -stiffness * gap[own] - damping * slip[own]
+            aimed[own] = -softness.stiffness * gap[own] - softness.damping * slip[own]  # a row that callbacks write
+        else:  # each of MuJoCo's rows has a stiffness of its own
+            stiffness, damping, impedance, _ = data.efc_KBIP[found].T
+            asked = -stiffness * impedance * (factors @ gap[own]) - damping * (factors @ slip[own])
+            aimed[own] = np.linalg.solve(factors, asked)
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
     return give, aimed
