@@ -58,10 +58,13 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
     told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
     if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
         raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+    # Gaps are rounded, and closing one within a step makes a velocity of that, which is no fault.
+    far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
+    floor = np.array([[np.finfo(float).eps * far / dt / LAW, 0.0, 0.0]])
     worst = 0.0
     for step in range(1, STEPS + 1):
         law, free = _law(model, mechanism, told, step, dt)
-        worst = max(worst, difference(mechanism, told.after[step], law, (free,)))
+        worst = max(worst, difference(mechanism, told.after[step], law, (free, floor)))
     return {"velocity": worst}
 
 
