@@ -103,9 +103,7 @@ class Ellipse(Curve):
 
     def parameter_at(self, angle: ArrayLike) -> Array:
         normal = along(angle) - math.pi / 2
-        a, b = self.along_x, self.along_y
-        sine, cosine = np.sin(normal), np.cos(normal)
-        return normal + np.arctan2((b - a) * sine * cosine, a * cosine**2 + b * sine**2)
+        return _unwrapped(np.arctan2(self.along_y * np.sin(normal), self.along_x * np.cos(normal)), normal)
 
     def point_of(self, p: ArrayLike) -> Array:
         u = along(p)
@@ -113,10 +111,13 @@ class Ellipse(Curve):
 
     def angle_of(self, p: ArrayLike) -> Array:
         u = along(p)
-        a, b = self.along_x, self.along_y
-        sine, cosine = np.sin(u), np.cos(u)
-        # The excess over a circle's tangent angle is less than a quarter turn: no principal value is ever crossed.
-        return u + math.pi / 2 + np.arctan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)
+        direction = np.arctan2(self.along_y * np.cos(u), -self.along_x * np.sin(u))
+        return _unwrapped(direction, u + math.pi / 2)
 
     def curvature_of(self, p: ArrayLike) -> Array:
         return self.along_x * self.along_y / self.speed_of(p) ** 3
+
+
+def _unwrapped(angle: Array, about: Array) -> Array:
+    """The angle (...) [rad] with as many turns as bring it within a quarter turn of `about`, as that of a circle is."""
+    return angle + 2 * math.pi * np.round((about - angle) / (2 * math.pi))
