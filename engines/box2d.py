@@ -19,9 +19,9 @@ while what opens it falls with h too. So no order can be promised. pyb2d3 sets t
 another; that of joints stays as shipped. But a weld joint has frequencies of its own, which stay in the correction
 after the drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (1e-6 Hz) keeps from turning,
 whose points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine
-allows its contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single precision
-rounds off places: reactions of short steps are the noisier, the shorter. The page of engines shows what each of the two,
-frequency and sub-steps, does.
+allows its contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single
+precision rounds off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the
+two, frequency and sub-steps, does.
 
 Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
 speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and

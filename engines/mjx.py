@@ -8,8 +8,8 @@ MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0
 path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force.
 
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
-of the same structure, numbers apart, and in the user's cache folder for other processes, where JAX_COMPILATION_CACHE_DIR
-says another folder or none. It is told to use the processor alone, one thread, and doubles, before it is imported.
+of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
+JAX_COMPILATION_CACHE_DIR says. It is told to use the processor alone, one thread, and doubles, before it is imported.
 
 The package mujoco-mjx requires the package mujoco, whose files overwrite those of mujoco-core by an older release. So
 the extra installs what it needs, and it has to be installed by itself: pip install --no-deps mujoco-mjx.
