@@ -21,6 +21,7 @@ from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, fin
 from engines.mujoco.reading.joints import Scene, tree_joints
 from engines.mujoco.reading.other_settings import switch_off
 from engines.mujoco.reading.own_model import OwnMuJoCo
+from engines.mujoco.reading.steady import drives, steady
 from engines.reading import Reading, refuse
 from reference.forces import Force
 from reference.mechanism import Mechanism
@@ -53,7 +54,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     mujoco.mj_forward(model, started)
     bodies = bodies_of(model, started, frame, groups)
     scene = Scene(model, started, frame, groups, bodies)
-    joints = [*tree_joints(scene), *equalities(scene)]
+    joints = [*tree_joints(scene), *drives(scene), *equalities(scene)]
     acting = forces(scene)
     bodies, weights = _with_armature(scene)
     gravity = (0.0, 0.0) if off(model, "GRAVITY") else frame.in_plane(model.opt.gravity)
@@ -102,7 +103,7 @@ def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
     gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
     for joint in range(model.njnt):
         added = float(model.dof_armature[int(model.jnt_dofadr[joint])])
-        if not added:
+        if not added or steady(scene, joint):
             continue
         group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
         element, body = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint), bodies[group]

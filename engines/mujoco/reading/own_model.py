@@ -63,6 +63,10 @@ class OwnMuJoCo:
         return ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
 
     @property
+    def suspects(self) -> Mapping[str, str]:
+        return {}
+
+    @property
     def settings(self) -> Mapping[str, str]:
         model = self.scene.model
         option = model.opt
