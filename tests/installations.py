@@ -52,7 +52,9 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 def our_wheel(factory: pytest.TempPathFactory) -> Path:
     """The wheel of this checkout, built once for all tests; they are skipped where none can be built."""
     require_a_builder()
-    return made_once(factory, "our-wheel", lambda folder: wheel_of(checkout_copy(folder / "checkout"), folder / "built"))
+    return made_once(
+        factory, "our-wheel", lambda folder: wheel_of(checkout_copy(folder / "checkout"), folder / "built")
+    )
 
 
 def checkout_copy(folder: Path) -> Path:

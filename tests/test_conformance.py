@@ -75,7 +75,7 @@ SPECIAL = (
     *(*of_pymunk.SKATES, *of_pymunk.SLOTS, *of_pymunk.ROLLS),
     *(*of_mujoco.SKATES, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
-# Enough for every day: what differs by its settings alone, or takes seconds of steps in Python, is left to the slow test.
+# Enough for every day: what differs by its settings alone, or takes seconds of steps in Python, is left out.
 DAILY = (
     *(pymunk.DEFAULT, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.EXTENDED),
     lagrange.Lagrange("rk4", "projection"),

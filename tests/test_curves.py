@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -72,7 +73,7 @@ def test_a_curve_is_its_parametric_form_by_arc_length(case):
         # From the start outwards, each arc from the place before it.
         places = [mp.mpf(float(u)) for u in np.random.default_rng(4).uniform(low, high, 4)]
         begin = mp.mpf(-5) if start == -mp.inf else mp.mpf(start)
-        arc_of = {begin: mp.quad(speed, [start, begin]) if start == -mp.inf else mp.mpf(0)}
+        arc_of: dict[Any, Any] = {begin: mp.quad(speed, [start, begin]) if start == -mp.inf else mp.mpf(0)}
         for side in (sorted(u for u in places if u > begin), sorted((u for u in places if u < begin), reverse=True)):
             for before, u in pairwise((begin, *side)):
                 # Pieces of about a radian, so that Gauss-Legendre reaches its digits.

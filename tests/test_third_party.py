@@ -185,8 +185,8 @@ from reports.charts.theme import FigureCanvasSVG
 
 FigureCanvasSVG.print_svg = lambda self, out, **settings: out.write("<svg/>")
 
-ours = entry_points._ours
-entry_points._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in sys.argv[1:])]
+ours, hidden = entry_points._ours, sys.argv[1:]
+entry_points._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
 from engines.registry import ENGINES
 from reports.pages.catalogue import PAGES, TROUBLES
 from reports.pages.page import Material
