@@ -148,7 +148,7 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
         raise refuse(label, "it holds a body that is not in the space; add the body too")
     first, second = out.name(a), out.name(b)
     if isinstance(constraint, LIMITS):
-        out.notes.append(Note(label, "its limit, which is not reached in the judged motion"))
+        out.notes.append(Note(label, "its limit is left out, since it is not reached in the judged motion"))
         return
     if first == second:
         out.notes.append(Note(label, "it joins what stands still"))
