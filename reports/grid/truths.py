@@ -6,6 +6,7 @@ A file is named by all that its motion depends on, and so is never stale. The fo
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import time
 import zipfile
@@ -31,7 +32,8 @@ def kept_motion(scene: Scene, t: Floats, name: str, folder: Path | None) -> Traj
     if folder is None or not folder.is_dir():
         return scene.motion(t)
     file = folder / f"{hashlib.sha256(name.encode() + t.tobytes()).hexdigest()[:32]}.npz"
-    with suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile), np.load(file) as kept:
+    damages = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
+    with suppress(*damages), np.load(io.BytesIO(file.read_bytes())) as kept:
         return Trajectory(*(kept[part] for part in PARTS))
     begin = time.process_time()
     found = scene.motion(t)
