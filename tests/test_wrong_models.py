@@ -19,7 +19,8 @@ from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
 from reference.scenes import SCENES
 from reports.grid.outcomes import Loss
-from reports.grid.supervisor import supervise, usable_cores
+from reports.grid.processors import usable_cores
+from reports.grid.supervisor import supervise
 from tests.mistakes import KINDS, Mistake, mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
 
