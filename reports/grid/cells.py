@@ -52,6 +52,11 @@ class Cell(Valid):
         return self.scene.duration / self.sample_count / self.every
 
     @property
+    def kin(self) -> Scene:
+        """Cells of a scene share its exact motion (`reports.grid.waiting`)."""
+        return self.scene
+
+    @property
     def label(self) -> str:
         return f"{self.scene.name} / {self.engine.name} {self.engine.variant} / {self.step:.1e} s"
 

@@ -16,6 +16,7 @@ from reference.trajectory import Trajectory
 from reports.grid.cells import Cell, mechanism_of
 from reports.grid.errors import branch_flips, constraint_errors, motion_errors, usable_samples
 from reports.grid.outcomes import Outcome
+from reports.grid.spending import spending
 from reports.grid.timing import process_seconds, repeated_stepping
 
 NAN = float("nan")
@@ -111,7 +112,8 @@ def _truth(cell: Cell, t: Floats) -> Trajectory:
     """
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
-    return _motion(cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes())
+    with spending("truth"):
+        return _motion(cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes())
 
 
 @lru_cache(maxsize=128)  # of the scenes of a run, each worker knows the motions of all: some take seconds
@@ -133,16 +135,20 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
     with np.errstate(all="ignore"):
         try:
             mechanism = mechanism_of(cell.scene)
-            build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
+            with spending("building"):
+                build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
             row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
-            trajectory = run(cell.sample_count, cell.every)
+            with spending("stepping"):
+                trajectory = run(cell.sample_count, cell.every)
         except Unsupported as reason:
             return replace(row, outcome=Outcome.UNSUPPORTED, sentence=str(reason))
         except ValueError as reason:
             return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
-        row = compare(cell, mechanism, trajectory, row)
+        with spending("comparing"):
+            row = compare(cell, mechanism, trajectory, row)
         if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:
-            cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
+            with spending("timing again"):
+                cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
         else:
             cpu, runs = trajectory.stepping, 1
     return replace(row, cpu=cpu / cell.scene.duration, runs=runs, build=build)
