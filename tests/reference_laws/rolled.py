@@ -16,7 +16,7 @@ import numpy as np
 from reference.curves import Circle, Ellipse, Line, Ring
 from reference.curves.open import Catenary, LogSpiral, Parabola
 from reference.rolling.kinematics import Rolling
-from tests.reference_laws.bent import Exact, catenary, ellipse, line, parabola, round_curve, spiral
+from tests.reference_laws.bent import catenary, ellipse, line, parabola, round_curve, spiral
 from tests.reference_laws.law import DIGITS, Law, Outside, decades
 
 Maker = Callable[..., Any]
@@ -65,7 +65,9 @@ def rolls(name: str, body: tuple[Maker, Maker], ground: tuple[Maker, Maker], own
                 raise Outside
             step_v, step_u = (arcs * d - b * angles) / down, (a * angles - c * arcs) / down
             v, u = v - step_v, u - step_u
-            if abs(step_u) <= abs(u) * mp.mpf(10) ** (6 - DIGITS) and abs(step_v) <= abs(v) * mp.mpf(10) ** (6 - DIGITS):
+            if abs(step_u) <= abs(u) * mp.mpf(10) ** (6 - DIGITS) and abs(step_v) <= abs(v) * mp.mpf(10) ** (
+                6 - DIGITS
+            ):
                 break
         else:
             raise AssertionError(f"{name}: no contact was found at {numbers}")
