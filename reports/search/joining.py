@@ -117,7 +117,10 @@ class Joining:
     def _far_point(self, link: Link) -> Vector:
         """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
         x, y = self._own(link.first, self._at(link))
-        along, line = float(link.more * self.sizes[link.second] / 10), float(link.turn * ANGLE) - self._angle(link.first)
+        along, line = (
+            float(link.more * self.sizes[link.second] / 10),
+            float(link.turn * ANGLE) - self._angle(link.first),
+        )
         return x + along * math.cos(line), y + along * math.sin(line)
 
     def _angles(self, link: Link) -> tuple[float, float]:

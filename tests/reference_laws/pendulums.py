@@ -88,7 +88,11 @@ def links(count: int) -> Law:
             length / clock**2,
         )
 
-    return Law(f"chain of {count}", draw, ours, exact, vectors=(slice(0, count),))
+    def size(*numbers):
+        """A link's own centripetal acceleration is large against what turns it where it whirls: forces have that size."""
+        return [max(abs(value), rate**2) for value, rate in zip(exact(*numbers), numbers[3 * count : -1], strict=True)]
+
+    return Law(f"chain of {count}", draw, ours, exact, vectors=(slice(0, count),), size=size)
 
 
 def side_by_side(length, mass, gravity, speed, t):

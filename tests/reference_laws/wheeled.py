@@ -120,7 +120,10 @@ def drawn_slope(rng: np.random.Generator) -> tuple[float, ...]:
     clock, length = decades(rng), decades(rng)
     return (
         *(decades(rng), length / clock**2 * decades(rng, -2, 2), angle(rng)),
-        *(length / clock * float(rng.normal()) * decades(rng, -3, 1), float(rng.normal()) * decades(rng, -9, 1) / clock),
+        *(
+            length / clock * float(rng.normal()) * decades(rng, -3, 1),
+            float(rng.normal()) * decades(rng, -9, 1) / clock,
+        ),
         clock * float(rng.uniform(0, 1)),
     )
 
@@ -216,8 +219,12 @@ WHEELED = (
     Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
     Law("skate on a slope", drawn_slope, our_slope, slope, vectors=(slice(0, 2), slice(2, 4)), size=slope_sizes),
     Law("pinned body", drawn_pinned, our_pinned, pinned, vectors=(slice(1, 3),), size=pinned_sizes),
-    Law("caster", several(4, 4, 0.0, 0.3, 4, 4), lambda *n: our_caster(n[0], n[1], abs(n[2]), *n[3:]),
-        lambda *n: caster(n[0], n[1], abs(n[2]), *n[3:])),
+    Law(
+        "caster",
+        several(4, 4, 0.0, 0.3, 4, 4),
+        lambda *n: our_caster(n[0], n[1], abs(n[2]), *n[3:]),
+        lambda *n: caster(n[0], n[1], abs(n[2]), *n[3:]),
+    ),
     Law(
         "trailer",
         several(4, 4, 0.3, 4, 4),
