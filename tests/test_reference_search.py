@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.reference_laws.law import Law, misses, searched
 from tests.reference_laws.balanced import BALANCED
 from tests.reference_laws.bent import CURVES
+from tests.reference_laws.law import Law, misses, searched
 from tests.reference_laws.linkages import LINKAGES
 from tests.reference_laws.pendulums import PENDULUMS
 from tests.reference_laws.rolled import ROLLS
@@ -55,7 +55,7 @@ FOUND = {
     ),
     # The direction was that of a circle and an excess, of which little was left on the flat side.
     "ellipse at a parameter": (0.2970230243104033, 0.0011085289153370565, -1.5707907017221043),
-    # A logarithm of nearly one, for a short way; and two turns that nearly cancel, on a circle shorter than the drawbar.
+    # A logarithm of nearly one, for a short way; two turns that nearly cancel, on a circle shorter than the drawbar.
     "towed wheel": (1185375.3119599016, 0.5602953463275804, 1259916407.01395, 4.095497157341971e-05),
     "towed wheel, going round": (
         *(6.205517261697245, -0.15671260809038934, -0.08751075069403959, -12.758961976426988),

@@ -11,7 +11,7 @@ import pytest
 from engines.lagrange import TRUTH
 from reference.validation import InvalidMechanism
 from reports.search.mechanisms import ALL, mechanism, recipe
-from reports.search.parts import EVERY, Link, Part, Recipe, Rim, as_text, from_text, ladder
+from reports.search.parts import Link, Part, Recipe, Rim, as_text, from_text, ladder
 from reports.search.recipe import LEAST_RANK, build
 
 CASES = range(40)

@@ -89,7 +89,7 @@ def links(count: int) -> Law:
         )
 
     def size(*numbers):
-        """A link's own centripetal acceleration is large against what turns it where it whirls: forces have that size."""
+        """Where a link whirls, its forces have the size of its centripetal acceleration, not of what turns it."""
         return [max(abs(value), rate**2) for value, rate in zip(exact(*numbers), numbers[3 * count : -1], strict=True)]
 
     return Law(f"chain of {count}", draw, ours, exact, vectors=(slice(0, count),), size=size)

@@ -16,7 +16,7 @@ import numpy as np
 from reference.curves import Circle, Ellipse, Line, Ring
 from reference.curves.open import Catenary, LogSpiral, Parabola
 from reference.rolling.kinematics import Rolling
-from tests.reference_laws.bent import Exact, catenary, ellipse, line, parabola, round_curve, spiral
+from tests.reference_laws.bent import catenary, ellipse, line, parabola, round_curve, spiral
 from tests.reference_laws.law import DIGITS, Law, Outside, decades
 
 Maker = Callable[..., Any]
