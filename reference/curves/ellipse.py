@@ -92,7 +92,7 @@ class Ellipse(Curve):
         return u, self.arc_of(u), self.speed_of(u)
 
     def _guess(self, rest: Array) -> Array:
-        """About the parameters (...) of arcs [m] within half a turn, by cubics between known ones."""
+        """Parameters (...) of arcs [m] within half a turn, by cubics between known ones: a beginning of a search."""
         u, arcs, speeds = self._half_turn
         before = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
         width, part = arcs[before + 1] - arcs[before], rest - arcs[before]

@@ -49,8 +49,8 @@ class Rim:
 
 @dataclass(frozen=True)
 class Link:
-    """A joint, or a force, of the bodies `first` (0: the ground) and `second`, at `at`: tenths of the second's size
-    from it.
+    """A joint, or a force, of the bodies `first` (0: the ground) and `second`, at `at`: tenths of the second
+    body's size from it.
 
     `turn`, in steps of 0.3 rad: the direction in the world of a slot, a blade, or the tangent of a contact, with the
     first body's material on its left. `more`: how far the slot's own point lies from there along it (tenths of the
