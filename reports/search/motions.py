@@ -69,7 +69,7 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Traject
 
 
 def _size(mechanism: Mechanism, truth: Trajectory) -> float:
-    """How far anything moves [m], or would without joints; or at least so far that rounding of places is below LEAST."""
+    """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST."""
     size = np.array([1.0, 1.0, mechanism.length_scale])
     moved = float(np.abs((truth.pose - mechanism.pose) * size).max())
     pulled = np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * size).max()
