@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from engines import Engine, Unsupported
+from engines import Unsupported
 from engines.conformance.worlds import MOVING, WORLDS
-from reports.grid.tasks import Task, Values
+from reports.grid.tasks import Values
+from reports.pages.engines.asked import Asked
 
 STEP = 1e-2  # s
 # What is asked, and the conformance mechanism that asks it.
@@ -27,22 +29,10 @@ WORLD = {world.name: world for world in (*WORLDS, *MOVING)}
 
 
 @dataclass(frozen=True)
-class Capabilities(Task):
+class Capabilities(Asked):
     """By the names in ASKED: "yes, by whom it is held", or the engine's sentence; `reaction` and `width` of a run."""
 
-    of: Engine
-
-    @property
-    def cost(self) -> float:
-        return 0.1 + getattr(self.of, "building", 0.0)
-
-    @property
-    def label(self) -> str:
-        return f"{self.of.name} {self.of.variant}: what it builds"
-
-    @property
-    def engine(self) -> Engine:
-        return self.of
+    what: ClassVar[str] = "what it builds"
 
     def run(self) -> Values:
         told: dict[str, str] = {}
