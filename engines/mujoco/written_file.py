@@ -11,6 +11,7 @@ from xml.etree import ElementTree as xml
 import mujoco
 
 from engines import Unsupported
+from engines.mujoco.visuals import add_visuals
 
 if TYPE_CHECKING:
     from engines.mujoco.model import Model
@@ -48,6 +49,7 @@ def as_text(model: Model, softening: float) -> str:
         each for each in root if len(each) == 0 and each.tag in ("equality", "tendon", "actuator", "contact")
     ]:
         root.remove(section)
+    add_visuals(root, model.mechanism)
     _rename(root, model)
     start = model.start()
     key = {"name": "start", "qpos": _row(start.qpos), "qvel": _row(start.qvel)}
