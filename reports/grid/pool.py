@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, TypeVar
 
 from reports.grid.cells import Cell
@@ -21,12 +22,13 @@ Item = TypeVar("Item", bound=Cell | Task)
 
 @dataclass(frozen=True)
 class Working:
-    """What a worker does with a cell or a task. `timed`: run a cell again for the least of several times."""
+    """What a worker does with a cell or a task: see `run_items`."""
 
     timed: bool
+    truths: Path | None
 
     def __call__(self, item: Cell | Task) -> Measurement | Answer:
-        return measure(item, repeat=self.timed) if isinstance(item, Cell) else answered(item)
+        return measure(item, self.timed, self.truths) if isinstance(item, Cell) else answered(item)
 
 
 def worker_count(timed: bool) -> int:
@@ -42,26 +44,27 @@ def run_items(
     timed: bool = True,
     wall: float | None = None,
     supervised: Supervise = supervise,
+    truths: Path | None = None,
 ) -> Iterator[tuple[Item, Any]]:
     """Yield every cell with its Measurement and every task with its Answer as they are done, the dearest begun first.
 
     A lost one has its outcome and no numbers. `limit`: CPU seconds for one; `wall`: seconds for one that sleeps.
     `workers`: `worker_count` if None. `timed`: whether a cell is run again for the least of several times; cells that
     are timed have a core each, so where more workers are asked for, the others run afterwards. `supervised`: by whom.
-    Raises WorkersLost (`supervise`).
+    `truths`: a folder of exact motions that workers share (`reports.grid.truths`). Raises WorkersLost (`supervise`).
     """
     items = tuple(items)
-    for item in items:
-        _ = item.key  # travels with the cell: each new worker would read all sources for it, half a second long
+    for item in items:  # these travel with it: each new worker would read all sources for them, half a second long
+        _ = item.key, isinstance(item, Cell) and item.truth
     most = worker_count(timed=False) if workers is None else workers
-    clocked = [item for item in items if timed and isinstance(item, Cell) and item.purpose in TIMED]
-    own = min(most, worker_count(timed=True))
-    rounds = [(items, own)]
+    clocked = {item for item in items if timed and isinstance(item, Cell) and item.purpose in TIMED}
+    own = min(most, worker_count(timed=True)) if clocked else most
+    rounds = [(items, own, bool(clocked))]
     if own < most:
-        rounds = [(clocked, own), ([item for item in items if item not in set(clocked)], most)]
-    for some, count in rounds:
-        alone = bool(clocked) and count == own
-        for item, result, note in supervised(Working(timed), dearest_first(some), limit, count, watch, wall, alone):
+        rounds = [(tuple(clocked), own, True), (tuple(item for item in items if item not in clocked), most, False)]
+    work = Working(timed, truths)
+    for some, count, alone in rounds:
+        for item, result, note in supervised(work, dearest_first(some), limit, count, watch, wall, alone):
             yield item, _told(item, result, note, limit)
 
 

@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from reports.grid.cells import Cell
+from reports.grid.files import folder_for
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import TIME_LIMIT, run_items, worker_count
-from reports.grid.store import Store
+from reports.grid.store import ELSEWHERE, Store
 from reports.grid.supervisor import Supervise, WorkersLost, supervise
 from reports.grid.tasks import Answer, Task
+from reports.grid.truths import FOLDER
 
 Item = TypeVar("Item", bound=Cell | Task)
 
@@ -54,10 +56,12 @@ def run_into(
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
-    for item, result in run_items(waiting, limit, workers, watch, timed, supervised=supervised):
+    # Its whole path: workers have folders of their own.
+    truths = folder_for(store.path.parent.resolve() / FOLDER, ELSEWHERE) if waiting else None
+    for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
         if result.outcome == Outcome.LOST:
             lost.append(f"{item.label}: {result.sentence}")
-        elif isinstance(result, Measurement):
+        elif isinstance(item, Cell):
             store.put(result)
         else:
             store.put_answer(item, result)

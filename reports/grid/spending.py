@@ -6,11 +6,11 @@ Always counted, since a look at the clock takes a microsecond; asked by `crossch
 from __future__ import annotations
 
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-_spent: Counter[str] = Counter()
+_spent: defaultdict[str, float] = defaultdict(float)
 _inside: list[float] = []  # of each part that is open, the time of the parts in it
 
 

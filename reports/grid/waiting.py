@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Hashable, Iterable
+from itertools import count
 from typing import Any
+
+_numbers = count()
 
 
 def kin_of(item: Any) -> Hashable:
-    """What an item has in common with others (its attribute `kin`); itself alone if it says nothing."""
+    """What an item has in common with others (its attribute `kin`); a number of its own if it says nothing."""
     found = getattr(item, "kin", None)
-    return ("alone", id(item)) if found is None else found
+    return next(_numbers) if found is None else found
 
 
 class Waiting:
