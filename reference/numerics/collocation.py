@@ -24,13 +24,15 @@ MOST_STEPS = 1_000_000
 MOST_ITERATIONS = 60
 
 
-class _Rule(NamedTuple):
+class Rule(NamedTuple):
+    """Gauss's rule on a step of length 1."""
+
     weights: Extended  # (stages,)
     matrix: Extended  # (stages, stages) from slopes to increments at the stages
-    last: Extended  # (stages,) from slopes to their last Legendre coefficient
+    coefficients: Extended  # (stages, stages) from slopes to their Legendre coefficients
 
 
-def _legendre(degree: int, x: Extended) -> Extended:
+def legendre(degree: int, x: Extended) -> Extended:
     """Legendre polynomials of degrees 0 to `degree` at x, (degree + 1, points)."""
     values: list[Any] = [np.ones_like(x), x]
     for n in range(1, degree):
@@ -39,20 +41,21 @@ def _legendre(degree: int, x: Extended) -> Extended:
 
 
 @lru_cache
-def _rule(stages: int) -> _Rule:
+def rule_of(stages: int) -> Rule:
+    """The rule with so many stages, to the rounding of numpy.longdouble."""
     nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
     for _ in range(3):  # Newton: the table is in double
-        values = _legendre(stages, nodes)
+        values = legendre(stages, nodes)
         slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
         nodes = nodes - values[stages] / slope
-    values = _legendre(stages, nodes)
+    values = legendre(stages, nodes)
     slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
     weights = 2 / ((1 - nodes**2) * slope**2)
     degrees = np.arange(stages, dtype=np.longdouble)[:, None]
     to_coefficients = (2 * degrees + 1) / 2 * weights * values[:stages]
     # The integral of P_n from -1 is (P_{n+1} - P_{n-1}) / (2 n + 1), and x + 1 for n = 0.
     integrals = np.concatenate([(nodes + 1)[None], (values[2:] - values[:-2]) / (2 * degrees[1:] + 1)])
-    return _Rule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients[-1])
+    return Rule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients)
 
 
 def integrate(
@@ -63,7 +66,7 @@ def integrate(
     Every sample is the end of a step: nothing is interpolated. Steps are at most `longest` [s], and are halved where
     the slope's polynomial shows that they are too long. Raises ArithmeticError where that does not end.
     """
-    rule = _rule(stages)
+    rule = rule_of(stages)
     state = np.asarray(start, dtype=np.longdouble)
     lost = np.zeros_like(state)  # what the additions to the state have rounded away
     now, length = np.longdouble(0), np.longdouble(longest)
@@ -92,7 +95,7 @@ def integrate(
     return out
 
 
-def _increment(slope: Callable[[Extended], Extended], rule: _Rule, state: Extended, step: Any) -> Extended | None:
+def _increment(slope: Callable[[Extended], Extended], rule: Rule, state: Extended, step: Any) -> Extended | None:
     """The step's increment, or None if the stages don't converge or don't resolve the slope."""
     slopes = slope(np.broadcast_to(state, (rule.weights.size, state.size)))
     scale = 1 + np.abs(state)
@@ -103,7 +106,7 @@ def _increment(slope: Callable[[Extended], Extended], rule: _Rule, state: Extend
         slopes = renewed
         # Contraction ends in rounding: once there, the change no longer falls.
         if change <= 4 * EPSILON or (change >= before and change <= 64 * EPSILON):
-            if float(np.max(np.abs(step * (rule.last @ slopes)) / scale)) > LAST_COEFFICIENT:
+            if float(np.max(np.abs(step * (rule.coefficients[-1] @ slopes)) / scale)) > LAST_COEFFICIENT:
                 return None
             return step * (rule.weights @ slopes)
         if not change < 1e3:

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.memory import require_room
-from reference.numerics.integration import Integrated, integrate, units_of_motion
-from reference.pendulum.chain import Chain
+from reference.pendulum.chain import Chain, Motion
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reference.validation import Count, Positive
@@ -23,9 +22,8 @@ Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=8)
-def _integrated(chain: Chain, angle: float, rate: float, until: float) -> Integrated:
-    start = np.concatenate([np.full(chain.links, angle), np.full(chain.links, rate)])
-    return integrate(chain.rates, start, until, unit=units_of_motion(chain.rates, start))
+def _integrated(chain: Chain, angle: float, rate: float, until: float) -> Motion:
+    return chain.solved(np.full(chain.links, angle), np.full(chain.links, rate), until)
 
 
 @dataclass(frozen=True)

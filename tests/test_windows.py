@@ -1,0 +1,81 @@
+"""Windows of collocation: against closed forms, with other stages, and against the explicit method of order 8."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from reference.numerics import integration, windows
+from reference.numerics.integration import IntegrationFailed
+from reference.pendulum.scenes import LinkPendulum
+
+EXTENDED = np.finfo(np.longdouble).eps < 1e-18
+FAST = np.longdouble(700)
+
+
+def oscillations(t: np.ndarray) -> np.ndarray:
+    """Two angles and their rates (times, 4): both swing slowly, and one of them fast as well."""
+    t = t.astype(np.longdouble)
+    slow, fast = np.cos(t), np.sin(FAST * t) / FAST
+    return np.stack([slow, slow + fast, -np.sin(t), -np.sin(t) + np.cos(FAST * t)], axis=-1)
+
+
+def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Their accelerations."""
+    slow = angle[..., 0]
+    return np.stack([-slow, -slow - FAST**2 * (angle[..., 1] - slow)], axis=-1)
+
+
+@pytest.mark.skipif(not EXTENDED, reason="numpy.longdouble is the ordinary double here: windows are short then")
+def test_a_fast_oscillation_beside_a_slow_one_is_exact_at_all_times():
+    t = np.sort(np.random.default_rng(1).uniform(0, 2, 300))
+    found = windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
+    # A rounding of a time of 2 s moves the fast oscillation by 2e-16 s times 1 rad/s.
+    assert np.abs(found(t) - oscillations(t))[:, :2].max() < 1e-15
+    assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
+    # Windows of about a third of a period: an explicit method takes twenty steps for that.
+    assert len(found.times) < 2 * 700
+
+
+@pytest.mark.skipif(not EXTENDED, reason="numpy.longdouble is the ordinary double here: windows are short then")
+@pytest.mark.parametrize("stages", [8, 12, 32])
+def test_few_stages_are_as_exact_as_many(stages):
+    t = np.linspace(0, 0.5, 50)
+    found = windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.5, 1.0, stages)
+    assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
+
+
+def test_a_heavy_tip_moves_as_by_the_explicit_method():
+    scene = LinkPendulum(links=3, tip=200.0, duration=0.3)
+    chain, start = scene.chain, np.repeat([scene.angle, 0.0], 3)
+    t = np.linspace(0, 0.3, 40)
+    unit = integration.units_of_motion(chain.rates, start)
+    other = integration.integrate(chain.rates, start, 0.3, unit=unit)(t)
+    stated = integration.error_of(chain.rates, start, t, unit=unit).max()
+    own = scene.truth_error(t).max()
+    assert np.abs(np.concatenate(scene.states(t), axis=1) - other).max() < stated + own
+    assert own < 1e-12
+
+
+def circle(state: np.ndarray) -> np.ndarray:
+    return np.stack([state[..., 1], -state[..., 0]], axis=-1)
+
+
+def test_the_explicit_method_states_an_error_above_its_true_one():
+    t = np.linspace(1, 30, 30)
+    found = integration.integrate(circle, [0.0, 1.0], 30.0)(t)
+    true = np.abs(found - np.stack([np.sin(t), np.cos(t)], axis=-1)).max(axis=-1)
+    stated = integration.error_of(circle, [0.0, 1.0], t)
+    assert stated.max() > 5 * true.max() > 0
+
+
+def test_a_motion_that_does_not_last_is_refused():
+    with pytest.raises(IntegrationFailed, match="the motion stops at t = 1 s"), np.errstate(all="ignore"):
+        windows.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)
+    with pytest.raises(ValueError, match="times must lie in"):
+        windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.01, 1.0)([0.02])
+
+
+def test_a_body_at_rest_stays_there():
+    found = windows.integrate(lambda angle, rate: 0 * angle, [0.3], [0.0], 5.0, 1.0)
+    assert np.array_equal(found([0.0, 2.0, 5.0]), [[np.longdouble(0.3), 0]] * 3)
