@@ -74,6 +74,7 @@ class Box2D(Optional):
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Holder] = "ours"
+    precision: ClassVar[float] = 2.0**-23  # of its numbers
 
     variant: Name
     substeps: Count = 4
