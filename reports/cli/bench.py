@@ -1,4 +1,4 @@
-"""`crosscheck bench`: what stepping costs beside bare loops, and the reference beside another library."""
+"""`crosscheck bench`: what stepping costs beside bare loops, a search, and the reference beside another library."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def bench(
     full: Annotated[bool, typer.Option("--full/--quick", help="`bench suite`: of the full grid.")] = False,
     workers: Workers = None,
 ) -> None:
-    """Time `run` against bare stepping loops, and the reference against another library; prints, asserts nothing.
+    """Time `run` against bare loops, a search, and the reference against another library; prints, asserts nothing.
 
     `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into.
     """
@@ -26,8 +26,9 @@ def bench(
 
         bench_suite(scene[1:], full, workers)
         return
-    from engines.registry import ENGINES
+    from engines.registry import ENGINES, VARIANTS
     from reports.bench import four_bar
+    from reports.bench.instants import instant_costs
     from reports.bench.loops import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
@@ -46,6 +47,14 @@ def bench(
             header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
             print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
             console.print()
+    instants = [
+        (each.name, number(1e3 * each.drawing), number(1e3 * each.asking), f"{each.asked:.0%}", f"{each.rate:.0f}")
+        for each in instant_costs(VARIANTS)
+        if each.asked
+    ]
+    header = ["method", "drawing [ms]", "asking [ms]", "have a law", "mechanisms a second"]
+    print_table(console, "search: random mechanisms of every kind, asked one instant", header, instants, 1)
+    console.print()
     floor = four_bar.floor_ratio()
     console.print(f"four-bar kinematics, {floor['count']} crank angles, all six outputs: {floor['ours']:.3f} s,")
     console.print(f"  {floor['ratio']:.2f} times one tan and two arctan2 an angle")
