@@ -12,11 +12,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engines import Engine, Promise, Unpromised, Unsupported, registry, single_run
+from engines import Engine, Promise, Size, Unpromised, Unsupported, registry, single_run
 from engines.conformance import cases
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
-from reference.mechanism import Mechanism
+from reference.joints import Rod
+from reference.mechanism import Body, Mechanism
 from reports.cli.selection import choose_cells, choose_engines
 from reports.grid.cells import QUICK, SLOW_TO_BUILD, beside_cells
 from reports.grid.ending import BadInput
@@ -169,6 +170,28 @@ def test_single_precision_rounds_the_start_and_nothing_worse():
     described = BY_NAME["pendulum_10"].mechanism()
     run = engine.build(described, 1e-6)(2, 1)
     assert np.abs(run.pose[1] - described.pose).max() < 1e-5
+
+
+def test_a_rod_shorter_than_box2ds_slop_is_refused_since_it_would_be_longer():
+    """Found by the search: the same mechanism in millimetres blew up. The engine's own joint tells its length."""
+    engine = shipped("box2d")
+    pyb2d3 = pytest.importorskip("pyb2d3")
+    world = pyb2d3.World(gravity=(0.0, 0.0))
+    ends = {"body_a": world.create_static_body(position=(0.0, 0.0)), "local_anchor_a": (0.0, 0.0)}
+    ends |= {"body_b": world.create_dynamic_body(position=(0.002, 0.0)), "local_anchor_b": (0.0, 0.0)}
+    assert world.create_distance_joint(**ends, length=0.002).length == pytest.approx(0.005)
+    body = Body("bob", 1.0, 1e-6, (0.002, 0.0, 0.0))
+    with pytest.raises(Unsupported, match=r"'rod'.*0\.002 m"):
+        engine.build(Mechanism((body,), (Rod("rod", None, "bob", (0.0, 0.0), (0.0, 0.0), 0.002),)), 1e-3)
+
+
+def test_an_engine_that_loses_its_numbers_says_when():
+    lost = np.array([[[0.0, 0.0, 0.0]], [[np.nan, 0.0, 0.0]], [[0.0, 0.0, 0.0]]])
+    body = Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ())
+    found = single_run.Recorded(lost, lost, lost, 0.0, body.inertias, np.zeros(2))
+    run = single_run.SingleRun(body, 0.5, Size(1, 3, 0, 0), lambda samples, every: found)(2, 1)
+    assert any("0.5 s" in warning for warning in run.warnings)
+    assert np.isnan(run.pose[1:]).all()
 
 
 def test_accelerations_given_at_the_start_are_what_exudyns_reactions_need():
