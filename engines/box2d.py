@@ -1,10 +1,12 @@
 """Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by sub-steps of impulses.
 
 A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
-no contact is the subject. A Pin is a revolute joint, a Slot a wheel joint without its spring (a point on a line that is
-free to turn), or a prismatic joint where a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or Slot
-between the same two bodies, with more torque than it can need. There is no joint that holds a velocity across a blade,
-and rolling is contact with friction; both are refused.
+no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
+without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
+angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Gears are
+gone since version 3, there is no joint that holds a velocity across a blade, and rolling is contact with friction. Its
+springs are given a frequency, and their stiffness is that of the mass which they feel, pose by pose; so what springs,
+dampers, forces and torques do to bodies is worked out by our code before a step and applied as forces, as users do.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
@@ -14,7 +16,12 @@ Joints are springs of 60 Hz with a damping ratio of 2, solved implicitly (b2Make
 ratio z give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push
 is taken back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower,
 while what opens it falls with h too. So no order can be promised. pyb2d3 sets the frequency of contacts, which is
-another; that of joints stays as shipped, and sub-steps are the only lever.
+another; that of joints stays as shipped. But a weld joint has frequencies of its own, which stay in the correction
+after the drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (1e-6 Hz) keeps from turning,
+whose points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine
+allows its contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single
+precision rounds off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the
+two, frequency and sub-steps, does.
 
 Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
 speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and
@@ -37,30 +44,40 @@ import numpy as np
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
 from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_all_but, unwrapped
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Name, Positive, validated
+from reference.validation import Count, Name, NonNegative, Positive, validated
 
 STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s
 ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
 FASTEST = 1e6  # m/s, which the engine would cut to 400
+FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
+SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would be the stiffest
+LACKS = {
+    Gear: "box2d has no gears since version 3",
+    Skate: "in box2d nothing stops a slip across a line, there is no joint for it",
+    Roll: "in box2d a disc rolls by contact and friction, there is no joint for it",
+}
 
 
 @dataclass(frozen=True)
 class Box2D(Optional):
     """An engine in the sense of `engines.Engine`.
 
-    `substeps` in a step, 4 as in the engine's manual.
+    `substeps` in a step, 4 as in the engine's manual; `closing`: the frequency of pins, welds and rods times the length
+    of a sub-step, 0 for joints as shipped.
     """
 
     extra: ClassVar[str] = "box2d"
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
+    forces_by: ClassVar[Holder] = "ours"
 
     variant: Name
     substeps: Count = 4
+    closing: NonNegative = 0.0
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -70,7 +87,8 @@ class Box2D(Optional):
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
         """About what a step takes [s]."""
-        return (STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism)
+        forces = FORCES_COST if mechanism.forces else 0.0
+        return (STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -80,9 +98,9 @@ class Box2D(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "box2d", (Pin, Slot, Drive, Skate, Roll))
+        refuse_all_but(mechanism, "box2d", (Pin, Slot, Drive, Weld, Rod), LACKS)
         self.require()
-        world = _World(mechanism)
+        world = _World(mechanism, self.closing * self.substeps / dt)
         return SingleRun(
             mechanism, dt, world.size, lambda samples, every: world.record(dt, self.substeps, samples, every)
         )
@@ -91,10 +109,10 @@ class Box2D(Optional):
 class _World:
     """The engine's objects for one mechanism."""
 
-    def __init__(self, mechanism: Mechanism) -> None:
+    def __init__(self, mechanism: Mechanism, hertz: float) -> None:
         import pyb2d3
 
-        self.mechanism, self.box2d = mechanism, pyb2d3
+        self.mechanism, self.box2d, self.hertz = mechanism, pyb2d3, hertz
         self.drives = {
             frozenset((joint.first, joint.second)): joint for joint in mechanism.joints if isinstance(joint, Drive)
         }
@@ -103,7 +121,8 @@ class _World:
         self.world.continuous_enabled = False
         self.ground = self.world.create_static_body(position=(0.0, 0.0))
         self.bodies = [self._body(body) for body in mechanism.bodies]
-        self.joints = [self._join(joint) for joint in mechanism.joints if isinstance(joint, Pin | Slot)]
+        self.joints = [self._join(joint) for joint in mechanism.joints if not isinstance(joint, Drive)]
+        self.angles = mechanism.pose[:, 2].copy()  # of the last step, not wrapped
         count, rows = len(self.bodies), mechanism.row_count
         self.size = Size(count, 3 * count, rows, rows)
 
@@ -112,14 +131,6 @@ class _World:
         joints = self.mechanism.joints
         held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
         drives = [joint for joint in joints if isinstance(joint, Drive)]
-        for joint in joints:
-            if not isinstance(joint, Pin | Slot | Drive):
-                what = (
-                    "a disc rolls by contact and friction"
-                    if isinstance(joint, Roll)
-                    else "nothing stops a slip across a line"
-                )
-                raise Unsupported(f"joint {joint.name!r}: in box2d {what}, there is no joint for it")
         for drive in drives:
             if frozenset((drive.first, drive.second)) not in held:
                 raise Unsupported(
@@ -148,20 +159,28 @@ class _World:
     def _named(self, name: str | None) -> Any:
         return self.ground if name is None else self.bodies[self.mechanism.body_index(name)]
 
-    def _join(self, joint: Pin | Slot) -> Any:
-        pair = frozenset((joint.first, joint.second))
-        drive = self.drives.pop(pair, None)  # of two joints between two bodies the first has the motor
+    def _join(self, joint: Any) -> Any:
         ends = {
             "body_a": self._named(joint.first),
             "body_b": self._named(joint.second),
             "local_anchor_a": joint.first_point,
             "local_anchor_b": joint.second_point,
         }
+        if isinstance(joint, Rod):
+            spring = {"enable_spring": True, "hertz": self.hertz, "damping_ratio": 1.0} if self.hertz else {}
+            return self.world.create_distance_joint(**ends, length=joint.length, **spring)
+        if isinstance(joint, Weld):
+            angle = math.remainder(joint.angle, 2 * math.pi)
+            return self._weld(ends, self.hertz, reference_angle=angle)
+        pair = frozenset((joint.first, joint.second))
+        drive = self.drives.pop(pair, None)  # of two joints between two bodies the first has the motor
         motor: dict[str, Any] = {}
         if drive is not None:
             rate = drive.turning_rate if drive.second == joint.second else -drive.turning_rate
             motor = {"enable_motor": True, "motor_speed": rate, "max_motor_torque": ENOUGH}
         if isinstance(joint, Pin):
+            if drive is None and self.hertz:
+                return self._weld(ends, SLACK, angular_damping_ratio=0.0)
             return self.world.create_revolute_joint(**ends, **motor)
         line = (math.cos(joint.line_angle), math.sin(joint.line_angle))
         if drive is not None and drive.turning_rate == 0:
@@ -170,10 +189,32 @@ class _World:
             return self.world.create_prismatic_joint(**ends, local_axis_a=line, reference_angle=angle)
         return self.world.create_wheel_joint(**ends, **motor, local_axis_a=line, enable_spring=False)
 
+    def _weld(self, ends: dict[str, Any], turning: float, **further: float) -> Any:
+        """A weld joint whose points are held at our frequency, and whose angle at this one [Hz]; 0 is the stiffest."""
+        held = {"linear_hertz": self.hertz, "linear_damping_ratio": 1.0, "angular_hertz": turning}
+        return self.world.create_weld_joint(**ends, **{**held, "angular_damping_ratio": 1.0, **further})
+
+    def _push(self) -> None:
+        """Give bodies what force elements do now: the engine forgets it after a step."""
+        pose, twist = np.empty((2, len(self.bodies), 3))
+        for index, body in enumerate(self.bodies):
+            at, turned, velocity = body.position, body.rotation, body.linear_velocity
+            self.angles[index] += math.remainder(math.atan2(turned.s, turned.c) - self.angles[index], 2 * math.pi)
+            pose[index] = at.x, at.y, self.angles[index]
+            twist[index] = velocity.x, velocity.y, body.angular_velocity
+        for body, (x, y, torque) in zip(self.bodies, self.mechanism.applied.on(pose, twist).tolist(), strict=True):
+            body.apply_force_to_center((x, y))
+            body.apply_torque(torque)
+
     def record(self, dt: float, substeps: int, samples: int, every: int) -> Recorded:
         world, bodies = self.world, self.bodies
         pose, twist, before = np.full((3, samples + 1, len(bodies), 3), np.nan)
-        step = world.step
+
+        def step(length: float, count: int) -> None:
+            if self.mechanism.forces:
+                self._push()
+            world.step(length, count)
+
         begin = time.process_time()
         for sample in range(samples + 1):
             if sample:
@@ -197,5 +238,5 @@ class _World:
 
 
 DEFAULT = Box2D("default")
-TUNED = Box2D("tuned", substeps=32)
+TUNED = Box2D("tuned", substeps=16, closing=0.25)
 VARIANTS = (DEFAULT, TUNED)

@@ -4,10 +4,12 @@ PyBullet and not ODE: it is what people use (the binding alone is asked about mo
 whole, while ode-python needs a library of the system. It costs 290 MB, and there is a wheel for Python 3.11 alone.
 
 The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
-continuous joints, and prismatic ones for slots whose angle is kept. A Pin that closes a loop is a JOINT_POINT2POINT of
-enough force, a Drive the velocity motor of a joint. No link without a mass stands between two joints, so a body that
-slides and turns, or that hangs on nothing, is refused, as are slots in loops, skates and rolling contact. All damping
-and the limit on joint velocities are off; the wheel is built in double precision.
+continuous joints, prismatic ones for slots whose angle is kept, fixed ones for welds. A Pin that closes a loop is a
+JOINT_POINT2POINT of enough force, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR
+between two joints of the tree. No link without a mass stands between two joints, so a body that slides and turns, or
+that hangs on nothing, is refused, as are slots in loops, rods, skates and rolling contact. There are no springs: what
+force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
+external forces. All damping and the limit on joint velocities are off; the wheel is built in double precision.
 
 One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
 a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
@@ -32,18 +34,25 @@ from numpy.typing import NDArray
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_all_but, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, differences, pushes, quiet, refuse_all_but, tree_states
 from engines.tree import Link, Tree, refuse_slots_in_loops, spanning_tree, world_offset
-from reference.joints import Drive, Joint, Pin, Slot, Weld
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 from reference.validation import Count, Fraction, Name, Positive, validated
 
 Array = NDArray[np.float64]
 STEP_COST = 9e-6  # s of a step of three bodies, as shipped
+FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
 ENOUGH = 1e10  # N or N m, of a point that closes a loop and of a motor
 FAST = 1e9  # rad/s, beyond what a joint reaches
 SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
+LACKS = {
+    Rod: "bullet's trees have no constraint of a distance",
+    Skate: "bullet stops slip by friction at a contact alone, and has no joint for it",
+    Roll: "in bullet a disc rolls by contact and friction, there is no joint for it",
+}
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,7 @@ class Bullet(Optional):
     extra: ClassVar[str] = "bullet"
     modules: ClassVar[tuple[str, ...]] = ("pybullet",)
     distributions: ClassVar[tuple[str, ...]] = ("pybullet",)
+    forces_by: ClassVar[Holder] = "ours"
 
     variant: Name
     iterations: Count = SHIPPED_ITERATIONS
@@ -66,7 +76,7 @@ class Bullet(Optional):
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         """First, of semi-implicit Euler; what the tree holds is exact."""
-        if spanning_tree(mechanism).loops:
+        if spanning_tree(mechanism).loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
             return Promise(1, differences=1)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
             return Promise(EXACT, reaction=1, differences=1)
@@ -76,7 +86,8 @@ class Bullet(Optional):
     def step_cost(self, mechanism: Mechanism) -> float:
         """About what a step takes [s]."""
         rows = 3 * len(spanning_tree(mechanism).loops)
-        return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows
+        forces = FORCES_COST if mechanism.forces else 0.0
+        return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -86,7 +97,7 @@ class Bullet(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "bullet", (Pin, Slot, Drive))
+        refuse_all_but(mechanism, "bullet", (Pin, Slot, Drive, Weld, Gear), LACKS)
         tree = spanning_tree(mechanism)
         drives = _refused(mechanism, tree)
         self.require()
@@ -98,7 +109,7 @@ def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
     """Tree coordinates that a motor turns, and their rates [rad/s]; raises Unsupported."""
     refuse_slots_in_loops(tree, "bullet")
     for link in tree.links:
-        if len(link.columns) != 1:
+        if len(link.columns) > 1:
             raise Unsupported(
                 f"body {mechanism.bodies[link.body].name!r}: bullet's tree has no link without a mass, "
                 "which a body that slides and turns, or hangs on nothing, would need"
@@ -111,7 +122,21 @@ def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
                 raise Unsupported(f"drive {joint.name!r}: a motor of bullet turns one joint, and has one rate")
             ((column, sign),) = turned.items()
             rates[column] = sign * joint.turning_rate
+        if isinstance(joint, Gear):
+            _geared(tree, joint)
     return rates
+
+
+def _geared(tree: Tree, gear: Gear) -> tuple[int, int]:
+    """The tree coordinates of the second and of the first body's angle; raises Unsupported."""
+    turned = [tree.turning(None, name) for name in (gear.second, gear.first)]
+    if any(len(each) != 1 for each in turned):
+        raise Unsupported(
+            f"joint {gear.name!r}: a gear of bullet is between two of its joints, "
+            "and the angle of a body that does not hang on the ground is a sum of several"
+        )
+    second, first = (next(iter(each)) for each in turned)
+    return second, first
 
 
 @cache
@@ -151,6 +176,8 @@ class _World:
         for link, index in zip(tree.links, self.links, strict=True):
             free = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0, "maxJointVelocity": FAST}
             self.bullet.changeDynamics(self.body, index, **free, **own)
+            if not link.columns:
+                continue
             rate = drives.get(link.column, float(rates[link.column]))
             self.bullet.resetJointState(self.body, index, 0.0, rate, **own)
             force = ENOUGH if link.column in drives else 0.0
@@ -158,8 +185,12 @@ class _World:
             self.bullet.setJointMotorControl2(self.body, index, kind, targetVelocity=rate, force=force, **own)
         for loop in tree.loops:
             self._close(loop)
-        loops = len(tree.loops)
-        self.size = Size(len(mechanism.bodies), tree.coordinates, 2 * loops + len(drives), 3 * loops + len(drives))
+        gears = [joint for joint in mechanism.joints if isinstance(joint, Gear)]
+        for gear in gears:
+            self._mesh(gear)
+        rows, single = sum(loop.size for loop in tree.loops), len(drives) + len(gears)
+        spatial = sum(6 if isinstance(loop, Weld) else 3 for loop in tree.loops)
+        self.size = Size(len(mechanism.bodies), tree.coordinates, rows + single, spatial + single)
 
     def __del__(self) -> None:
         if getattr(self, "server", -1) >= 0:
@@ -176,6 +207,7 @@ class _World:
         parent = "ground" if link.parent is None else f"body {link.parent}"
         x, y = np.array(link.arm) - (0.0 if link.parent is None else self.anchors[link.parent])
         kind, axis = ("continuous", (0.0, 0.0, 1.0)) if link.turns else ("prismatic", (*link.direction, 0.0))
+        kind = kind if link.columns else "fixed"
         inertia = " ".join(f'i{axes}="{body.inertia!r}"' for axes in ("xx", "yy", "zz"))
         reach = '<limit lower="1" upper="-1" effort="0" velocity="0"/>' if kind == "prismatic" else ""  # no limit
         return (
@@ -185,35 +217,69 @@ class _World:
             f'<origin xyz="{float(x)!r} {float(y)!r} 0"/><axis xyz="{" ".join(map(repr, axis))}"/>{reach}</joint>'
         )
 
-    def _close(self, loop: Pin | Slot | Weld) -> None:
-        """A point of two links: each from the link's centre of mass, the ground's in the world."""
-        own = {"physicsClientId": self.server}
-        ends: list[tuple[int, list[float]]] = []
+    def _link_of(self, name: str | None) -> int:
+        """The engine's number of a body's link; of the ground -1."""
         place = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
-        for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point)):
-            x, y = world_offset(self.mechanism, name, point)
-            index = -1 if name is None else place[self.mechanism.body_index(name)]
-            ends.append((index, [x, y, 0.0]))
+        return -1 if name is None else place[self.mechanism.body_index(name)]
+
+    def _close(self, loop: Pin | Slot | Weld) -> None:
+        """A point of two links, or both altogether: each from the link's centre of mass, the ground's in the world."""
+        ends = [
+            (self._link_of(name), [*world_offset(self.mechanism, name, point), 0.0])
+            for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point))
+        ]
         ends.sort(key=lambda end: end[0] < 0)  # the ground can only be the second
         (first, at), (second, there) = ends
+        kind = self.bullet.JOINT_FIXED if isinstance(loop, Weld) else self.bullet.JOINT_POINT2POINT
+        self._constrain(first, second, kind, at, there)
+
+    def _mesh(self, gear: Gear) -> None:
+        """The rate of the second body's joint less `ratio` times that of the first's is zero."""
+        link_of = {link.column: index for link, index in zip(self.tree.links, self.links, strict=True) if link.columns}
+        second, first = (link_of[column] for column in _geared(self.tree, gear))
+        nowhere = [0.0, 0.0, 0.0]
+        self._constrain(second, first, self.bullet.JOINT_GEAR, nowhere, nowhere, gearRatio=-gear.ratio)
+
+    def _constrain(self, first: int, second: int, kind: int, at: Any, there: Any, **what: float) -> None:
+        own = {"physicsClientId": self.server}
         other = self.body if second >= 0 else -1
-        kind = self.bullet.JOINT_POINT2POINT
-        made = self.bullet.createConstraint(self.body, first, other, second, kind, [0, 0, 0], at, there, **own)
-        self.bullet.changeConstraint(made, maxForce=ENOUGH, **own)
+        made = self.bullet.createConstraint(self.body, first, other, second, kind, [0, 0, 1], at, there, **own)
+        self.bullet.changeConstraint(made, maxForce=ENOUGH, **what, **own)
+
+    def _push(self) -> None:
+        """Give the engine what force elements do now: it forgets them after a step."""
+        own = {"physicsClientId": self.server}
+        told = self.bullet.getJointStates(self.body, self.links, **own)
+        position, velocity = np.zeros((2, self.tree.coordinates))
+        for link, (angle, rate, *_) in zip(self.tree.links, told, strict=True):
+            position[link.columns], velocity[link.columns] = angle, rate
+        pushed = pushes(self.tree, position, velocity)
+        for link, index in zip(self.tree.links, self.links, strict=True):
+            x, y, torque = pushed[link.body]
+            at = self.bullet.getLinkState(self.body, index, computeForwardKinematics=True, **own)[0]
+            self.bullet.applyExternalForce(self.body, index, [x, y, 0.0], at, self.bullet.WORLD_FRAME, **own)
+            self.bullet.applyExternalTorque(self.body, index, [0.0, 0.0, torque], self.bullet.WORLD_FRAME, **own)
 
     def record(self, dt: float, samples: int, every: int) -> Recorded:
         shape = (samples + 1, self.tree.coordinates)
         position, velocity, before = np.full((3, *shape), np.nan)
-        columns = [link.column for link in self.tree.links]
-        step, states, server = self.bullet.stepSimulation, self.bullet.getJointStates, self.server
+        moving = [place for place, link in enumerate(self.tree.links) if link.columns]
+        columns, links = [self.tree.links[place].column for place in moving], [self.links[place] for place in moving]
+        states, server = self.bullet.getJointStates, self.server
+
+        def step(one: int) -> None:
+            if self.mechanism.forces:
+                self._push()
+            self.bullet.stepSimulation(one)
+
         begin = time.process_time()
         for sample in range(samples + 1):
             if sample:
                 for _ in range(every - 1):
                     step(server)
-                before[sample, columns] = [each[1] for each in states(self.body, self.links, server)]
+                before[sample, columns] = [each[1] for each in states(self.body, links, server)]
                 step(server)
-            told = states(self.body, self.links, server)
+            told = states(self.body, links, server)
             position[sample, columns] = [each[0] for each in told]
             velocity[sample, columns] = [each[1] for each in told]
         stepping = time.process_time() - begin

@@ -1,11 +1,13 @@
 """Exudyn under test: planar rigid bodies in maximal coordinates, joints as algebraic equations, implicit integrators.
 
 A body is a NodeRigidBody2D with an ObjectRigidBody2D, a Pin an ObjectJointRevolute2D, a Slot an ObjectJointPrismatic2D
-that leaves the rotation free, a Drive an ObjectConnectorCoordinate between the two rotations at velocity level. A Skate
-is the engine's own rolling disc (ObjectJointRollingDisc), of which only the velocity along the axle is held: a real
-velocity constraint, as users build wheels with it. Its disc stands on edge in the plane, so the radius does not matter.
-A Roll of a circle on a straight line is the same joint lying in the plane, with the rolling velocity and the velocity
-along the line's normal held; the engine has no contact of other shapes that is an equation.
+that leaves the rotation free, a Rod an ObjectConnectorDistance. What is held between two rotations is an
+ObjectConnectorCoordinate: a Drive at velocity level, a Gear, and, beside a revolute joint, a Weld. A Skate is the
+engine's own rolling disc (ObjectJointRollingDisc), of which only the velocity along the axle is held: a real velocity
+constraint, as users build wheels with it. Its disc stands on edge in the plane, so the radius does not matter. A Roll
+of a circle on a straight line is the same joint lying in the plane, with the rolling velocity and the velocity along
+the line's normal held; the engine has no contact of other shapes that is an equation. Springs, dampers, forces and
+torques are the engine's own too.
 
 The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" holds them in positions (index 3),
 "TrapezoidalIndex2" in velocities (index 2); both are of second order. The engine's explicit integrators take only
@@ -34,8 +36,9 @@ from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupport
 from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
-from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_all_but
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from engines.single_run import Optional, Recorded, SingleRun, quiet
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Name, Positive, validated
@@ -91,7 +94,6 @@ class Exudyn(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "exudyn", (Pin, Slot, Drive, Skate, Roll))
         self.require()
         system = _System(mechanism)
         return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(self, dt, samples, every))
@@ -114,6 +116,8 @@ class _System:
         for body in mechanism.bodies:
             self._add(body)
         equations = sum(self._join(joint) for joint in mechanism.joints)
+        for force in mechanism.forces:
+            self._apply(force)
         kinds = exudyn.OutputVariableType
         self.sensors = [
             [self._sensor(node, kind) for node in self.nodes.values()]
@@ -143,18 +147,39 @@ class _System:
         marker = self.items.MarkerBodyRigid if rigid else self.items.MarkerBodyPosition
         return self.system.AddMarker(marker(bodyNumber=self.bodies[name], localPosition=[*point, 0.0]))
 
+    def _ends(self, parts: Any) -> list[int]:
+        return [self._point(parts.first, parts.first_point), self._point(parts.second, parts.second_point)]
+
     def _rotation(self, name: str | None) -> int:
         node, coordinate = (self.point_ground, 0) if name is None else (self.nodes[name], 2)
         return self.system.AddMarker(self.items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+    def _start(self, name: str | None) -> float:
+        """A body's angle at the start [rad], from which the engine's coordinate counts; the ground's is zero."""
+        return 0.0 if name is None else self.mechanism.bodies[self.mechanism.body_index(name)].pose[2]
+
+    def _hold(self, ends: list[int], **what: Any) -> None:
+        """factor1 times the second coordinate minus the first is the offset."""
+        self.system.AddObject(self.items.ObjectConnectorCoordinate(markerNumbers=ends, **what))
 
     def _join(self, joint: Joint) -> int:
         """Add what stands for a joint; how many equations it has."""
         items, system = self.items, self.system
         match joint:
-            case Pin():
-                ends = [self._point(joint.first, joint.first_point), self._point(joint.second, joint.second_point)]
-                system.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))
-                return 2
+            case Pin() | Weld():
+                system.AddObject(items.ObjectJointRevolute2D(markerNumbers=self._ends(joint)))
+                if isinstance(joint, Weld):
+                    turned = joint.angle - self._start(joint.second) + self._start(joint.first)
+                    self._hold([self._rotation(joint.first), self._rotation(joint.second)], offset=turned)
+                return joint.size
+            case Gear():
+                turned = self._start(joint.second) - joint.ratio * self._start(joint.first) - joint.phase
+                ends = [self._rotation(joint.second), self._rotation(joint.first)]
+                self._hold(ends, factor1=joint.ratio, offset=turned)
+                return 1
+            case Rod():
+                system.AddObject(items.ObjectConnectorDistance(markerNumbers=self._ends(joint), distance=joint.length))
+                return 1
             case Slot():
                 # The line belongs to the joint's second marker.
                 ends = [
@@ -168,9 +193,7 @@ class _System:
                 return 2
             case Drive():
                 ends = [self._rotation(joint.first), self._rotation(joint.second)]
-                system.AddObject(
-                    items.ObjectConnectorCoordinate(markerNumbers=ends, offset=joint.turning_rate, velocityLevel=True)
-                )
+                self._hold(ends, offset=joint.turning_rate, velocityLevel=True)
                 return 1
             case Skate():
                 ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, joint.second_point, True)]
@@ -179,8 +202,32 @@ class _System:
                 return 3
             case Roll():
                 return self._roll(joint)
-            case _:
-                raise Unsupported(f"joint {joint.name!r}: exudyn is given none of its kind here")
+
+    def _apply(self, force: ForceElement) -> None:
+        """Add the engine's own element for a spring, a damper, a force or a torque."""
+        items, add = self.items, self.system.AddObject
+        match force:
+            case Spring() if force.rest_length == 0:  # two springs along x and y: no direction is asked for
+                stiffness = [force.stiffness, force.stiffness, 0.0]
+                add(items.ObjectConnectorCartesianSpringDamper(markerNumbers=self._ends(force), stiffness=stiffness))
+            case Spring():
+                law = {"stiffness": force.stiffness, "referenceLength": force.rest_length}
+                add(items.ObjectConnectorSpringDamper(markerNumbers=self._ends(force), **law))
+            case Damper():
+                add(items.ObjectConnectorSpringDamper(markerNumbers=self._ends(force), damping=force.damping))
+            case TorsionSpring() | TorsionDamper():
+                law = {"damping": force.damping} if isinstance(force, TorsionDamper) else {"stiffness": force.stiffness}
+                if isinstance(force, TorsionSpring):
+                    law["offset"] = force.rest_angle - self._start(force.second) + self._start(force.first)
+                ends = [self._rotation(force.first), self._rotation(force.second)]
+                add(items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, **law))
+            case Torque():
+                for name, torque in ((force.first, -force.torque), (force.second, force.torque)):
+                    if name is not None:
+                        self.system.AddLoad(items.LoadCoordinate(markerNumber=self._rotation(name), load=torque))
+            case Force():
+                marker = self._point(force.second, force.second_point)
+                self.system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=[*force.force, 0.0]))
 
     def _disc(self, ends: list[int], held: list[int], radius: float, axle: list[float], normal: list[float]) -> None:
         """A disc of the second marker on the plane of the first; held: along the axle, forwards, along the normal."""

@@ -2,13 +2,14 @@
 
 The model is the MjModel that our MuJoCo adapter compiles with the same settings, put on the device as it is, so that
 what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C, skates and rolling
-contacts among it, has no place in a compiled program and is refused.
+contacts among it, has no place in a compiled program and is refused; so is what MJX itself does not run, in its words.
 
 MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. A loop is then pulled off its
 path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force.
 
-A program is compiled for each model, 6 to 12 s for one with a loop: that is building and not stepping. JAX keeps it for
-models of the same structure. It is told to use the processor alone, one thread, and doubles, before it is imported.
+A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
+of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
+JAX_COMPILATION_CACHE_DIR says. It is told to use the processor alone, one thread, and doubles, before it is imported.
 
 The package mujoco-mjx requires the package mujoco, whose files overwrite those of mujoco-core by an older release. So
 the extra installs what it needs, and it has to be installed by itself: pip install --no-deps mujoco-mjx.
@@ -20,6 +21,7 @@ the extra installs what it needs, and it has to be installed by itself: pip inst
 from __future__ import annotations
 
 import os
+import platform
 import time
 from dataclasses import dataclass, field
 from functools import cache
@@ -34,9 +36,10 @@ from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import Model
-from engines.single_run import Optional, Recorded, SingleRun, quiet, refuse_all_but, tree_states
-from engines.tree import spanning_tree
-from reference.joints import Drive, Joint, Pin, Skate, Slot
+from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
+from engines.tree import Tree, spanning_tree
+from engines.user_cache import cache_folder
+from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.validation import Name, Positive, validated
@@ -67,9 +70,9 @@ class Mjx(Optional):
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         """The integrator's where there is no loop."""
         tree = spanning_tree(mechanism)
-        if tree.loops:
+        if _lacking(tree):
             return Unpromised("MJX leaves out the velocity term of loops, which no step makes smaller")
-        if tree.geared:
+        if tree.closed:  # sums of angles, which need no such term
             return self.settings.order(mechanism)
         if turns_steadily(mechanism) or is_prescribed(mechanism):
             return Promise(EXACT)
@@ -96,7 +99,6 @@ class Mjx(Optional):
             if isinstance(joint, Skate | Roll):
                 what = f"a {type(joint).__name__.lower()} is held by contacts or callbacks of MuJoCo's C code"
                 raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
-        refuse_all_but(mechanism, "mjx", (Pin, Slot, Drive))
         self.require()
         model = self.settings.model(mechanism, dt)
         hooks = model.hooks
@@ -111,6 +113,11 @@ class Mjx(Optional):
         return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, held, data, samples, every))
 
 
+def _lacking(tree: Tree) -> bool:
+    """Whether a row is held whose velocity term is not zero: that of a loop or of a rod."""
+    return bool(tree.loops) or any(isinstance(joint, Rod) for joint in tree.mechanism.joints)
+
+
 @cache
 def _programs() -> tuple[Any, Any, Any]:
     """(mjx, steps(model, data, count), forward(model, data)); JAX is imported here and nowhere else."""
@@ -120,6 +127,10 @@ def _programs() -> tuple[Any, Any, Any]:
         import jax
 
         jax.config.update("jax_enable_x64", True)
+        if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
+            # Programs are of this machine's instructions: a home that several machines share has one folder for each.
+            jax.config.update("jax_compilation_cache_dir", str(cache_folder() / "mjx" / platform.node()))
+            jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
         from mujoco import mjx
 
     def steps(model: Any, data: Any, count: Any) -> Any:
@@ -144,7 +155,7 @@ def _record(model: Model, held: Any, data: Any, samples: int, every: int) -> Rec
     for sample, each in enumerate(states):
         acceleration[sample] = np.asarray(forward(held, each).qacc)
     motion = tree_states(model.tree, *(each[:, model.address] for each in (position, velocity, acceleration)))
-    warnings = (NO_VELOCITY_TERM,) if model.tree.loops else ()
+    warnings = (NO_VELOCITY_TERM,) if _lacking(model.tree) else ()
     return Recorded(*motion, stepping, *model.loads(), warnings)
 
 

@@ -103,6 +103,11 @@ class OwnModel(Protocol):
         """What a motion of poses (times, bodies, 3) runs into, that the mechanism lacks: the time [s] and what."""
         ...
 
+    @property
+    def suspects(self) -> Mapping[str, str]:
+        """Elements that the engine holds by another law than an ideal joint's at any step, each with why."""
+        ...
+
     def changes(self, smallest: float) -> list[Change]:
         """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own."""
         ...

@@ -28,7 +28,8 @@ from reference.rolling.kinematics import Rolling
 NODES = 6
 COARSEST = 2 * math.pi / 256
 FINEST = 2 * math.pi / 2**17  # beyond, a table would be larger than the number of its uses
-BLOCK = 64  # cells that are laid together
+BLOCK = 16  # cells that are laid together
+EXAMINED = np.arange(-32, 32, 4)  # cells that tell how wide a cell may be, from that of the start
 # Of the largest P'' nearby: a few roundings of a contact.
 ROUNDING = 1e-14
 # A table that misses more than this falls back on exact contacts, which cost about a hundred times as much.
@@ -195,12 +196,11 @@ class Table:
             # Where curves nearly fit the contact itself is rounded so coarsely that finer cells bring no more.
             if error < ROUNDING or width <= FINEST or (error < POOR and error > before / 4):
                 break
-            width, before = width / 2, error
+            # The error falls with the power NODES: halvings that can't be enough are not tried.
+            halvings = math.ceil(math.log2(error / ROUNDING) / NODES) if error < math.inf else 1
+            width, before = max(width / 2 ** min(halvings, 3), FINEST), error
         self.exact_only = not error < POOR
-        if not self.exact_only:
-            for turn in (-1, 1):  # a turn to both sides; what is met beyond is laid when it is met
-                for block in range(min(16, math.ceil(2 * math.pi / (BLOCK * width)))):
-                    self.place(rolling.theta + turn * block * BLOCK * width)
+        self.place(rolling.theta)  # the block about the start; others are laid when they are met
 
     def place(self, theta: float) -> Place:
         if not self._low <= theta <= self._high:
@@ -276,8 +276,8 @@ class Table:
         )
 
     def _error(self) -> float:
-        """How far a block about the start misses P'' half way between its nodes, in parts of the largest P''."""
-        around = np.arange(BLOCK) + math.floor(self._rolling.theta * self._per_radian) - BLOCK // 2
+        """How far cells about the start miss P'' half way between their nodes, in parts of the largest P''."""
+        around = EXAMINED + math.floor(self._rolling.theta * self._per_radian)
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf

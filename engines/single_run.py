@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Size, Softness, Unsupported
+from engines.contract import Holder, Size, Softness, Unsupported
 from engines.read_reactions import reactions
 from engines.tree import Tree
 from reference.mechanism import Mechanism
@@ -35,8 +35,8 @@ class Optional(Valid):
 
     `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
     belong to; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
-    takes to build [s], where that is no matter of milliseconds. A package is imported when the
-    first mechanism is built, because some take seconds.
+    takes to build [s], where that is no matter of milliseconds; `forces_by`: who works out what springs, dampers and
+    the like do. A package is imported when the first mechanism is built, because some take seconds.
     """
 
     extra: ClassVar[str]
@@ -44,6 +44,7 @@ class Optional(Valid):
     distributions: ClassVar[tuple[str, ...]]
     apart: ClassVar[str] = ""
     building: ClassVar[float] = 0.0
+    forces_by: ClassVar[Holder] = "engine"
 
     @property
     def name(self) -> str:
@@ -76,13 +77,14 @@ class Optional(Valid):
         return None
 
 
-def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...]) -> None:
-    """Raises Unsupported for joints of other kinds, and for springs and dampers, which these adapters don't build."""
+def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...], why: Mapping[type, str]) -> None:
+    """Raises Unsupported for joints of other kinds; `why`: by kind, a clause that says what the engine lacks for it."""
     for joint in mechanism.joints:
         if not isinstance(joint, kinds):
-            raise Unsupported(f"joint {joint.name!r}: {engine} is given no {type(joint).__name__.lower()} here")
-    for force in mechanism.forces:
-        raise Unsupported(f"force {force.name!r}: {engine} is given no springs, dampers and the like here")
+            kind = type(joint)
+            raise Unsupported(
+                f"joint {joint.name!r}: {why.get(kind, f'{engine} is given no {kind.__name__.lower()} here')}"
+            )
 
 
 @contextmanager
@@ -122,6 +124,16 @@ def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Arra
     """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
     with np.errstate(all="ignore"):
         return tree.motion(position, velocity, acceleration)
+
+
+def pushes(tree: Tree, position: Array, velocity: Array) -> Array:
+    """What force elements do to bodies (bodies, 3) [N, N, N m] at tree coordinates and rates (coordinates,).
+
+    For engines that have no springs, or springs of another law: users of these work forces out by themselves too.
+    """
+    still = np.zeros((1, tree.coordinates))
+    pose, twist, _ = tree_states(tree, position[None], velocity[None], still)
+    return np.asarray(tree.mechanism.applied.on(pose[0], twist[0]), dtype=np.float64)
 
 
 def differences(twist: Array, before: Array, dt: float) -> Array:

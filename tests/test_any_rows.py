@@ -54,7 +54,7 @@ from reports.text.templates import environment
 from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, page_rows
 
-SUBSETS = 16  # of every page
+SUBSETS, MORE = 3, 16  # of every page: every day, and among the slow tests
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
@@ -150,11 +150,21 @@ def written(page: Page, rows: Rows) -> Mapping[str, str]:
     return render_page(page, Material(rows), "the command")
 
 
-@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
-def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
-    for seed in range(SUBSETS):
+def read_from_parts_of_its_rows(page: Page, seeds: range) -> None:
+    for seed in seeds:
         rows = some(page_rows(page), random.Random(f"{page.name} {seed}"))
         assert complaints(page.name, written(cheap(page), rows)) == [], seed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_many_parts_of_its_rows_it_is_written_from(page, undrawn):
+    read_from_parts_of_its_rows(page, range(SUBSETS, MORE))
+
+
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
+    read_from_parts_of_its_rows(page, range(SUBSETS))
     assert complaints(page.name, written(cheap(page), {})) == []
     failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in page_rows(page)}
     assert complaints(page.name, written(cheap(page), failed)) == []

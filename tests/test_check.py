@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
+from engines.mujoco.written_urdf import urdf
 from reference.four_bar import FreeFourBar
 from reference.scenes import SCENES
 from reports.check import rendering, settings
@@ -18,12 +19,13 @@ from reports.check.comparing import errors
 from reports.check.facts import facts_of
 from reports.check.judging import judged
 from reports.check.law import accelerations
+from reports.check.numbers import data
 from reports.check.pictures import pictures
 from reports.check.readers import read
 from reports.check.request import Answer, Refused, Request, answered
 from reports.check.settings import best, cheapest
 from reports.check.shown import from_text, shown_of
-from reports.check.telling import data, sections, verdict
+from reports.check.telling import sections, verdict
 
 FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
 <default><geom contype="0" conaffinity="0" size="0.02" type="capsule"/><joint axis="0 1 0"/></default>
@@ -79,6 +81,52 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert again.met
     assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)
     assert "Your settings meet the tolerance" in verdict(again)
+
+
+def test_lines_pasted_as_they_are_printed_do_what_was_promised(tmp_path):
+    found = found_in(tmp_path, FOUR_BAR)
+    printed = "\n".join(sections(found)[0].code)
+    again = found_in(tmp_path, FOUR_BAR.replace("</mujoco>", f"{printed}</mujoco>"))
+    assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)  # type: ignore[union-attr]
+
+
+def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
+    text = re.sub(r"<mujoco>.*?</mujoco>", "", urdf(PENDULUM_2.mechanism()), flags=re.DOTALL)
+    found = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
+    (line,) = sections(found)[0].code
+    assert line.startswith("<mujoco><option ")
+    pasted = text.replace("</robot>", f"{line}</robot>")
+    again = found_in(tmp_path, pasted, "chain.urdf", "chain.urdf", tolerance=1e-6)
+    assert again.met
+    # Where the file has such an element, a second one is an error of MuJoCo's: then the option alone is printed.
+    (option,) = again.table[0].change.lines
+    assert option.startswith("<option ")
+    assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)  # type: ignore[union-attr]
+
+
+def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reach_it(tmp_path):
+    own = FOUR_BAR.replace('<connect name="C"', '<connect name="C" solref="0.04 1"')
+    lines = sections(found_in(tmp_path, own))[0].code
+    assert "of its own needs these values there" in lines[-1]
+    values = re.search(r"(solref=.*)/></default>", lines[1])[1]  # type: ignore[index]
+    mended = own.replace('solref="0.04 1"', values).replace("</mujoco>", f"{lines[0]}</mujoco>")
+    assert found_in(tmp_path, mended).met
+
+
+def test_coordinates_that_cannot_part_are_not_said_to_open(tmp_path):
+    told = sections(found_in(tmp_path, urdf(PENDULUM_2.mechanism()), "chain.urdf", "chain.urdf"))
+    sentences = [sentence for section in told for sentence in section.sentences]
+    assert "No joint opens by more than rounding." in sentences
+    assert any(sentence.startswith("Step: your run is off the ideal motion") for sentence in sentences)
+
+
+def test_drawings_of_an_html_report_share_no_names(tmp_path):
+    """As elements of one page the second would be clipped by the first's frame."""
+    found = found_in(tmp_path, FOUR_BAR)
+    page = rendering.html("four bar", sections(found, pictures(shown_of(found))))
+    assert page.count("data:image/svg+xml;base64,") == 2
+    assert "<svg" not in page
+    assert page.count('<img alt="') == 2
 
 
 def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_copied(tmp_path):
@@ -168,7 +216,7 @@ def test_the_report_can_be_read_by_people_and_programs(tmp_path):
     for words in ("redundant", "near-singular", "the judge's own", "Softness", "What to change"):
         assert words in text or words == "redundant"
     page = rendering.html("four bar", told)
-    assert page.count("<svg") == 2
+    assert page.count("data:image/svg+xml") == 2
     assert "<script" not in page
     files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
     assert "](errors.svg)" in rendering.markdown("four bar", told, files)
@@ -238,6 +286,25 @@ BAD = {
         "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
         "is moving apart at",
     ),
+    "prints.py:space": ("print('hello')\nspace = 'text'", "it is str; it must be a pymunk.Space"),
+    "leaves.py:space": ("import sys\nsys.exit('enough')", "leaves.py raised SystemExit: enough"),
+    "stops.py:space": ("raise KeyboardInterrupt", "stops.py raised KeyboardInterrupt"),
+    "binary.xml": (bytes(range(256)) * 40, "MuJoCo can't compile it"),
+    "binary.mjb": (b"\x00\xff" * 300, "MuJoCo can't compile it"),
+    "binary.py:space": (b"\x00\x01\x02", "binary.py raised"),
+    "folder.xml": ("/", "it is a folder"),
+    "folder.py:space": ("/", "it is a folder"),
+    "mesh.xml": (
+        '<mujoco><asset><mesh name="m" file="nowhere.stl"/></asset><worldbody><body><joint/><geom type="mesh" '
+        'mesh="m"/></body></worldbody></mujoco>',
+        "nowhere.stl",
+    ),
+    "includes.xml": ('<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
+    "not_a_number.xml": (
+        '<mujoco><worldbody><body><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
+        '<keyframe><key qpos="nan"/></keyframe></mujoco>',
+        "qpos of joint 0 is nan at the start; it must be a finite number",
+    ),
     "still.py:space": ("import pymunk\nspace = pymunk.Space()", "nothing in it can move"),
     "missing.xml": (None, "there is no such file"),
     "picture.png": (None, "is no model; give"),
@@ -247,8 +314,13 @@ BAD = {
 @pytest.mark.parametrize("word", BAD)
 def test_a_bad_model_is_one_sentence(tmp_path, word):
     text, sentence = BAD[word]
-    if text is not None:
-        (tmp_path / word.split(":")[0]).write_text(text)
+    file = tmp_path / word.split(":")[0]
+    if text == "/":
+        file.mkdir()
+    elif isinstance(text, bytes):
+        file.write_bytes(text)
+    elif text is not None:
+        file.write_text(text)
     answer = answered(Request(word, str(tmp_path), 0.5, 1e-4, pictures=False))
     assert isinstance(answer, Refused)
     assert sentence in answer.sentence

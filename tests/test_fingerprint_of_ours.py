@@ -74,8 +74,9 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
             *(f"grid/{name}" for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool")),
             *(
                 f"grid/{name}"
-                for name in ("timing", "ending", "requirements", "supervisor", "worker", "worker_process")
+                for name in ("ending", "expected", "processors", "requirements", "spending", "supervisor")
             ),
+            *(f"grid/{name}" for name in ("tasks", "timing", "truths", "waiting", "worker", "worker_process")),
         )
     }
 

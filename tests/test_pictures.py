@@ -15,7 +15,7 @@ from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingOnCircle
-from reports.charts import drawings
+from reports.charts import drawings, outlines
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 from reports.charts.stroboscope import PALEST, Strip, outline, path, stroboscope
 from reports.charts.theme import LIGHT
@@ -43,12 +43,12 @@ def colours(panel: Axes) -> list[str]:
 
 def test_a_bodys_points_are_its_joints_turned_and_moved():
     mechanism = four_bar()
-    found = drawings.body_points(mechanism, mechanism.pose)
+    found = outlines.body_points(mechanism, mechanism.pose)
     # A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
     assert found["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
     assert found["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
     assert found["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
-    assert drawings.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
+    assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
 
 
 def test_a_method_is_visibly_off_by_its_worst_joint_and_never_where_it_is_not_finite():
@@ -72,10 +72,10 @@ def test_configurations_have_each_pose_under_its_title_and_methods_over_them_whe
     panels = figure.axes[:3]
     assert [panel.get_title(loc="left") for panel in panels] == ["zero", "one", "two"]
     for index, panel in enumerate(panels):
-        assert all(has(panel, bar) for bar in drawings.body_points(mechanism, truth[index]).values())
+        assert all(has(panel, bar) for bar in outlines.body_points(mechanism, truth[index]).values())
         assert (to_hex(LIGHT.first) in colours(panel)) == (index == 1)
         assert to_hex(LIGHT.second) not in colours(panel)
-    assert all(has(panels[1], bar) for bar in drawings.body_points(mechanism, other[1]).values())
+    assert all(has(panels[1], bar) for bar in outlines.body_points(mechanism, other[1]).values())
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert words == ["truth", "wrong", "right: not visibly off"]
 

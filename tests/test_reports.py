@@ -24,7 +24,10 @@ from reports.grid.outcomes import Outcome
 from reports.pages.page import Failure, Material, Observation, Page, StabilityMap
 from reports.text.rendering import render_all
 from reports.text.templates import environment
+from tests import test_any_rows as rendering
 from tests.toys import FAILURES, Disc, FailingToy, Toy
+
+undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
 FAST_FAILURES = tuple(FailingToy(v) for v in FAILURES if v not in ("abort", "exit", "hang", "raise"))
@@ -233,7 +236,8 @@ def test_bad_input_is_one_line_on_stderr_and_exit_status_2(words, telling, tmp_p
     assert telling in err
 
 
-def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd):
+def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd, undrawn):
+    """Without its pictures, which test_third_party.py has drawn by an installation."""
     chosen = ["driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte"]
     for words in (["run", *chosen, "--every", "1"], ["report"], ["show", *chosen]):
         with pytest.raises(SystemExit) as ending:

@@ -13,7 +13,8 @@ from reference.curves.circles_lines import Circle, Line, Ring, Side
 from reference.curves.curve import Placed
 from reference.curves.ellipse import Ellipse
 from reference.mechanism import Body, Mechanism
-from reference.rolling.kinematics import NEAR_CONFORMAL, Rolling
+from reference.rolling.fitting import NEAR_CONFORMAL
+from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.validation import InvalidMechanism
 from tests.test_rolling import ROUNDING, unit

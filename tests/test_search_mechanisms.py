@@ -11,7 +11,8 @@ import pytest
 from engines.lagrange import TRUTH
 from reference.validation import InvalidMechanism
 from reports.search.mechanisms import ALL, mechanism, recipe
-from reports.search.recipe import LEAST_RANK, Link, Part, Recipe, Rim, as_text, build, from_text, ladder
+from reports.search.parts import Link, Part, Recipe, Rim, as_text, from_text, ladder
+from reports.search.recipe import LEAST_RANK, build
 
 CASES = range(40)
 
@@ -108,7 +109,7 @@ def test_the_judge_runs_them():
         (Recipe((Part(parent=1),), ()), "parent"),
         (Recipe((Part(),), (Link("pin", 1, 1),)), "differ"),
         (Recipe((Part(),), (Link("pin", 0, 2),)), "second from 1"),
-        (Recipe((Part(),), (Link("weld", 0, 1),)), "one of pin"),
+        (Recipe((Part(),), (Link("glue", 0, 1),)), "one of pin"),
         (Recipe((Part(),), (Link("roll", 0, 1),)), "two rims"),
         (Recipe((Part(),), (Link("roll", 0, 1, rims=(Rim("square"), Rim())),)), "one of line"),
         (Recipe((Part(),), (Link("pin", 0, 1), Link("pin", 0, 1))), "dependent"),
@@ -121,8 +122,8 @@ def test_a_recipe_that_is_none_is_refused(told, why):
 
 
 def test_kinds_that_are_none_are_refused():
-    with pytest.raises(InvalidMechanism, match="weld"):
-        recipe(0, 0, ("pin", "weld"))
+    with pytest.raises(InvalidMechanism, match="glue"):
+        recipe(0, 0, ("pin", "glue"))
     with pytest.raises(InvalidMechanism, match="one or some of"):
         recipe(0, 0, ())
     with pytest.raises(ValueError, match="no recipe"):

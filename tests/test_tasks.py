@@ -18,10 +18,10 @@ from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choo
 from reports.grid import fingerprint, stored_text
 from reports.grid.cells import Cell
 from reports.grid.outcomes import Outcome
+from reports.grid.pool import run_items
 from reports.grid.running import missing, run_into
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost
-from reports.grid.task_pool import run_tasks
 from reports.grid.tasks import Answer, Motion, Task, answered, trajectory_of
 from reports.pages.catalogue import PAGES
 from reports.pages.page import Failure, Material, Page
@@ -136,7 +136,7 @@ def test_a_task_killed_from_outside_is_told_and_not_stored(tmp_path):
 
 def test_a_second_try_is_told(tmp_path):
     task = Motion(Cell(Disc(), RoughToy("segfault once", folder=str(tmp_path)), 1))
-    [(_, answer)] = run_tasks([task])
+    [(_, answer)] = run_items([task])
     assert answer.finished
     assert "the second went through" in answer.sentence
 
@@ -272,5 +272,5 @@ def test_a_path_is_drawn_for_each_motion_that_was_kept():
 @pytest.mark.parametrize("engine", [pymunk.TUNED, mujoco.TUNED], ids=lambda engine: engine.name)
 def test_the_motion_of_an_engine_is_the_same_from_a_worker(engine):
     task = Motion(Cell(Disc(), engine, 3))
-    [(_, answer)] = run_tasks([task])
+    [(_, answer)] = run_items([task])
     assert np.array_equal(answer.array("pose"), answered(task).array("pose"))

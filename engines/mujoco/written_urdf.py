@@ -1,6 +1,7 @@
 """A mechanism as URDF: a tree of hinges and slides. URDF has no loops, springs or start; what it lacks is refused.
 
-What moves stands in URDF's own frame: x and y in the plane, z the axis of every hinge. Gravity is the simulator's.
+The plane stands upright, since simulators that read URDF have gravity along -z: the plane's x is URDF's x, its y is
+URDF's z, and every hinge turns about -y. URDF has no word for gravity; an element of MuJoCo's own tells MuJoCo.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ def urdf(mechanism: Mechanism) -> str:
     if mechanism.forces:
         raise Unsupported(f"force {mechanism.forces[0].name!r}: URDF has no springs and no applied forces")
     root = xml.Element("robot", {"name": "crosscheck"})
+    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
     xml.SubElement(root, "link", {"name": "world"})
     for link in tree.links:
         _add(root, mechanism, link)
@@ -42,7 +44,7 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
         raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
     element = xml.SubElement(root, "link", {"name": body.name})
     inertial = xml.SubElement(element, "inertial")
-    xml.SubElement(inertial, "origin", {"xyz": _row(-link.anchor[0], -link.anchor[1], 0.0), "rpy": "0 0 0"})
+    xml.SubElement(inertial, "origin", {"xyz": _row(*_upright(-link.anchor[0], -link.anchor[1])), "rpy": "0 0 0"})
     xml.SubElement(inertial, "mass", {"value": repr(float(body.mass))})
     tensor = {name: repr(float(body.inertia)) for name in ("ixx", "iyy", "izz")} | dict.fromkeys(
         ("ixy", "ixz", "iyz"), "0"
@@ -57,8 +59,8 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
     if link.parent is not None:
         base = _anchor(mechanism, link.parent)
         at = (at[0] - base[0], at[1] - base[1])
-    xml.SubElement(joint, "origin", {"xyz": _row(*at, 0.0), "rpy": "0 0 0"})
-    axis = (0.0, 0.0, 1.0) if link.kind == "hinge" else (*link.direction, 0.0)
+    xml.SubElement(joint, "origin", {"xyz": _row(*_upright(*at)), "rpy": "0 0 0"})
+    axis = (0.0, -1.0, 0.0) if link.kind == "hinge" else _upright(*link.direction)
     if link.kind != "weld":
         xml.SubElement(joint, "axis", {"xyz": _row(*axis)})
     if link.kind == "slot":
@@ -68,6 +70,11 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
 def _anchor(mechanism: Mechanism, body: int) -> tuple[float, float]:
     """The joint's point of a body's own link from its centre of mass, with world directions at the start [m]."""
     return next(link.anchor for link in spanning_tree(mechanism).links if link.body == body)
+
+
+def _upright(x: float, y: float) -> tuple[float, float, float]:
+    """A vector of the plane in URDF's frame."""
+    return (x, 0.0, y)
 
 
 def _row(*values: Any) -> str:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
+import numpy as np
 import pymunk
 from pymunk.constraints import PinJoint
 
 from engines import Unsupported
 from engines.pymunk.engine import Pymunk
+from reference.forces import Force, Torque
+from reference.joints import Skate
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
 
 
 def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str]:
@@ -63,14 +68,19 @@ def script(engine: Any, mechanism: Mechanism, dt: float) -> str:
     """
     if not isinstance(engine, Pymunk):
         raise Unsupported("this variant is made of several runs; a script has one: take default or tuned")
-    model = engine.model(mechanism, dt)
+    for joint in mechanism.joints:
+        if isinstance(joint, Roll | Skate):
+            what = "a roll is a contact of shapes there" if isinstance(joint, Roll) else "nothing holds a skate there"
+            raise Unsupported(f"joint {joint.name!r}: pymunk has no such joint, {what}; a script would be no mechanism")
+    steady = tuple(force for force in mechanism.forces if isinstance(force, Force | Torque))
+    model = engine.model(replace(mechanism, forces=tuple(each for each in mechanism.forces if each not in steady)), dt)
     if model.aims or model.repairs or engine.leapfrog:
         raise Unsupported("this variant needs code of ours before or after every step; its script would not be its own")
     if model.unit != 1:
         raise Unsupported("this variant counts time in steps, since a power of its error_bias would underflow")
-    if model.space.shapes:
-        raise Unsupported("shapes are not written")
     body = "\n    ".join(object_lines(model.space, model.bodies))
+    pushed = _push_lines(mechanism, steady, model.bodies)
+    again, push = ("\n        push(space)", "\n    push(space)") if pushed else ("", "")
     known = [f"b{number}.name = {name.name!r}" for number, name in enumerate(mechanism.bodies)]
     named = "\n    ".join(known)
     return f"""import pymunk
@@ -82,17 +92,54 @@ def make():
     space = pymunk.Space()
     space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {model.space.iterations}
     {body}
-    {named}
+    {named}{push}
     return space
-
+{pushed}
 
 if __name__ == "__main__":
     space = make()
     for number in range(round(1 / STEP) + 1):
         if number % max(1, round(0.1 / STEP)) == 0:
             poses = [(round(b.position.x, 6), round(b.position.y, 6), round(b.angle, 6)) for b in space.bodies]
-            print(f"{{number * STEP:.4f}} s", poses)
+            print(f"{{number * STEP:.4f}} s", poses){again}
         space.step(STEP)
+"""
+
+
+def _push_lines(mechanism: Mechanism, forces: Sequence[Force | Torque], bodies: Sequence[pymunk.Body]) -> str:
+    """A function that sets the constant forces and torques, which pymunk takes off after every step; or nothing."""
+    pushed = np.zeros((len(bodies), 3))
+    for force in forces:
+        if isinstance(force, Force):
+            if force.second_point != (0.0, 0.0):
+                raise Unsupported(
+                    f"force {force.name!r} acts off the centre of mass, where its moment turns with the body; that "
+                    "needs code before every step that no reader of a space could see"
+                )
+            pushed[mechanism.body_index(force.second), :2] += force.force
+        else:
+            for name, sign in ((force.first, -1.0), (force.second, 1.0)):
+                if name is not None:
+                    pushed[mechanism.body_index(name), 2] += sign * force.torque
+    lines = [
+        f"    {name.name!r}: ({tuple(each[:2].tolist())!r}, {float(each[2])!r}),"
+        for name, each, body in zip(mechanism.bodies, pushed, bodies, strict=True)
+        if each.any() and body.body_type == pymunk.Body.DYNAMIC
+    ]
+    if not lines:
+        return ""
+    told = "\n".join(lines)
+    return f"""
+
+# Forces [N] and torques [N m] by the body's name; pymunk takes them off after every step.
+PUSHED = {{
+{told}
+}}
+
+
+def push(space):
+    for body in space.bodies:
+        body.force, body.torque = PUSHED.get(body.name, ((0, 0), 0))
 """
 
 

@@ -50,7 +50,7 @@ class Cam(Curve):
         return np.arange(1.0, count + 1), cosines, sines
 
     def _series(self, normal: Array, order: int) -> Array:
-        """The derivative of the given order (-1: the integral) of the series without its constant."""
+        """The derivative of the given order of the series without its constant."""
         k, cosines, sines = self._harmonics
         phase = normal[..., None] * k + order * math.pi / 2
         return np.sum(k**order * (cosines * np.cos(phase) + sines * np.sin(phase)), axis=-1)
@@ -85,10 +85,11 @@ class Cam(Curve):
         return (1 / high[0], 1 / low[0])
 
     def arc_of(self, p: ArrayLike) -> Array:
-        normal = along(p)
-        start = np.zeros(1)
-        offset = self._series(start, -1)[0] + self._series(start, 1)[0]
-        return self.radius * normal + self._series(normal, -1) + self._series(normal, 1) - offset
+        # The integral of h + h'', in terms that vanish at the start one by one: a short arc keeps its digits.
+        normal, (k, cosines, sines) = along(p), self._harmonics
+        phase = normal[..., None] * k
+        terms = (1 / k - k) * (cosines * np.sin(phase) + 2 * sines * np.sin(0.5 * phase) ** 2)
+        return self.radius * normal + np.sum(terms, axis=-1)
 
     def parameter(self, arc: ArrayLike) -> Array:
         arc = along(arc)

@@ -14,6 +14,8 @@ from reference.curves.curve import Array, Curve, Vector, along
 from reference.numerics.monotone import solve_increasing
 from reference.validation import InvalidMechanism, Positive
 
+GUESSES = 257  # known places in half a turn: between them a cubic is right to 1e-9 and better unless it is very flat
+
 
 @dataclass(frozen=True)
 class Ellipse(Curve):
@@ -80,17 +82,28 @@ class Ellipse(Curve):
         # Reduced to half a turn, so that the root is found to the rounding of the fraction, not of the turns.
         half_turns = np.round(arc / (self.length / 2))
         rest = arc - half_turns * (self.length / 2)
-        mean = rest * (2 * math.pi / self.length)
-        n = (self.along_x - self.along_y) / (self.along_x + self.along_y)
-        guess = mean + np.clip(1.5 * n, -0.6, 0.6) / 2 * np.sin(2 * mean)
-        root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, guess, 1e-3)
+        root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
         return root + half_turns * math.pi
+
+    @cached_property
+    def _half_turn(self) -> tuple[Array, Array, Array]:
+        """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for guesses."""
+        u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)
+        return u, self.arc_of(u), self.speed_of(u)
+
+    def _guess(self, rest: Array) -> Array:
+        """Parameters (...) of arcs [m] within half a turn, by cubics between known ones: a beginning of a search."""
+        u, arcs, speeds = self._half_turn
+        before = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
+        width, part = arcs[before + 1] - arcs[before], rest - arcs[before]
+        x = np.clip(part / width, 0.0, 1.0)
+        first, second = width / speeds[before], width / speeds[before + 1]  # slopes of the inverse at both ends
+        step = u[1] - u[0]
+        return u[before] + x * (first + x * (3 * step - 2 * first - second + x * (first + second - 2 * step)))
 
     def parameter_at(self, angle: ArrayLike) -> Array:
         normal = along(angle) - math.pi / 2
-        a, b = self.along_x, self.along_y
-        sine, cosine = np.sin(normal), np.cos(normal)
-        return normal + np.arctan2((b - a) * sine * cosine, a * cosine**2 + b * sine**2)
+        return _unwrapped(np.arctan2(self.along_y * np.sin(normal), self.along_x * np.cos(normal)), normal)
 
     def point_of(self, p: ArrayLike) -> Array:
         u = along(p)
@@ -98,10 +111,13 @@ class Ellipse(Curve):
 
     def angle_of(self, p: ArrayLike) -> Array:
         u = along(p)
-        a, b = self.along_x, self.along_y
-        sine, cosine = np.sin(u), np.cos(u)
-        # The excess over a circle's tangent angle is less than a quarter turn: no principal value is ever crossed.
-        return u + math.pi / 2 + np.arctan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)
+        direction = np.arctan2(self.along_y * np.cos(u), -self.along_x * np.sin(u))
+        return _unwrapped(direction, u + math.pi / 2)
 
     def curvature_of(self, p: ArrayLike) -> Array:
         return self.along_x * self.along_y / self.speed_of(p) ** 3
+
+
+def _unwrapped(angle: Array, about: Array) -> Array:
+    """The angle (...) [rad] with as many turns as bring it within a quarter turn of `about`, as that of a circle is."""
+    return angle + 2 * math.pi * np.round((about - angle) / (2 * math.pi))

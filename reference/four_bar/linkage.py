@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, closed_form, difference
+from reference.four_bar import ranges
+from reference.four_bar.closed_form import Constants, Kinematics, OutOfReach, closed_form
 from reference.four_bar.forces import Densities, Forces, bar_forces
+from reference.four_bar.ranges import Interval
 from reference.four_bar.rate_integration import RateIntegration, integrate_rates
 from reference.joints import Vector
 from reference.plane import from_complex
 from reference.validation import InvalidMechanism, Positive, Sign, Signs, Valid, validated
-
-Interval = tuple[float, float]
 
 
 class Unreachable(ValueError):
@@ -145,18 +145,7 @@ class FourBar(Valid):
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
         """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
-        c = self._constants
-        # theta' = 2 atan(sqrt(ratio)) where U or W vanishes; exact differences keep the digits near a change point.
-        outer = 2 * math.atan2(math.sqrt(c.outer_near), math.sqrt(-c.outer_far)) if c.outer_far < 0 else None
-        inner = 2 * math.atan2(math.sqrt(-c.inner_near), math.sqrt(c.inner_far)) if c.inner_near < 0 else None
-        if outer is None and inner is None:
-            return None
-        if inner is None:
-            assert outer is not None
-            return ((c.heading - outer, c.heading + outer),)
-        if outer is None:
-            return ((c.heading + inner, c.heading + 2 * math.pi - inner),)
-        return ((c.heading - outer, c.heading - inner), (c.heading + inner, c.heading + outer))
+        return ranges.crank_limits(self._constants)
 
     def rocker_limits(self) -> tuple[Interval, ...] | None:
         """The intervals (low, high) of phi [rad] that the rocker reaches, up to whole turns; None if it turns fully.
@@ -168,21 +157,8 @@ class FourBar(Valid):
         return FourBar(self.rocker, self.coupler, self.crank, (-x, -y)).crank_limits()
 
     def grashof(self) -> str:
-        """The class by name, from the shortest bar s, the longest l and the others p, q.
-
-        s + l > p + q: triple-rocker (no bar turns fully). Equal up to the rounding of the lengths: change-point. Below:
-        double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; when
-        that is the rocker, it is the rocker that turns and the crank that swings.
-        """
-        bars = {"crank": self.crank, "coupler": self.coupler, "rocker": self.rocker, "ground": self.ground_length}
-        shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)
-        s, p, q, longest = (bars[name] for name in ranked)
-        excess = difference(s, longest, -p, -q)
-        if excess > 0:
-            return "triple-rocker"
-        if excess == 0:
-            return "change-point"
-        return {"ground": "double-crank", "coupler": "double-rocker"}.get(shortest, "crank-rocker")
+        """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point; see `ranges`."""
+        return ranges.grashof(*self.lengths, self.ground_length)
 
     @validated
     def transmission_angle(self, theta: ArrayLike, branch: Signs = 1) -> Any:
@@ -192,11 +168,7 @@ class FourBar(Valid):
 
     def transmission_extremes(self) -> tuple[float, float]:
         """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
-        c = self._constants
-        # tan^2 of the half angle is W / U, and grows with the distance from B to D.
-        low = 2 * math.atan2(math.sqrt(max(c.inner_near, 0)), math.sqrt(c.outer_near))
-        high = 2 * math.atan2(math.sqrt(c.inner_far), math.sqrt(max(c.outer_far, 0)))
-        return low, high
+        return ranges.transmission_extremes(self._constants)
 
     @validated
     def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:

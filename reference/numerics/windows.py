@@ -155,7 +155,7 @@ def _found(
 
 
 def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
-    """The Legendre polynomials of a step of length 1, integrated once and twice from 0 to `part` (times,): (times, n)."""
+    """The Legendre polynomials of a step, integrated once and twice from 0 to `part` (times,): (times, n)."""
     values = legendre(stages + 1, 2 * part - 1)
     once = _integrated(values)
     return once[:stages].T, _integrated(once)[:stages].T

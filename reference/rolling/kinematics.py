@@ -16,22 +16,8 @@ from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.rolling.contact import Contact
+from reference.rolling.fitting import first_fit, refuse_conformal, refuse_overlap
 from reference.validation import InvalidMechanism, Valid, validated
-
-# The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
-# of a double's sixteen digits are left in it, and a truth of fewer would be none.
-NEAR_CONFORMAL = 1e-9
-SCAN = 721  # places at which a pair that might be conformal somewhere is examined, once round
-
-
-def _hole(curve: Curve) -> tuple[Array, float] | None:
-    """Centre (2,) [m] and radius [m] of a ring, placed or not; None for any other curve."""
-    if isinstance(curve, Ring):
-        return np.asarray(curve.centre, dtype=float), curve.radius
-    inner = _hole(curve.curve) if isinstance(curve, Placed) else None
-    if inner is None or not isinstance(curve, Placed):
-        return None
-    return rotated(np.asarray(curve.turn), inner[0]) + np.asarray(curve.shift), inner[1]
 
 
 def _round(curve: Curve) -> float | None:
@@ -52,9 +38,9 @@ class Rolling(Valid):
     `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.
 
     Raises InvalidMechanism, saying where, if the tangents don't match at the start, if curvature_A + curvature_B isn't
-    positive (the curves would cut into each other) or falls below NEAR_CONFORMAL of the larger curvature, if a place
-    doesn't exist on a curve, and if a hole is too small for what is in it. Not checked: whether curves that are neither
-    convex nor a ring meet at a second place.
+    positive (the curves would cut into each other) or falls below `fitting.NEAR_CONFORMAL` of the larger curvature, if
+    a place doesn't exist on a curve, and if a hole is too small for what is in it. Not checked: whether curves that are
+    neither convex nor a ring meet at a second place.
     """
 
     body: Curve
@@ -72,9 +58,10 @@ class Rolling(Valid):
                 f"rolling: at theta = {self.theta!r} rad the curves cross at an angle of {mismatch:.3g} rad instead of "
                 "touching; the tangent angles must satisfy angle_A + pi = theta + angle_B"
             )
-        self._refuse_conformal(self._contact_at(np.asarray(self.theta), np.asarray(self._body_start)))
+        start = self._contact_at(np.asarray(self.theta), np.asarray(self._body_start))
+        refuse_conformal(start)
         if not self._apart_everywhere:
-            self._refuse_overlap(np.asarray(self.theta))
+            refuse_overlap(self.body, self.ground, start)
 
     @classmethod
     @validated
@@ -131,36 +118,10 @@ class Rolling(Valid):
         total = self.ground_arc + self.body_arc
         low, high = max(low, total - ground_high), min(high, total - ground_low)
         if not self._apart_everywhere:
-            low, high = self._stop(low, -1), self._stop(high, +1)
+            start = self.body, self.ground, self.body_arc, self.ground_arc
+            low, high = first_fit(*start, low, -1), first_fit(*start, high, +1)
         ends = (float(self.body.parameter(arc)) if math.isfinite(arc) else arc for arc in (low, high))
         return tuple(ends)  # type: ignore[return-value]
-
-    def _stop(self, end: float, side: int) -> float:
-        """The first body arc on one side of the start where the curvatures cancel, or the end [m]."""
-        period = self.body.length if not math.isfinite(self.ground.length) else self.body.length + self.ground.length
-        if not math.isfinite(end):
-            if not math.isfinite(period):
-                return end
-            reach = self.body_arc + side * period
-        else:
-            reach = end
-
-        def free(arc: ArrayLike) -> Array:
-            total = self.ground_arc + self.body_arc
-            body = self.body.curvature_of(self.body.parameter(arc))
-            ground = self.ground.curvature_of(self.ground.parameter(total - np.asarray(arc)))
-            with np.errstate(invalid="ignore"):  # at a pole, where rolling never ends
-                return ground + body - NEAR_CONFORMAL * np.maximum(np.abs(ground), np.abs(body))
-
-        arcs = np.linspace(self.body_arc, reach, SCAN)
-        blocked = np.flatnonzero(free(arcs) <= 0)
-        if blocked.size == 0:
-            return end
-        good, bad = float(arcs[max(blocked[0] - 1, 0)]), float(arcs[blocked[0]])
-        for _ in range(60):
-            middle = 0.5 * (good + bad)
-            good, bad = (middle, bad) if free(middle) > 0 else (good, middle)
-        return good
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -223,60 +184,14 @@ class Rolling(Valid):
             body_curvature=self.body.curvature_of(body_parameter),
         )
 
-    def _refuse_conformal(self, contact: Contact) -> None:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            near = ~(contact.conformality >= NEAR_CONFORMAL)
-        if np.any(near):
-            theta, arc, on_body, a, b = (
-                float(value[near].flat[0])
-                for value in (
-                    np.broadcast_to(contact.theta, near.shape),
-                    np.broadcast_to(contact.ground_arc, near.shape),
-                    np.broadcast_to(contact.body_arc, near.shape),
-                    contact.ground_curvature,
-                    contact.body_curvature,
-                )
-            )
-            raise InvalidMechanism(
-                f"rolling: at theta = {theta:.9g} rad (arc {arc:.9g} m of the ground, {on_body:.9g} m of the body) the "
-                f"curvatures are {a:.9g} and {b:.9g} 1/m; their sum must be positive, and above "
-                f"{NEAR_CONFORMAL:g} of the larger, else the curves cut into each other or fit so closely "
-                "that the contact has no place"
-            )
-
-    def _refuse_overlap(self, theta: Array) -> None:
-        """A closed curve inside a ring must lie inside it all round, not only at the contact."""
-        around, within = _hole(self.ground), _hole(self.body)
-        if around is not None and within is None and math.isfinite(self.body.length):
-            (centre, radius), other = around, self.body
-        elif within is not None and around is None and math.isfinite(self.ground.length):
-            (centre, radius), other = within, self.ground
-        else:
-            return
-        rim = other.point(np.linspace(0, other.length, SCAN))
-        contact = self._contact_at(theta, self._body_parameter(theta))
-        origin = contact.point + contact.arm
-        if other is self.body:
-            world = rotated(theta[..., None], rim) + origin[..., None, :]
-        else:
-            world = rotated(-theta[..., None], rim - origin[..., None, :])
-        excess = np.linalg.norm(world - centre, axis=-1).max(axis=-1) - radius
-        if np.any(excess > 1e-9 * radius):
-            worst = np.unravel_index(int(np.argmax(excess)), excess.shape)
-            raise InvalidMechanism(
-                f"rolling: at theta = {float(theta[worst]):.9g} rad the curve inside the ring of radius "
-                f"{radius:g} m reaches {float(excess[worst]):.3g} m beyond it; "
-                "the ring must be larger than its roller everywhere"
-            )
-
     @validated
     def contact(self, theta: ArrayLike) -> Contact:
         """The contact on both curves at rotations theta (...) [rad]."""
         theta = np.asarray(theta, dtype=float)
         contact = self._contact_at(theta, self._body_parameter(theta))
-        self._refuse_conformal(contact)
+        refuse_conformal(contact)
         if not self._apart_everywhere:
-            self._refuse_overlap(theta)
+            refuse_overlap(self.body, self.ground, contact)
         return contact
 
     @validated

@@ -12,40 +12,13 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
+from reports.charts.outlines import body_points, ground_points
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 Array = NDArray[np.float64]
 
 # A method's pose is drawn over the truth only where a point of it is off by this part of the picture: a line's width.
 VISIBLE = 5e-3
-
-
-def body_points(mechanism: Mechanism, pose: Array) -> dict[str, Array]:
-    """World points (points, 2) [m] of each body's joints, in the order of the joints, for one pose (bodies, 3)."""
-    own: dict[str, list[tuple[float, float]]] = {body.name: [] for body in mechanism.bodies}
-    for joint in mechanism.joints:
-        for name, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
-            point = getattr(joint, attribute, None)
-            if name is not None and point is not None and point not in own[name]:
-                own[name].append(point)
-    out = {}
-    for name, points in own.items():
-        x, y, angle = pose[mechanism.body_index(name)]
-        local = np.array(points, dtype=float).reshape(-1, 2)
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        out[name] = local @ turn.T + (x, y)
-    return out
-
-
-def ground_points(mechanism: Mechanism) -> Array:
-    """World points (points, 2) [m] at which joints hold to the ground."""
-    points = [
-        getattr(joint, attribute)
-        for joint in mechanism.joints
-        for name, attribute in ((joint.first, "first_point"), (joint.second, "second_point"))
-        if name is None and hasattr(joint, attribute)
-    ]
-    return np.array(list(dict.fromkeys(points)), dtype=float).reshape(-1, 2)
 
 
 def draw_pose(panel: Axes, mechanism: Mechanism, pose: Array, **line: Any) -> None:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reports.charts.drawings import body_points, draw_ground
+from reports.charts.drawings import draw_ground
+from reports.charts.outlines import body_points
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 Array = NDArray[np.float64]

@@ -111,6 +111,8 @@ def refuse_disagreement(reading: Reading) -> float:
                 f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
                 f"agree without '{element}': it acts at the start, and in no ideal joint; give --without {element}"
             )
+    for element, reason in model.suspects.items():
+        raise Unsupported(f"{element}: {reason}; at t = 0 the accelerations are wrong by {off:.1g} of themselves")
     size = np.abs(found - expected) * [1.0, 1.0, mechanism.length_scale]
     body = mechanism.bodies[int(np.argmax(size.max(axis=1)))].name
     raise Unsupported(

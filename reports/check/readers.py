@@ -25,4 +25,4 @@ def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", st
     for reader in known:
         if reader.reads(word):
             return reader.read(word, folder, without, key, step)
-    raise ValueError(f"{word} is no model; give {' or '.join(reader.words for reader in known)}")
+    raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in known)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Sequence
 from html import escape
 
@@ -13,7 +14,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto
 table { border-collapse: collapse; margin: 1rem 0 }
 th, td { text-align: left; padding: .25rem .75rem; border-bottom: 1px solid #8886 }
 pre { padding: .75rem; border: 1px solid #8886; overflow-x: auto }
-svg { max-width: 100%; height: auto }
+img { max-width: 100%; height: auto }
 """
 
 
@@ -64,8 +65,10 @@ def html(name: str, sections: Sequence[Section]) -> str:
             )
             parts.append(f"<table><tr>{head}</tr>{rows}</table>")
         if section.picture is not None:
-            drawing = section.picture[1]
-            parts.append(drawing[drawing.index("<svg") :])
+            # An image of its own: as elements of this page two drawings would share the names of their clips.
+            title, drawing = section.picture
+            data = base64.b64encode(drawing.encode()).decode()
+            parts.append(f'<img alt="{escape(title)}" src="data:image/svg+xml;base64,{data}">')
     body = "\n".join(parts)
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(name)}</title>'

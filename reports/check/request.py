@@ -13,9 +13,10 @@ from typing import Any
 from engines import Unsupported
 from reference.validation import InvalidMechanism
 from reports.check.checked import check
+from reports.check.numbers import data
 from reports.check.readers import read
 from reports.check.shown import shown_of
-from reports.check.telling import Section, data, sections, verdict
+from reports.check.telling import Section, sections, verdict
 
 
 @dataclass(frozen=True)

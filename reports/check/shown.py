@@ -12,6 +12,7 @@ from reference.forces import Spring
 from reference.joints import Rod, Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
+from reports.charts.outlines import body_points, ground_points
 from reports.check.checked import Checked
 from reports.check.comparing import QUANTITIES, Errors
 from reports.check.settings import Tried
@@ -76,7 +77,7 @@ def shown_of(found: Checked, advised: Tried | None = None) -> Shown:
         None if other is None else _curves(other, known),
         found.judge.horizon if found.judge.horizon < found.duration else None,
         float(own.t[sample]),
-        _ground(mechanism),
+        ground_points(mechanism).tolist(),
         _pose(mechanism, found.judge.trajectory.pose[sample]),
         _pose(mechanism, found.own.pose[sample]),
     )
@@ -84,17 +85,6 @@ def shown_of(found: Checked, advised: Tried | None = None) -> Shown:
 
 def _curves(errors: Errors, known: list[str]) -> Curves:
     return {quantity: errors.of[quantity].tolist() for quantity in known}
-
-
-def _ground(mechanism: Mechanism) -> list[list[float]]:
-    """Points (points, 2) [m] at which joints hold to the ground."""
-    points = [
-        getattr(joint, attribute)
-        for joint in mechanism.joints
-        for name, attribute in ((joint.first, "first_point"), (joint.second, "second_point"))
-        if name is None and hasattr(joint, attribute)
-    ]
-    return [list(map(float, point)) for point in dict.fromkeys(points)]
 
 
 def _pose(mechanism: Mechanism, pose: Array) -> Pose:
@@ -116,18 +106,12 @@ def _pose(mechanism: Mechanism, pose: Array) -> Pose:
 
 def _bars(mechanism: Mechanism, pose: Array) -> Lines:
     """Every body as a bar through its joints; one with a single joint reaches to its centre of mass."""
-    bars = []
-    for body in mechanism.bodies:
-        points = {
-            getattr(joint, which)
-            for joint in mechanism.joints
-            for name, which in ((joint.first, "first_point"), (joint.second, "second_point"))
-            if name == body.name and hasattr(joint, which)
-        }
-        if len(points) < 2:
-            points.add((0.0, 0.0))
-        bars.append([_place(mechanism, pose, body.name, point).tolist() for point in sorted(points)])
-    return bars
+    found = body_points(mechanism, pose)
+    centres = [pose[mechanism.body_index(name)][:2] for name in found]
+    return [
+        (points if len(points) > 1 else np.vstack([points, centre])).tolist()
+        for points, centre in zip(found.values(), centres, strict=True)
+    ]
 
 
 def _place(mechanism: Mechanism, pose: Array, name: str | None, point: tuple[float, float]) -> Array:

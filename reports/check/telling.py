@@ -1,16 +1,16 @@
-"""What a check found, in sections of sentences, tables, lines to copy and pictures; and as plain data."""
+"""What a check found, in sections of sentences, tables, lines to copy and pictures."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from reports.check.checked import Checked
 from reports.check.comparing import QUANTITIES, UNITS
 from reports.check.settings import Tried
 
 MOST_NAMED = 6
+ROUNDING = 1e-12  # of a radian, and of the mechanism's length
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def _read(found: Checked) -> Section:
     configuration, velocity = facts.freedoms
     sentences = [
         f"{found.name}: {facts.bodies} bodies, {facts.joints} joints ({facts.rows} rows), {facts.forces} force "
-        f"elements; {velocity} freedoms by the rank of the rows"
+        f"elements; {velocity} freedom{'' if velocity == 1 else 's'} by the rank of the rows"
         + (f" ({configuration} of configuration)." if configuration != velocity else "."),
         f"At t = 0 the accelerations of {reading.model.engine} and of the judge agree to {found.agreement:.1g} of "
         "themselves" + (", with the softness that the engine declares." if reading.model.softly_held else "."),
@@ -145,7 +145,7 @@ def _read(found: Checked) -> Section:
     else:
         sentences.append(f"Small errors grow {growth:.2g} times in {found.duration:g} s, which is not exponential.")
     for note in reading.notes:
-        sentences.append(f"Left out: {note.element}: {note.reason}.")
+        sentences.append(f"Note: {note.element}: {note.reason}.")
     rows = tuple((name, value) for name, value in reading.model.settings.items())
     return Section("What was read", tuple(sentences), ("your setting", "value"), rows)
 
@@ -186,7 +186,8 @@ def _parts(found: Checked) -> tuple[str, ...]:
     else:
         out.append("Softness: none. The joints are coordinates here, which can't part.")
     if math.isfinite(parts.step):
-        out.append(f"Step: your run is off that declared motion by {number(parts.step)}.")
+        motion = "that declared motion" if model.softly_held else "the ideal motion"
+        out.append(f"Step: your run is off {motion} by {number(parts.step)}.")
     else:
         out.append("Step: your run gave up, so its part has no number.")
     if math.isfinite(parts.rest):
@@ -204,6 +205,8 @@ def _opening(found: Checked) -> tuple[str, ...]:
     opens = found.opens
     if opens is None:
         return ()
+    if opens.gap < ROUNDING * (found.facts.length if opens.unit == "m" else 1.0):
+        return ("No joint opens by more than rounding.",)
     return (f"The joint that opens most is {opens.row}: {number(opens.gap)} {opens.unit} at {opens.t:.3g} s.",)
 
 
@@ -227,55 +230,3 @@ def _table(found: Checked) -> Section:
         "alone, on this machine.",
     )
     return Section("What to change", sentences, header, tuple(row(each) for each in found.table))
-
-
-def data(found: Checked) -> dict[str, Any]:
-    """All numbers of the report, for other programs."""
-
-    def plain(value: Any) -> Any:
-        if isinstance(value, float) and not math.isfinite(value):
-            return None
-        if isinstance(value, dict):
-            return {key: plain(each) for key, each in value.items()}
-        if isinstance(value, tuple | list):
-            return [plain(each) for each in value]
-        return value
-
-    def setting(each: Tried | None) -> Any:
-        if each is None:
-            return None
-        return {
-            "words": each.change.words,
-            "step": each.change.dt,
-            "error": each.error,
-            "reaction": each.errors.worst("reaction"),
-            "cpu": each.cost,
-            "lines": list(each.change.lines),
-        }
-
-    own, judge = found.own_errors, found.judge_errors
-    return plain(
-        {
-            "name": found.name,
-            "engine": found.reading.model.engine,
-            "duration": found.duration,
-            "tolerance": found.tolerance,
-            "met": found.met,
-            "error": own.largest,
-            "facts": asdict(found.facts),
-            "horizon": found.judge.horizon,
-            "growth": float(found.judge.growth[-1]),
-            "agreement_at_start": found.agreement,
-            "notes": [asdict(note) for note in found.reading.notes],
-            "settings": dict(found.reading.model.settings),
-            "errors": {quantity: own.worst(quantity) for quantity in QUANTITIES},
-            "judge_errors": {quantity: judge.worst(quantity) for quantity in QUANTITIES},
-            "over_time": {"t": own.t.tolist(), **{name: values.tolist() for name, values in own.of.items()}},
-            "parts": asdict(found.parts),
-            "opening": None if found.opens is None else asdict(found.opens),
-            "warnings": list(found.own.warnings),
-            "tried": [setting(each) for each in found.table],
-            "advised": setting(found.advised),
-            "next_decade": setting(found.decade),
-        }
-    )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, Folder, Scheduler
+from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers
 from reports.grid.ending import BadInput
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ ATLAS = "atlas"  # the folder with what is stored of it
 def atlas(
     scenes: Annotated[str | None, typer.Option(help="Maps by name, with commas between; all if none is named.")] = None,
     points: Annotated[int, typer.Option(min=2, max=200, help="Of a map, along each side.")] = 40,
-    workers: Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")] = None,
+    workers: Workers = None,
     scheduler: Scheduler = None,
     results: Folder = FOLDER,
     publish: Annotated[

@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
-from reports.cli.options import Scenes
+from typing import Annotated
+
+import typer
+
+from reports.cli.options import Scenes, Workers
 from reports.cli.terminal import Terminal, print_table
 
+SUITE = "suite"  # instead of scenes, or before them
 
-def bench(scene: Scenes = None) -> None:
-    """Time `run` against bare stepping loops, and the reference against another library; prints, asserts nothing."""
+
+def bench(
+    scene: Scenes = None,
+    full: Annotated[bool, typer.Option("--full/--quick", help="`bench suite`: of the full grid.")] = False,
+    workers: Workers = None,
+) -> None:
+    """Time `run` against bare stepping loops, and the reference against another library; prints, asserts nothing.
+
+    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into.
+    """
+    if scene and scene[0] == SUITE:
+        from reports.cli.bench_suite import bench_suite
+
+        bench_suite(scene[1:], full, workers)
+        return
     from engines.registry import ENGINES
     from reports.bench import four_bar
     from reports.bench.loops import loop_costs

@@ -50,13 +50,13 @@ def compare(
     results: Folder = FOLDER,
 ) -> None:
     """Tell what changed in error, order, outcome and cost from A to B; status 1 if an error became 3 times as large."""
-    from engines.registry import VARIANTS
+    from engines.registry import OTHERS, VARIANTS
     from reports.cli.selection import nearest
     from reports.cli.terminal import Terminal
     from reports.cli.versions import named_scenes
     from reports.versions.comparison import compared
 
-    engines = VARIANTS if engine is None else _named(engine)
+    engines = (*VARIANTS, *OTHERS) if engine is None else _named(engine)
     sides = [_side(word, engine, engines) for word in (first, second)]
     if sides[0].engine != sides[1].engine:
         raise BadInput(f"{first} is of {sides[0].engine}, and {second} of {sides[1].engine}; give two of one engine")
@@ -87,11 +87,11 @@ def compare(
 def _named(word: str) -> tuple[Engine, ...]:
     """The engines of a name or of a reference. Raises BadInput."""
     from engines.loading import is_reference
-    from engines.registry import VARIANTS, load
+    from engines.registry import OTHERS, VARIANTS, load
     from reports.cli.selection import choose_engines
 
     if not is_reference(word):
-        return choose_engines(word, None, VARIANTS)
+        return choose_engines(word, None, (*VARIANTS, *OTHERS))
     try:
         return load(word)
     except ValueError as error:

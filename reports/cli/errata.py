@@ -38,11 +38,11 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.grid.task_pool import run_tasks
+        from reports.grid.pool import run_items
         from reports.pages.errata.errata_engines import TASKS, rulings
         from reports.text.tables import number as short
 
-        found = dict(run_tasks(TASKS))
+        found = dict(run_items(TASKS))
         lost: list[str] = []
         units = {slip.number: slip.unit for slip in ERRATA}
         said = [

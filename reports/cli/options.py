@@ -25,6 +25,7 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Another value for a number of the scene (repeatable)."),
 ]
+Workers = Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")]
 Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", help="Run on a Dask cluster: tcp://HOST:PORT of its scheduler, or local:N workers."),

@@ -10,7 +10,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, EngineName, Folder, Scenes, Scheduler, Settings, VariantName, with_folder
+from reports.cli.options import (
+    FOLDER,
+    STORE,
+    EngineName,
+    Folder,
+    Scenes,
+    Scheduler,
+    Settings,
+    VariantName,
+    Workers,
+    with_folder,
+)
 from reports.grid.ending import BadInput
 
 if TYPE_CHECKING:
@@ -32,11 +43,12 @@ def run(
     every: Annotated[list[int] | None, typer.Option(help="Only this many steps between samples (repeatable).")] = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
+    workers: Workers = None,
     scheduler: Scheduler = None,
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
-    from reports.cli.elsewhere import elsewhere
+    from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal
@@ -55,7 +67,7 @@ def run(
         if store.notice:
             print(f"crosscheck: {store.notice}", file=sys.stderr)
         store.remember(each.text() for each in known.given)
-        count = run_interruptible(console, store, items, fresh, limit, crew)
+        count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
         print_summary(console, list(store.get(cells).values()))
     following = with_folder("crosscheck report", results)
     console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
@@ -69,20 +81,20 @@ def run_interruptible(
     limit: float,
     crew: Workforce | None = None,
 ) -> int:
-    """Run cells and tasks with a bar of progress, by this machine's pool or by `crew`; how many were run.
+    """Run cells and tasks with a bar of progress, by `crew` or all processors; how many were run.
 
     Raises KeyboardInterrupt, having said what is stored.
     """
+    from reports.cli.elsewhere import pool
     from reports.cli.terminal import progress
     from reports.grid.running import missing, run_into
-    from reports.grid.supervisor import supervise
 
-    by = crew.supervise if crew else supervise
+    by = crew or pool(None)
     with kept() as check:
         waiting = len(items) if fresh else len(missing(items, store, limit))
         try:
             with progress(console, waiting, check) as (done, watch):
-                count = run_into(store, items, fresh, limit, done=done, watch=watch, supervised=by)
+                count = run_into(store, items, fresh, limit, by.threads, done, watch, supervised=by.supervise)
             check()
         except KeyboardInterrupt:
             stored = len(items) - len(missing(items, store, limit))

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, SEARCH, STORE, EngineName, Folder, Scheduler, VariantName, with_folder
+from reports.cli.options import (
+    FOLDER,
+    SEARCH,
+    STORE,
+    EngineName,
+    Folder,
+    Scheduler,
+    VariantName,
+    Workers,
+    with_folder,
+)
 from reports.grid.ending import BadInput
 
 if TYPE_CHECKING:
@@ -40,7 +50,7 @@ def search(
     release: Annotated[
         str | None, typer.Option(help="MuJoCo alone in this release, as 3.6.0: installed once, in the user's cache.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")] = None,
+    workers: Workers = None,
     scheduler: Scheduler = None,
     results: Folder = FOLDER,
 ) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 
 from engines import Engine
 from reference.scene import Scene
@@ -16,16 +17,22 @@ from reports.pages.page import Page
 
 # A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
 QUICK_CELL = 0.1
+NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
 
-def nearest(kind: str, word: str, known: Iterable[str]) -> BadInput:
-    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not."""
-    names = {name.lower(): name for name in known}
+def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
+    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not.
+
+    `absent`: names that are known and can't be had here, each with the sentence that says how they can.
+    """
+    names = {name.lower(): name for name in (*known, *absent)}
     low = word.lower()
     near = difflib.get_close_matches(low, names, 1, 0.4)
     if not near:
         near = [name for name in names if low and (low in name or name in low)][:1]
     hint = f"did you mean {names[near[0]]!r}?" if near else f"there are {', '.join(names.values())}"
+    if near and names[near[0]] in absent:
+        hint += f" {absent[names[near[0]]]}"
     return BadInput(f"unknown {kind} {word!r}: {hint}")
 
 
@@ -51,7 +58,7 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
             raise BadInput(ABSENT[engine])
         chosen = tuple(e for e in chosen if e.name == engine)
         if not chosen:
-            raise nearest("engine", engine, (e.name for e in engines))
+            raise nearest("engine", engine, (e.name for e in engines), ABSENT)
     if variant is not None:
         found = tuple(e for e in chosen if e.variant == variant)
         if not found:

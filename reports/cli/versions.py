@@ -24,7 +24,7 @@ DATA = "versions.csv"
 
 
 def versions(
-    engine: Annotated[str | None, typer.Argument(help="An engine by name: mujoco or pymunk.")] = None,
+    engine: Annotated[str | None, typer.Argument(help="An engine by name, such as mujoco.")] = None,
     version: Annotated[list[str] | None, typer.Argument(help="Its versions, such as 3.6.0.")] = None,
     scenes: Annotated[
         list[str] | None, typer.Option("--scenes", help="Only these scenes (repeatable, or with commas).")
@@ -37,7 +37,7 @@ def versions(
     results: Folder = FOLDER,
 ) -> None:
     """Run scenes in released versions of an engine; each is installed once, in the user's cache folder."""
-    from engines.registry import VARIANTS
+    from engines.registry import OTHERS, VARIANTS
     from reports.cli.report import published, refuse_outside_a_checkout
     from reports.cli.terminal import Terminal
     from reports.grid.files import write_whole
@@ -54,7 +54,7 @@ def versions(
     with kept() as check:
         table = read(Path(results) / DATA) if everything else None
         for name, numbers in asked.items():
-            engines = [each for each in VARIANTS if each.name == name]
+            engines = [each for each in (*VARIANTS, *OTHERS) if each.name == name]
             found = []
             for number in numbers:
                 try:
@@ -79,7 +79,7 @@ def versions(
 
 def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:
     """Engine -> versions. Raises BadInput for words that don't go together, or are not known."""
-    from engines.registry import VARIANTS
+    from engines.registry import OTHERS, VARIANTS
     from reports.versions.catalogue import VERSIONS, distributions
 
     if everything:
@@ -88,7 +88,7 @@ def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything:
         return dict(VERSIONS)
     if engine is None:
         raise BadInput("name an engine and versions, such as: crosscheck versions mujoco 3.6.0 4.0.1; or give --all")
-    distributions(VARIANTS, engine)
+    distributions((*VARIANTS, *OTHERS), engine)
     if not numbers:
         known = " ".join(VERSIONS.get(engine, ()))
         raise BadInput(f"name versions of {engine}" + (f", such as {known}" if known else ""))

@@ -12,7 +12,7 @@ from engines import Engine
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.validation import Count, Valid
-from reports.grid.fingerprint import fingerprint
+from reports.grid.fingerprint import digest_of, fingerprint, modules_behind
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
@@ -52,6 +52,11 @@ class Cell(Valid):
         return self.scene.duration / self.sample_count / self.every
 
     @property
+    def kin(self) -> Scene:
+        """Cells of a scene share its exact motion (`reports.grid.waiting`)."""
+        return self.scene
+
+    @property
     def label(self) -> str:
         return f"{self.scene.name} / {self.engine.name} {self.engine.variant} / {self.step:.1e} s"
 
@@ -71,6 +76,13 @@ class Cell(Valid):
             fingerprint(self.scene, self.engine),
         )
         return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
+
+    @cached_property
+    def truth(self) -> str:
+        """A digest of all that the scene's exact motion depends on, but for the instants (`reports.grid.truths`)."""
+        sources = digest_of(frozenset(modules_behind(self.scene)))
+        parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
 
 
 def estimated_cost(cell: Cell) -> float:

@@ -23,8 +23,9 @@ from itertools import count
 from typing import Any
 
 from reports.grid import foreman
-from reports.grid.cells import Cell, estimated_cost
+from reports.grid.cells import Cell
 from reports.grid.ending import BadInput
+from reports.grid.expected import expected_seconds
 from reports.grid.fingerprint import digest_of, modules_of, versions_of
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.supervisor import TICK, Answer, Watch, WorkersLost, wall_limit
@@ -37,7 +38,6 @@ FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
 ANSWERS_WITHIN = 10.0  # s for a scheduler to answer
 WORKERS_WITHIN = 120.0  # s for a worker to be there
 CHUNK = 0.3  # s that a chunk should take: much more than sending one, much less than waiting for the last
-LEAST = 3e-3  # s that a cell takes besides stepping, before anything is known
 MOST_ITEMS = 200  # of a chunk
 AHEAD = 2  # chunks for each thread: one runs, one waits beside it
 MOST_TRIES = 5  # of a chunk of which a foreman, or several workers one after the other, ended
@@ -50,11 +50,6 @@ class Chunk:
     items: tuple[Any, ...]
     estimate: float
     tries: int = 0
-
-
-def expected_cost(item: Any) -> float:
-    """Seconds that a cell or a task may take; what is learned of earlier ones corrects it."""
-    return LEAST + (estimated_cost(item) if isinstance(item, Cell) else float(getattr(item, "cost", 0.0)))
 
 
 @contextmanager
@@ -136,17 +131,18 @@ class Cluster:
         workers: int | None = None,
         watch: Watch | None = None,
         wall: float | None = None,
+        alone: bool = False,
     ) -> Iterator[Answer]:
         """Yield (item, result or Loss, note), each once, in no order, as `reports.grid.supervisor.supervise` does.
 
-        `workers` is not used: the cluster has as many as it has. Raises WorkersLost if there are none for long, and
-        BadInput if one has other versions.
+        `workers` and `alone` are not used: the cluster has the workers that it has. Raises WorkersLost if there are
+        none for long, and BadInput if one has other versions.
         """
         wall = wall_limit(limit) if wall is None else wall
         paths = tuple(path for path in sys.path if path)
         send = _Sender(self._client, pickle.dumps(function), limit, wall, paths, self._numbers)
         waiting = deque(items)
-        costs = deque(expected_cost(item) for item in waiting)
+        costs = deque(expected_seconds(item) for item in waiting)
         left, slowness = sum(costs), 1.0  # seconds by estimate; what one of them takes
         again: deque[Chunk] = deque()
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,9 @@ from reference.trajectory import Trajectory
 from reports.grid.cells import Cell, mechanism_of
 from reports.grid.errors import branch_flips, constraint_errors, motion_errors, usable_samples
 from reports.grid.outcomes import Outcome
+from reports.grid.spending import spending
 from reports.grid.timing import process_seconds, repeated_stepping
+from reports.grid.truths import kept_motion
 
 NAN = float("nan")
 
@@ -103,20 +106,23 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
     )
 
 
-def _truth(cell: Cell, t: Floats) -> Trajectory:
-    """The scene's motion at an engine's instants t (times,) [s].
+def _truth(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
+    """The scene's motion at an engine's instants t (times,) [s], kept in a folder (`reports.grid.truths`).
 
     Engines that take other steps meet the same instants but for rounding, and then share one motion: a motion moves by
     no more than its own rounding meanwhile.
     """
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
-    return _motion(cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes())
+    with spending("truth"):
+        return _motion(
+            cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes(), cell.truth, folder
+        )
 
 
-@lru_cache(maxsize=128)  # of the scenes of a run, each worker knows the motions of all: some take seconds
-def _motion(scene: Scene, instants: bytes) -> Trajectory:
-    return scene.motion(np.frombuffer(instants))
+@lru_cache(maxsize=128)
+def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
+    return kept_motion(scene, np.frombuffer(instants), name, folder)
 
 
 @lru_cache(maxsize=128)
@@ -124,8 +130,8 @@ def _own_freedoms(scene: Scene) -> int:
     return mechanism_of(scene).degrees_of_freedom()[0]
 
 
-def measure(cell: Cell, repeat: bool = True) -> Measurement:
-    """Build, run, compare and time one cell, in this process.
+def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
+    """Build, run, compare and time one cell, in this process. `truths`: the folder of exact motions, if there is one.
 
     Refusals and what the engine itself reports become outcomes; other exceptions pass (the pool records them).
     """
@@ -133,16 +139,20 @@ def measure(cell: Cell, repeat: bool = True) -> Measurement:
     with np.errstate(all="ignore"):
         try:
             mechanism = mechanism_of(cell.scene)
-            build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
+            with spending("building"):
+                build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
             row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
-            trajectory = run(cell.sample_count, cell.every)
+            with spending("stepping"):
+                trajectory = run(cell.sample_count, cell.every)
         except Unsupported as reason:
             return replace(row, outcome=Outcome.UNSUPPORTED, sentence=str(reason))
         except ValueError as reason:
             return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
-        row = compare(cell, mechanism, trajectory, row)
+        with spending("comparing"):
+            row = compare(cell, mechanism, trajectory, row, truths)
         if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:
-            cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
+            with spending("timing again"):
+                cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
         else:
             cpu, runs = trajectory.stepping, 1
     return replace(row, cpu=cpu / cell.scene.duration, runs=runs, build=build)
@@ -159,7 +169,9 @@ def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
     }
 
 
-def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement) -> Measurement:
+def compare(
+    cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement, truths: Path | None = None
+) -> Measurement:
     """Fill a row with errors and its outcome."""
     trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
     count = usable_samples(trajectory)
@@ -178,7 +190,7 @@ def compare(cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measu
         told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
         return replace(row, outcome=Outcome.REFUSED, sentence=told)
     try:
-        truth = _truth(cell, finite.t)
+        truth = _truth(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
     except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from reports.grid.cells import Cell
+from reports.grid.files import folder_for
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
-from reports.grid.pool import TIME_LIMIT, run_cells, worker_count
-from reports.grid.store import Store
+from reports.grid.pool import TIME_LIMIT, run_items, worker_count
+from reports.grid.store import ELSEWHERE, Store
 from reports.grid.supervisor import Supervise, WorkersLost, supervise
-from reports.grid.task_pool import run_tasks
 from reports.grid.tasks import Answer, Task
+from reports.grid.truths import FOLDER
 
 Item = TypeVar("Item", bound=Cell | Task)
 
@@ -48,25 +49,23 @@ def run_into(
     timed: bool = True,
     supervised: Supervise = supervise,
 ) -> int:
-    """Run what is missing (everything if fresh), cells first; store each result as it arrives; how many were run.
+    """Run what is missing (everything if fresh), the dearest first; store each result as it arrives; how many were run.
 
     An interruption passes through, with the results so far stored. What was killed from outside is not stored; when all
     others are done, WorkersLost is raised, with one line about it.
     """
     waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
     lost: list[str] = []
-    for row in run_cells(_cells(waiting), limit, workers, watch, timed, supervised=supervised):
-        if row.outcome == Outcome.LOST:
-            lost.append(f"{row.scene} in {row.method} at {row.step:.1e} s: {row.sentence}")
+    # Its whole path: workers have folders of their own.
+    truths = folder_for(store.path.parent.resolve() / FOLDER, ELSEWHERE) if waiting else None
+    for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
+        if result.outcome == Outcome.LOST:
+            lost.append(f"{item.label}: {result.sentence}")
+        elif isinstance(item, Cell):
+            store.put(result)
         else:
-            store.put(row)
-        done(row)
-    for task, answer in run_tasks(_tasks(waiting), limit, workers, watch, supervised):
-        if answer.outcome == Outcome.LOST:
-            lost.append(f"{task.label}: {answer.sentence}")
-        else:
-            store.put_answer(task, answer)
-        done(answer)
+            store.put_answer(item, result)
+        done(result)
     if lost:
         raise WorkersLost(f"{len(lost)} of {len(waiting)} cells are lost, the others are stored; the first: {lost[0]}")
     return len(waiting)

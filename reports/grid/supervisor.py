@@ -32,6 +32,8 @@ from typing import Any
 
 from reports.grid.ending import Broken
 from reports.grid.outcomes import Loss, Outcome, describe_exit, from_outside
+from reports.grid.processors import apart
+from reports.grid.waiting import Waiting
 from reports.grid.worker import READY, SPENT, cpu_time, describe, timed_out
 from reports.grid.worker_process import Job, Worker, interrupts_held, last_words, start_worker
 
@@ -51,13 +53,6 @@ class WorkersLost(Broken):
     """Something outside kills the workers: work is left that can be done at another time."""
 
 
-def usable_cores() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def wall_limit(limit: float) -> float:
     """Seconds of wall time for `limit` seconds of CPU time: a machine ten times overloaded is still waited for."""
     return 10 * limit + 60
@@ -70,27 +65,30 @@ def supervise(
     workers: int,
     watch: Watch | None = None,
     wall: float | None = None,
+    alone: bool = False,
 ) -> Iterator[Answer]:
     """Yield (item, result or Loss, note) as they are done, in no order; note: how an earlier try of it aborted.
 
     `function` must be importable by its name. `limit`: CPU seconds for one item, all threads together; `wall`: seconds
     for one that does not use its CPU time, `wall_limit` if None. `watch` is told a few times a second which items are
-    running. Raises WorkersLost when no worker can be started. Leaving the iterator ends the workers.
+    running. `alone`: each worker stays on a processor of its own (`reports.grid.processors.apart`), as far as there are
+    so many. Items that are akin go to one worker (`reports.grid.waiting`). Raises WorkersLost when no worker can be
+    started. Leaving the iterator ends the workers.
     """
-    with crew(limit, workers, wall) as own:
+    with crew(limit, workers, wall, alone) as own:
         own.give(function, items)
         yield from own.answers(watch)
 
 
 @contextmanager
-def crew(limit: float, workers: int, wall: float | None = None) -> Iterator[Crew]:
+def crew(limit: float, workers: int, wall: float | None = None, alone: bool = False) -> Iterator[Crew]:
     """Workers for one function after another; see `supervise`. Leaving it ends them."""
     # CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting.
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
         wall = wall_limit(limit) if wall is None else wall
-        own = Crew(limit, wall, min(workers, MOST_WORKERS), Path(folder))
+        own = Crew(limit, wall, min(workers, MOST_WORKERS), Path(folder), apart() if alone else ())
         try:
             yield own
         finally:
@@ -100,10 +98,11 @@ def crew(limit: float, workers: int, wall: float | None = None) -> Iterator[Crew
 class Crew:
     """Workers, and the jobs that they have not answered yet."""
 
-    def __init__(self, limit: float, wall: float, most: int, folder: Path) -> None:
+    def __init__(self, limit: float, wall: float, most: int, folder: Path, processors: tuple[int, ...] = ()) -> None:
         self._limit, self._wall, self._most, self._folder = limit, wall, most, folder
+        self._processors = processors  # one for each worker; more workers stay nowhere
         self._function: Callable[[Any], Any] | None = None
-        self._waiting: deque[Job] = deque()
+        self._waiting = Waiting()
         self._again: deque[Job] = deque()  # each for a worker that has run nothing yet
         self._workers: list[Worker] = []
         self._failed_starts = 0
@@ -115,7 +114,7 @@ class Crew:
     def give(self, function: Callable[[Any], Any], items: Iterable[Any]) -> None:
         """What `answers` will answer; only when it has answered all that was given before."""
         self._function = function
-        self._waiting.extend(Job(item) for item in items)
+        self._waiting.add(Job(item) for item in items)
 
     def answers(self, watch: Watch | None) -> Iterator[Answer]:
         """Every item's answer."""
@@ -149,8 +148,10 @@ class Crew:
         wanted = min(self._most, len(self._waiting) + len(self._again) + len(self._busy()))
         while len(self._workers) < wanted:
             try:
+                free = [one for one in self._processors if one not in {other.processor for other in self._workers}]
+                terms = (str(self._folder), self._limit, self._wall, free[0] if free else None)
                 with interrupts_held():
-                    self._workers.append(start_worker(self._context, self._folder, self._limit, self._wall))
+                    self._workers.append(start_worker(self._context, *terms))
             except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
                 self._start_failed(describe(error))
 
@@ -167,7 +168,7 @@ class Crew:
         if self._again and not worker.used:
             job = self._again.popleft()
         elif self._waiting:
-            job = self._waiting.popleft()
+            job, worker.kin = self._waiting.take(worker.kin, [other.kin for other in self._busy()])
         if job is None:
             self._dismiss(worker)
             return

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,6 +19,7 @@ from reference.trajectory import Trajectory
 from reports.grid.cells import Cell, estimated_cost
 from reports.grid.fingerprint import fingerprint
 from reports.grid.outcomes import Outcome
+from reports.grid.spending import spending
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array | str]
@@ -73,6 +74,11 @@ class Task(ABC):
         """What is run; None for a method that is no engine."""
         return None
 
+    @property
+    def kin(self) -> Hashable:
+        """What is shared with cells and other tasks (`reports.grid.waiting`); None: nothing."""
+        return None
+
     @abstractmethod
     def run(self) -> Values:
         """Numbers (float64 arrays) and words by name. Raises Unsupported, or ValueError for input that can't be."""
@@ -102,6 +108,10 @@ class Motion(Task):
     def engine(self) -> Engine:
         return self.cell.engine
 
+    @property
+    def kin(self) -> Hashable:
+        return self.cell.kin
+
     def run(self) -> Values:
         cell = self.cell
         run = cell.engine.build(cell.scene.mechanism(), cell.step)(cell.sample_count, cell.every)
@@ -117,7 +127,8 @@ def answered(task: Task) -> Answer:
     """Run a task in this process. Refusals become outcomes; other exceptions pass (the pool records them)."""
     with np.errstate(all="ignore"):
         try:
-            return Answer(Outcome.FINISHED, values=task.run())
+            with spending("tasks"):
+                return Answer(Outcome.FINISHED, values=task.run())
         except Unsupported as reason:
             return Answer(Outcome.UNSUPPORTED, str(reason))
         except ValueError as reason:

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.grid.outcomes import Loss, Outcome
+from reports.grid.processors import stay_on
 
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
@@ -52,14 +53,15 @@ class Clock:
         self.end = float("inf")
 
 
-def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
+def work(connection: Connection, folder: str, limit: float, wall: float, processor: int | None = None) -> None:
     """Answer jobs until the connection ends, or until a job leaves the process changed.
 
     A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, what the
     function gave or a Loss, pickled). `limit`: CPU seconds of one job, `wall`: seconds after which the parent
-    ends it; after twice as many it ends itself, should the parent be gone.
+    ends it; after twice as many it ends itself, should the parent be gone. `processor`: where it stays; None: anywhere.
     """
     _ignore_interrupts()
+    stay_on(processor)
     _end_with_the_parent()
     try:
         _redirect(Path(folder))

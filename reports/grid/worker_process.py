@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import warnings
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
@@ -36,6 +36,8 @@ class Worker:
     job: Job | None = None
     awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
     cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
+    kin: Hashable = None  # of its last job, see `reports.grid.waiting`
+    processor: int | None = None  # where it stays
 
     def used_cpu(self) -> float:
         """CPU seconds that its job has used so far; zero where the system does not tell."""
@@ -56,10 +58,10 @@ class Worker:
             self.process.close()
 
 
-def start_worker(context: Any, folder: Path, limit: float, wall: float) -> Worker:
-    """Start a process that runs `work`. Raises OSError or EOFError if none can be started."""
+def start_worker(context: Any, folder: str, limit: float, wall: float, processor: int | None) -> Worker:
+    """Start a process that runs `work` on these terms. Raises OSError or EOFError if none can be started."""
     ours, theirs = context.Pipe()
-    process = context.Process(target=work, args=(theirs, str(folder), limit, wall), daemon=True)
+    process = context.Process(target=work, args=(theirs, folder, limit, wall, processor), daemon=True)
     # About a resource tracker killed in this moment.
     with theirs, warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -68,7 +70,7 @@ def start_worker(context: Any, folder: Path, limit: float, wall: float) -> Worke
         except BaseException:
             ours.close()
             raise
-    return Worker(process, ours)
+    return Worker(process, ours, processor=processor)
 
 
 @contextlib.contextmanager

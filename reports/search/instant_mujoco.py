@@ -10,6 +10,7 @@ held against ours on the way: each of its rows has to be one of them, seen in th
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import mujoco
@@ -20,7 +21,7 @@ from engines import Softness
 from engines.mujoco import MuJoCo
 from engines.mujoco.joints.skate import STEPWISE
 from engines.mujoco.model import Model
-from reference.joints import Skate
+from reference.joints import Drive, Skate
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, constrained, difference, driving_force, force_difference
 
@@ -49,7 +50,7 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
         raise NotAsked(f"a drive by {engine.drive!r} obeys no law of an instant")
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
         raise NotAsked("a blade whose row is that of another pose obeys no law of an instant")
-    run = engine.build(mechanism, dt)
+    run = replace(engine, estimates=False).build(mechanism, dt)  # an estimate takes a second run, and says nothing here
     softness = engine.softness(mechanism, dt)
     if softness is not None and not softness.complete:
         raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
@@ -77,25 +78,30 @@ def _at(mechanism: Mechanism, model: Model, data: Any, softness: Softness | None
     own = (values[address][None] for values in (data.qpos, data.qvel, data.qacc))
     (pose,), (twist,), (change,) = tree.motion(*own)
     rows = mechanism.rows(pose)
-    give, aimed = _declared(mechanism, model, data, rows, softness, pose, twist)
+    give, aimed, stiffest = _declared(mechanism, model, data, rows, softness, pose, twist)
     right = mechanism.bias(pose, twist) + aimed
-    law = constrained(rows, right, mechanism.inertias, mechanism.free_fall, give)
+    free = mechanism.unconstrained(pose, twist)
+    law = constrained(rows, right, mechanism.inertias, free, give)
     force = driving_force(mechanism, twist)
-    swing = np.abs(twist[:, 2]).max()
-    # What a motion needs is compared with gravity, and with what the rotations themselves ask for.
-    others = (mechanism.free_fall, swing * twist)
+    # A gap is rounded, and what a stiff row makes of that is no fault: beyond the law, where this is the largest.
+    floor = stiffest * np.finfo(float).eps * mechanism.length_scale / LAW
+    # What a motion needs is compared with what acts, and with what the motion itself asks for.
+    others = (free, twist / mechanism.time_scale, np.array([[floor, 0.0, 0.0]]))
+    forces = (force, floor * float(mechanism.inertias[:, 0].max()))
     return {
         "acceleration": difference(mechanism, change, law.motion, others),
-        "reaction": force_difference(mechanism, reaction, law.force, (force,)),
+        "reaction": force_difference(mechanism, reaction, law.force, forces),
     }
 
 
 def _declared(
     mechanism: Mechanism, model: Model, data: Any, rows: Array, softness: Softness | None, pose: Array, twist: Array
-) -> tuple[Array, Array]:
-    """How the rows give way (rows, rows), and what they aim at beside their velocity term, both as MuJoCo declares."""
+) -> tuple[Array, Array, float]:
+    """How the rows give way (rows, rows), what they aim at beside their velocity term, and the stiffest of them
+    [1/s^2], all as MuJoCo declares.
+    """
     compiled = model.compiled
-    give, aimed = np.zeros((len(rows), len(rows))), np.zeros(len(rows))
+    give, aimed, stiffest = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), 0.0
     in_tree = rows @ _directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
@@ -110,8 +116,8 @@ def _declared(
         begin = own.stop
         if not loose[own].any():
             continue
-        turned = np.flatnonzero(in_tree[own.start]) if mechanism.turning[own].all() else np.zeros(0, dtype=int)
-        if len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
+        turned = np.flatnonzero(in_tree[own.start])
+        if isinstance(joint, Drive) and len(turned) == 1 and compiled.dof_armature[turned[0]] > 0:
             # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
             give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
             continue
@@ -125,14 +131,16 @@ def _declared(
         clock = np.sum(lines[found][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
         give[own, own] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[found] + clock) / model.unit)))
         if softness is not None and _is_written(compiled, data.efc_id[found[0]]):
-            stiffness, damping = softness.stiffness, softness.damping  # a row that callbacks write
-        else:
-            stiffness, damping, impedance, _ = data.efc_KBIP[found[0]]
-            stiffness = stiffness * impedance
-        aimed[own] = -stiffness * gap[own] - damping * slip[own]
+            aimed[own] = -softness.stiffness * gap[own] - softness.damping * slip[own]  # a row that callbacks write
+            stiffest = max(stiffest, softness.stiffness)
+        else:  # each of MuJoCo's rows has a stiffness of its own
+            stiffness, damping, impedance, _ = data.efc_KBIP[found].T
+            asked = -stiffness * impedance * (factors @ gap[own]) - damping * (factors @ slip[own])
+            aimed[own] = np.linalg.solve(factors, asked)
+            stiffest = max(stiffest, float(np.max(stiffness * impedance)))
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
-    return give, aimed
+    return give, aimed, stiffest
 
 
 def _is_written(compiled: Any, equality: int) -> bool:

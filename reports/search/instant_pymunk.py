@@ -17,7 +17,8 @@ from engines.pymunk import Pymunk
 from engines.pymunk.contraction import contraction
 from engines.pymunk.model import Model
 from engines.pymunk.running import Recording, record
-from reference.joints import Pin, Roll, Skate, Slot
+from reference.forces import Damper, TorsionDamper
+from reference.joints import Drive, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, constrained, difference
 
@@ -46,6 +47,8 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
         raise NotAsked("contacts, and blades that are no joint, obey no law of a step")
     if engine.slot == "groove" and any(isinstance(joint, Slot) for joint in mechanism.joints):
         raise NotAsked("grooves off the centre of mass are known to push wrongly")
+    if any(isinstance(force, Damper | TorsionDamper) for force in mechanism.forces):
+        raise NotAsked("a damper takes part in the sweeps, and obeys no law of a step")
     dt = STEP * mechanism.time_scale
     rho = contraction(mechanism)
     sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
@@ -55,10 +58,13 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
     told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
     if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
         raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+    # Gaps are rounded, and closing one within a step makes a velocity of that, which is no fault.
+    far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
+    floor = np.array([[np.finfo(float).eps * far / dt / LAW, 0.0, 0.0]])
     worst = 0.0
     for step in range(1, STEPS + 1):
         law, free = _law(model, mechanism, told, step, dt)
-        worst = max(worst, difference(mechanism, told.after[step], law, (free,)))
+        worst = max(worst, difference(mechanism, told.after[step], law, (free, floor)))
     return {"velocity": worst}
 
 
@@ -71,12 +77,12 @@ def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
 def _law(model: Model, mechanism: Mechanism, told: Recording, step: int, dt: float) -> tuple[Array, Array]:
     """Velocities (bodies, 3) after a step: those that the joints allow, and those without joints."""
     closed = np.zeros(mechanism.row_count)
-    closing = [isinstance(joint, Pin | Slot | Roll) for joint in mechanism.joints for _ in range(joint.size)]
+    closing = [not isinstance(joint, Skate | Drive) for joint in mechanism.joints for _ in range(joint.size)]
     held = np.array(closing, dtype=bool)
     bias = next((constraint.error_bias for constraint in model.space.constraints), 0.0)
     closed[held] = 1 - bias ** (dt / model.unit)
     pose = told.pose[step]
     gap = np.nan_to_num(mechanism.gap(pose, step * dt))
-    free = told.before[step - 1] + dt * mechanism.free_fall
+    free = told.before[step - 1] + dt * mechanism.unconstrained(pose, told.before[step - 1])
     law = constrained(mechanism.rows(pose), mechanism.rate - closed * gap / dt, mechanism.inertias, free)
     return law.motion, free

@@ -80,8 +80,10 @@ def force_difference(mechanism: Mechanism, found: Array, expected: Array, others
 
 
 def driving_force(mechanism: Mechanism, twist: Array) -> float:
-    """A force [N] that the mechanism has to do with: of gravity, or of its motion."""
+    """A force [N] that acts in the mechanism: of gravity, of its motion, or of its force elements at the start."""
     rate = np.abs(twist[:, 2]).max()
     speed = np.hypot(twist[:, 0], twist[:, 1]).max()
-    pull = np.hypot(*mechanism.gravity) + rate * (rate * mechanism.length_scale + speed)
-    return float(mechanism.inertias[:, 0].max() * pull)
+    pull = np.hypot(*mechanism.gravity) + rate * rate * mechanism.length_scale + speed / mechanism.time_scale
+    acting = mechanism.inertias * mechanism.unconstrained(mechanism.pose, mechanism.twist)
+    acting = np.abs(acting / np.array([1.0, 1.0, mechanism.length_scale])).max()
+    return float(max(mechanism.inertias[:, 0].max() * pull, acting))

@@ -5,6 +5,7 @@
         drawn = mechanism(seed=1, number=number)                          # all kinds of joints
         pins = mechanism(1, number, kinds=("pin",))                       # trees and loops of pins alone
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
+    whole = mechanism(1, number, kinds=EVERY)                         # rods, gears, welds and forces too
 
 A case depends on its own seed, number, kinds and decades alone, not on those drawn before: numpy's PCG64 gives its
 whole numbers, which are the same on every machine, and `recipe` tells them (velocities are computed from them by linear
@@ -26,7 +27,8 @@ import numpy as np
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
 from reference.validation import LARGEST_COUNT, InvalidMechanism, validated
-from reports.search.recipe import KINDS, Held, Link, Part, Recipe, Rim, Standing, build
+from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim
+from reports.search.recipe import Held, Standing, build
 
 ALL = KINDS
 MOST_BODIES, MOST_LOOPS = 6, 3
@@ -55,14 +57,14 @@ def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: D
 
 @validated
 def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = ALL, decades: Decades = 0) -> Recipe:
-    """Case `number` of a seed, of joints of these `kinds` alone (of `KINDS`; in whatever order).
+    """Case `number` of a seed, of joints and forces of these `kinds` alone (of `EVERY`; in whatever order).
 
     Masses are from 0.1 to 10 kg, lengths from 0.1 m to some metres, rates some rad/s. With `decades`, masses and sizes
     of the bodies differ by that many decades more, upwards and downwards, and so do the units of length, mass and time.
     Raises InvalidMechanism for kinds that don't exist, or none.
     """
-    if not kinds or not {*kinds} <= {*KINDS}:
-        raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(KINDS)}")
+    if not kinds or not {*kinds} <= {*EVERY}:
+        raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(EVERY)}")
     draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
     while True:
         drawn = draw.recipe()
@@ -75,7 +77,7 @@ class _Draw:
 
     def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
         self._random, self._decades = random, decades
-        self._kinds = tuple(kind for kind in KINDS if kind in kinds)  # their order is no choice
+        self._kinds = tuple(kind for kind in EVERY if kind in kinds)  # their order is no choice
 
     def whole(self, low: int, high: int) -> int:
         """Both included."""
@@ -120,8 +122,11 @@ class _Draw:
         kept: list[Link] = []
         freedom = 3 * len(standing.bodies)
         for link in links:
+            if link.kind in FORCES:
+                kept.append(link)
+                continue
             try:
-                more = [*held, standing.held(link, len(held) + 1)]
+                more = [*held, standing.held(link, len(kept) + 1)]
             except InvalidMechanism:  # curves that don't fit
                 continue
             left = freedom - len(more[-1].rows)
@@ -139,8 +144,9 @@ class _Draw:
         return (first, second) if first != second else (0, second)
 
     def _link(self, first: int, second: int, parts: Sequence[Part]) -> Link:
-        # Pins twice as often: they make the trees in which the others are interesting.
-        choice = (*self._kinds, "pin") if "pin" in self._kinds else self._kinds
+        # Pins twice as often and more: they make the trees in which the others are interesting.
+        more_pins = ["pin"] * max(1, len(self._kinds) // 3)
+        choice = (*self._kinds, *more_pins) if "pin" in self._kinds else self._kinds
         kind = choice[self.whole(0, len(choice) - 1)]
         at, turn = self.two(6), self.whole(-10, 10)
         if self.chance(6):
@@ -156,4 +162,16 @@ class _Draw:
             if pair[0] == "ring":
                 rims = (Rim("ring", rims[1].size + self.whole(1, 3)), rims[1])
             rims = tuple(rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in rims)
+        elif kind not in KINDS:
+            return self._further(kind, first, second, at, turn)
         return Link(kind, first, second, at, turn, more, rims)
+
+    def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> Link:
+        """A link of a kind that came later; a distance, a ratio or a force of zero would be none."""
+        more = self.whole(1, 8) * (1 if self.chance(2) else -1)
+        strength, rest = self.whole(-2, 4), self.whole(-10, 10)
+        if kind in ("rod", "gear", "force", "torque"):
+            return Link(kind, first, second, at, turn, more)
+        if kind == "weld":
+            return Link(kind, first, second, at)
+        return Link(kind, first, second, at, turn, more, strength=strength, rest=rest if "spring" in kind else 0)

@@ -20,6 +20,7 @@ SAMPLES, COARSE = 4, 10  # and steps between samples
 ROOM = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
 LEAST = {"motion": 1e-8, "reactions": 1e-5}
+ROUNDINGS = 10.0  # of a velocity in a step
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 ESTIMATED = 10.0  # times its own estimate an error may be
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
@@ -47,6 +48,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     if _misses(promise, found):  # a coarser error may be small by chance: it must not fall between the next two either
         found = [found[1], _apart(mechanism, _run(engine, mechanism, dt / 4, 4 * COARSE), truth)]
     out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
+    rounded = _rounded_reactions(mechanism, promise, truth, dt / 4)
+    out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
         told = float(np.abs(fine.estimate * size).max()) / _size(mechanism, truth)
@@ -72,14 +75,19 @@ def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str
         difference(mechanism, pose, right, (truth.pose[-1] - mechanism.pose,))
         for pose, right in _moves(mechanism, run, truth)
     ]
-    force = max(driving_force(mechanism, twist) for twist in truth.twist)
-    size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
-    largest = max(force, float(np.abs(truth.reaction * size).max(initial=0.0)))
+    largest = _force_size(mechanism, truth)
     pulled = [
         force_difference(mechanism, own, right, (largest,))
         for own, right in zip(run.reaction[1:], truth.reaction[1:], strict=True)
     ]
     return {"motion": max(moved), "reactions": max(pulled)}
+
+
+def _force_size(mechanism: Mechanism, truth: Trajectory) -> float:
+    """The largest force [N] that the motion has to do with."""
+    force = max(driving_force(mechanism, twist) for twist in truth.twist)
+    size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    return max(force, float(np.abs(truth.reaction * size).max(initial=0.0)), np.finfo(float).tiny)
 
 
 def _moves(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> list[tuple[Array, Array]]:
@@ -91,6 +99,14 @@ def _moves(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> list[tup
 def _may_be(promise: Promise, name: str, coarser: float) -> float:
     order = promise.of("angle" if name == "motion" else "reaction")
     return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name]), LOST)
+
+
+def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory, dt: float) -> float:
+    """What rounding of velocities [m/s], divided by a step [s], leaves in reactions, as a part of them."""
+    size = np.array([1.0, 1.0, mechanism.length_scale])
+    speed = float(np.abs(truth.twist * size).max())
+    force = ROUNDINGS * np.finfo(float).eps * speed / dt * mechanism.inertias[:, 0].max()
+    return promise.amplified * promise.differences * force / _force_size(mechanism, truth)
 
 
 def _misses(promise: Promise, found: list[dict[str, float]]) -> bool:

@@ -23,7 +23,8 @@ from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.validation import InvalidMechanism
 from reports.search.law import constrained
-from reports.search.recipe import LEAST_RANK, NO_MOTION, ladder
+from reports.search.parts import ladder
+from reports.search.recipe import LEAST_RANK, NO_MOTION
 
 Array = NDArray[np.float64]
 # "gear": a joint equality that is a straight line; "joint" and "tendon" are curved.

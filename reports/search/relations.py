@@ -15,7 +15,8 @@ from engines.conformance.changes import Change, Isometry, joints_swapped, relabe
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, difference
-from reports.search.recipe import Recipe, build
+from reports.search.parts import Recipe
+from reports.search.recipe import build
 
 Array = NDArray[np.float64]
 STEP = 0.01  # of the mechanism's own time scale

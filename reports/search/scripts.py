@@ -10,7 +10,8 @@ from engines import Unsupported
 from engines.pymunk import Pymunk
 from engines.pymunk.written_script import object_lines
 from reports.search import instant_pymunk, raw
-from reports.search.recipe import Recipe, build
+from reports.search.parts import Recipe
+from reports.search.recipe import build
 from reports.search.release import release
 from reports.search.subjects import Adapted, Alone, Subject
 

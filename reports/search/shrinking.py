@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from reports.search import raw
-from reports.search.recipe import Recipe
+from reports.search.parts import Recipe
 
 Case = TypeVar("Case")
 

@@ -15,7 +15,8 @@ from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
 from reports.search import instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_draw, relations
 from reports.search.law import Fault, NotAsked
-from reports.search.recipe import KINDS, Recipe, as_text, build, from_text
+from reports.search.parts import EVERY, Recipe, as_text, from_text
+from reports.search.recipe import build
 from reports.search.release import release
 
 ORACLES = ("instant", "relations", "motions")
@@ -53,7 +54,7 @@ class Adapted:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        return KINDS
+        return EVERY
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
         return mechanisms.recipe(seed, number, kinds, decades)

@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -66,14 +67,23 @@ def answer(request: Any, say: Callable[[Any], None]) -> Any:
 def _engines(request: Any) -> Any:
     """The engines asked for, or a Trouble that says why they can't be used with this version."""
     from engines import registry
-    from engines.loading import is_reference
+    from engines.loading import describe, is_reference
     from reports.versions.request import Trouble
 
     try:
-        known = registry.load(request.engine, request.folder) if is_reference(request.engine) else registry.VARIANTS
+        known = (*registry.VARIANTS, *registry.OTHERS)
+        known = registry.load(request.engine, request.folder) if is_reference(request.engine) else known
     except ValueError as error:
         return Trouble(f"our adapter can't use it: {error}")
     found = [engine for engine in known if is_reference(request.engine) or engine.name == request.engine]
+    for engine in found[:1]:
+        if registry.missing(engine):
+            return Trouble(f"our adapter can't use it: {registry.missing(engine)}")
+        for module in getattr(getattr(engine, "engine", engine), "modules", ()):  # extras import theirs when they build
+            try:
+                import_module(module)
+            except Exception as error:
+                return Trouble(f"{module} can't be imported: {describe(error)}")
     if not found:
         own = [line for line in registry.TROUBLES if request.engine in line]
         return Trouble(f"our adapter can't use it: {(own or ['it registers no engine'])[0]}")

@@ -21,11 +21,10 @@ from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 
+from engines.user_cache import CACHE, cache_folder
 from reports.grid.ending import BadInput
 from reports.grid.files import folder_for
 
-NAME = "planar-crosscheck"
-CACHE = "PLANAR_CROSSCHECK_CACHE"
 # The name of the folder itself: what lies in one of this name counts by its version (`reports.grid.fingerprint`).
 PACKAGES = "site-packages"
 VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
@@ -34,19 +33,6 @@ UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to est
 SHOWN = 6  # versions that are named when another was asked for
 # Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
-
-
-def cache_folder() -> Path:
-    """Where versions are kept: what the environment variable says, or the system's folder for what can be had anew."""
-    if os.environ.get(CACHE):
-        return Path(os.environ[CACHE]).absolute()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / NAME
 
 
 def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:

@@ -17,7 +17,8 @@ from reference.mechanism import Mechanism
 from reference.row_system import solve_symmetric
 from reference.validation import Count, InvalidMechanism
 from reports.grid.tasks import Task, Values
-from reports.search.recipe import Link, Part, Recipe, build
+from reports.search.parts import Link, Part, Recipe
+from reports.search.recipe import build
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,7 @@
 """Deliberate mistakes in reference, engines and reports, and what tells whether the tests notice them.
 
 `python -m tests.mutants` (or `make mutants`) copies the tree, makes one mistake at a time in the copy, and runs the
-tests that are named beside it. The lists are `reference.toml`, `engines.toml` and `reports.toml`, one table a mistake:
+tests that are named beside it. The lists are the `.toml` files beside this one, one table a mistake:
 
     [trailer-turns-the-wrong-way]           # the mistake's name, once in all lists
     file = "reference/wheels/trailers.py"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-LISTS = tuple(Path(__file__).parent / f"{name}.toml" for name in ("reference", "engines", "conformance", "reports"))
+LISTS = tuple(sorted(Path(__file__).parent.glob("*.toml")))
 FIELDS = {"file", "mistake", "old", "new", "tests"}
 
 

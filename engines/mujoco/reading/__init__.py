@@ -20,8 +20,9 @@ from engines.mujoco.reading.forces import forces
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
 from engines.mujoco.reading.joints import Scene, tree_joints
 from engines.mujoco.reading.other_settings import switch_off
-from engines.mujoco.reading.own_model import OwnMuJoCo
-from engines.reading import Reading, refuse
+from engines.mujoco.reading.own_model import OwnMuJoCo, heard
+from engines.mujoco.reading.steady import drives, steady
+from engines.reading import Note, Reading, refuse
 from reference.forces import Force
 from reference.mechanism import Mechanism
 
@@ -45,6 +46,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
         getattr(started, name)[:] = getattr(data, name)
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
+    _refuse_not_finite(model, started)
     # No contacts and no solver: a model of thousands of bodies is refused before that.
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
@@ -53,7 +55,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     mujoco.mj_forward(model, started)
     bodies = bodies_of(model, started, frame, groups)
     scene = Scene(model, started, frame, groups, bodies)
-    joints = [*tree_joints(scene), *equalities(scene)]
+    joints = [*tree_joints(scene), *drives(scene), *equalities(scene)]
     acting = forces(scene)
     bodies, weights = _with_armature(scene)
     gravity = (0.0, 0.0) if off(model, "GRAVITY") else frame.in_plane(model.opt.gravity)
@@ -69,6 +71,19 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
         )
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
     return Reading(mechanism, own, tuple(scene.notes), title)
+
+
+def _refuse_not_finite(model: Any, data: Any) -> None:
+    """MuJoCo takes NaN and infinity as they come, and every number after them is none."""
+    joint, actuator = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_ACTUATOR
+    places = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
+    for name, kind, owners in (("qpos", joint, places), ("qvel", joint, model.dof_jntid), ("ctrl", actuator, None)):
+        values = getattr(data, name)
+        for index in np.flatnonzero(~np.isfinite(values)):
+            element = name_of(model, kind, index if owners is None else owners[index])
+            raise refuse(
+                "the model", f"{name} of {element} is {values[index]} at the start; it must be a finite number"
+            )
 
 
 def _note_gravity_across(scene: Scene) -> None:
@@ -90,10 +105,10 @@ def _note_what_may_act(scene: Scene) -> None:
         for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
             for index in np.flatnonzero(limited):
                 element = name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
-                scene.note(element, "its limit, which is not reached in the judged motion")
+                scene.note(element, "its limit is left out, since it is not reached in the judged motion")
     shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
     if not off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
-        scene.note("contacts", "none is made in the judged motion")
+        scene.note("contacts", "they are left out, since none is made in the judged motion")
 
 
 def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
@@ -102,7 +117,7 @@ def _with_armature(scene: Scene) -> tuple[tuple[Any, ...], list[Force]]:
     gravity = np.zeros(3) if off(model, "GRAVITY") else model.opt.gravity
     for joint in range(model.njnt):
         added = float(model.dof_armature[int(model.jnt_dofadr[joint])])
-        if not added:
+        if not added or steady(scene, joint):
             continue
         group, parent = scene.group(int(model.jnt_bodyid[joint])), scene.parent(joint)
         element, body = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint), bodies[group]
@@ -131,15 +146,30 @@ class Reader:
     def read(self, word: str, folder: Path, without: Sequence[str], key: str, step: float | None) -> Reading:
         """Raises ValueError for a file that is no model, Unsupported for a model that is no planar mechanism."""
         path = folder / word
+        if path.is_dir():
+            raise ValueError(f"{word}: it is a folder")
         if not path.is_file():
             raise ValueError(f"{word}: there is no such file")
-        try:
-            if path.suffix.lower() == ".mjb":
-                model = mujoco.MjModel.from_binary_path(str(path))
-            else:
-                model = mujoco.MjModel.from_xml_path(str(path))
-        except ValueError as error:
-            raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
+        with heard() as warnings:
+            try:
+                if path.suffix.lower() == ".mjb":
+                    model = mujoco.MjModel.from_binary_path(str(path))
+                else:
+                    model = mujoco.MjModel.from_xml_path(str(path))
+            except ValueError as error:
+                raise ValueError(f"{word}: MuJoCo can't compile it: {' '.join(str(error).split())}") from None
+            return self._started(word, path, model, without, key, step, warnings)
+
+    def _started(
+        self,
+        word: str,
+        path: Path,
+        model: Any,
+        without: Sequence[str],
+        key: str,
+        step: float | None,
+        warnings: list[str],
+    ) -> Reading:
         if step is not None:
             model.opt.timestep = step
         data = mujoco.MjData(model)
@@ -147,7 +177,13 @@ class Reader:
             mujoco.mj_resetDataKeyframe(model, data, _key(model, key))
         elif key not in ("", "none"):
             raise ValueError(f"--key is {key!r}; {word} has no keyframes")
-        return read(model, data, without)
+        reading = read(model, data, without)
+        notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in dict.fromkeys(warnings)))
+        reading = replace(reading, notes=notes)
+        if path.suffix.lower() != ".urdf" or "<mujoco" in path.read_text(encoding="utf-8", errors="replace"):
+            return reading
+        assert isinstance(reading.model, OwnMuJoCo)
+        return replace(reading, model=replace(reading.model, urdf=True))
 
 
 def _key(model: Any, key: str) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_file import INTEGRATORS
@@ -24,6 +25,7 @@ ELEMENTS = {
     "gravity": "GRAVITY",
 }
 TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
+SHIPPED = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # solref and solimp of an equality about which nothing is said
 HALVINGS = (1, 2, 4, 8, 16, 32)
 
 
@@ -39,8 +41,11 @@ def switch_off(model: Any, element: str) -> None:
         raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, 'armature', 'fluid'))}")
 
 
-def changes(model: Any, soft: bool, smallest: float) -> list[Change]:
-    """Steps down to `smallest` [s], by the model's own integrator and RK4; `soft`: loops as they are, and stiffer."""
+def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list[Change]:
+    """Steps down to `smallest` [s], by the model's own integrator and RK4; `soft`: loops as they are, and stiffer.
+
+    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options.
+    """
     own_step = float(model.opt.timestep)
     own = mujoco.mjtIntegrator(model.opt.integrator).name.split("_")[1]
     integrators = list(dict.fromkeys([own, "RK4"]))
@@ -53,10 +58,18 @@ def changes(model: Any, soft: bool, smallest: float) -> list[Change]:
                     break
                 name = INTEGRATORS.get(integrator, integrator.lower())
                 words = f"{name}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
-                lines = [f'<option timestep="{dt!r}" integrator="{name}"/>']
+                option = f'<option timestep="{dt!r}" integrator="{name}"/>'
+                lines = [f"<mujoco>{option}</mujoco>" if urdf else option]
                 if tied:
                     impedance = " ".join(f"{value:g}" for value in STIFFEST)
                     values = f'solref="{TIED_STEPS * dt:g} 1" solimp="{impedance}"'
                     lines.append(f"<default><equality {values}/></default>")
+                    if _set_by_hand(model):
+                        lines.append("<!-- an equality with a solref or solimp of its own needs these values there -->")
                 out.append(Change(words, dt, tuple(lines), (("integrator", integrator), ("tied", tied))))
     return out
+
+
+def _set_by_hand(model: Any) -> bool:
+    """Whether an equality has other values than those that MuJoCo gives it: a default would not reach it."""
+    return bool(np.any(model.eq_solref != SHIPPED[0]) or np.any(model.eq_solimp != SHIPPED[1]))

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import copy
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -40,6 +41,7 @@ class OwnMuJoCo:
 
     scene: Scene
     mechanism: Mechanism
+    urdf: bool = False  # read from a URDF file without an element of MuJoCo's own: the lines to copy bring one
 
     @property
     def engine(self) -> str:
@@ -61,6 +63,10 @@ class OwnMuJoCo:
     @property
     def elements(self) -> Sequence[str]:
         return ("contact", "limit", "frictionloss", "actuation", "spring", "damper", "armature")
+
+    @property
+    def suspects(self) -> Mapping[str, str]:
+        return {}
 
     @property
     def settings(self) -> Mapping[str, str]:
@@ -94,7 +100,8 @@ class OwnMuJoCo:
         model = copy.copy(model)
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._fresh(model)
-        mujoco.mj_forward(model, data)
+        with heard():
+            mujoco.mj_forward(model, data)
         return self._motion(model, data)[1]
 
     @cached_property
@@ -134,7 +141,7 @@ class OwnMuJoCo:
         return sorted((at, words) for words, at in found.items())
 
     def changes(self, smallest: float) -> list[Change]:
-        return changes(self.scene.model, self.softly_held, smallest)
+        return changes(self.scene.model, self.softly_held, smallest, self.urdf)
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         model, spacing = copy.copy(self.scene.model), every * self.dt
@@ -227,6 +234,18 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
+
+
+@contextmanager
+def heard() -> Iterator[list[str]]:
+    """MuJoCo's warnings, which it would otherwise write into a file in the user's folder."""
+    said: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda words: said.append(" ".join(str(words).split())))
+    try:
+        yield said
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def _spelled(words: Mapping[str, str], value: Any) -> str:

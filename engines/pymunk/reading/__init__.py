@@ -41,7 +41,7 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
             words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
         )
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
-        found.notes.append(Note("contacts", "none is made in the judged motion"))
+        found.notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
     notes = [*found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
     return Reading(mechanism, own, tuple(notes))
 
@@ -63,6 +63,8 @@ class Reader:
         if not file or not name.isidentifier():
             raise ValueError(f"{word}: give the name of the space in it too, as in script.py:space")
         path = (folder / file).resolve()
+        if path.is_dir():
+            raise ValueError(f"{file}: it is a folder")
         if not path.is_file():
             raise ValueError(f"{file}: there is no such file")
         value = _run(path, file, name)
@@ -81,7 +83,7 @@ def _run(path: Path, file: str, name: str) -> Any:
                 raise ValueError(f"{file}: it has no {name!r}")
             value = values[name]
             return value() if callable(value) else value
-    except (Exception, SystemExit) as reason:
+    except (Exception, SystemExit, KeyboardInterrupt) as reason:
         if isinstance(reason, ValueError) and str(reason).startswith(f"{file}: it has no"):
             raise
         words = " ".join(str(reason).split())

@@ -20,9 +20,10 @@ from pymunk.constraints import (
     SlideJoint,
 )
 
+from engines.pymunk.joints.slot import groove_is_exact
 from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.body import Body
-from reference.forces import Damper, ForceElement, Spring, TorsionDamper, TorsionSpring
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
 LIMITS = (SlideJoint, RotaryLimitJoint)
@@ -42,6 +43,8 @@ class Described:
     notes: list[Note] = field(default_factory=list)
     names: Names = field(default_factory=Names)
     prescribed: list[str] = field(default_factory=list)  # joints that only say how a body moves
+    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # by place in `moving`: force and torque
+    suspects: dict[str, str] = field(default_factory=dict)  # joints that are not ideal at any step, and why
     constraints: dict[Constraint, str] = field(default_factory=dict)
 
     def name(self, body: pymunk.Body) -> str | None:
@@ -99,8 +102,6 @@ def _add_body(out: Described, body: pymunk.Body) -> None:
     name = out.words[body]
     if getattr(body, "_velocity_func", None) or getattr(body, "_position_func", None):
         raise refuse(name, "it moves by a function of its own, which has no ideal counterpart")
-    if body.force.length or body.torque:
-        raise refuse(name, "a force stands on it, which pymunk takes off after one step; take it off")
     place = body.local_to_world(body.center_of_gravity)
     pose = (float(place.x), float(place.y), float(body.angle))
     if body.body_type == pymunk.Body.KINEMATIC:
@@ -113,6 +114,8 @@ def _add_body(out: Described, body: pymunk.Body) -> None:
         out.joints += [Pin(pin, None, name, pose[:2], (0.0, 0.0)), Drive(drive, None, name, rate, pose[2])]
         out.prescribed += [pin, drive]
         return
+    if body.force.length or body.torque:
+        _add_push(out, body)
     if not 0 < body.mass < inf or not body.moment > 0:
         raise refuse(name, f"its mass is {body.mass:g} and its moment {body.moment:g}; both must be above zero")
     rate = float(body.angular_velocity)
@@ -126,6 +129,18 @@ def _add_body(out: Described, body: pymunk.Body) -> None:
         out.bodies.append(Body(name, float(body.mass), float(body.moment), pose, twist))
 
 
+def _add_push(out: Described, body: pymunk.Body) -> None:
+    """The force and the torque that stand on a body, as constant ones."""
+    name, (x, y), torque = out.words[body], body.force, float(body.torque)
+    if x or y:
+        out.forces.append(Force(out.names.new(f"force on {name}"), name, (0.0, 0.0), (float(x), float(y))))
+    if torque:
+        out.forces.append(Torque(out.names.new(f"torque on {name}"), None, name, torque))
+    out.pushed[out.moving.index(body)] = ((float(x), float(y)), torque)
+    reason = "pymunk takes it off after one step; it is taken as set anew before every step, by a loop of yours"
+    out.notes.append(Note(f"the force or torque that stands on {name}", reason))
+
+
 def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
     a, b = constraint.a, constraint.b
     # A body that stands still need not be in the space.
@@ -133,7 +148,7 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
         raise refuse(label, "it holds a body that is not in the space; add the body too")
     first, second = out.name(a), out.name(b)
     if isinstance(constraint, LIMITS):
-        out.notes.append(Note(label, "its limit, which is not reached in the judged motion"))
+        out.notes.append(Note(label, "its limit is left out, since it is not reached in the judged motion"))
         return
     if first == second:
         out.notes.append(Note(label, "it joins what stands still"))
@@ -151,7 +166,14 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
             line = pymunk.Vec2d(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
             if not line.length:
                 raise refuse(label, "its groove has no length")
-            out.joints.append(Slot(label, first, second, ends[0], float(line.angle), out.own(b, constraint.anchor_b)))
+            point = out.own(b, constraint.anchor_b)
+            out.joints.append(Slot(label, first, second, ends[0], float(line.angle), point))
+            if _turns(a) or not groove_is_exact(point, _turns(b)):
+                out.suspects[label] = (
+                    "pymunk's GrooveJoint does not push straight across its groove, at any step, unless its anchor is "
+                    "a centre of mass and the groove is in a body that can't turn freely; slide a body of its own in "
+                    "the groove, by its centre, and pin the other body to it"
+                )
         case PinJoint():
             points = out.own(a, constraint.anchor_a), out.own(b, constraint.anchor_b)
             if constraint.distance:
@@ -183,6 +205,11 @@ def _add_constraint(out: Described, constraint: Constraint, label: str) -> None:
             raise refuse(label, "a ratchet has no ideal counterpart")
         case _:
             raise refuse(label, f"a {type(constraint).__name__} has no ideal counterpart here")
+
+
+def _turns(body: pymunk.Body) -> bool:
+    """Whether an impulse can turn it."""
+    return body.body_type == pymunk.Body.DYNAMIC and not isinf(body.moment)
 
 
 def _refuse_own_force(constraint: Constraint, label: str, function: str) -> None:

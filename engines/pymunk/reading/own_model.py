@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk.constraints import GrooveJoint, RotaryLimitJoint, SlideJoint
+from pymunk.constraints import RotaryLimitJoint, SlideJoint
 
 from engines.pymunk.reading.joints import Described
-from engines.reading import Change, Give, refuse
+from engines.pymunk.reading.obstacles import obstacles
+from engines.reading import Change, Give
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -23,7 +22,6 @@ DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 MORE_ITERATIONS = 50
 SMALL = 1e-4  # of the mechanism's time: a step for the accelerations at t = 0, and half of it
 SWEEPS = 20_000  # at that step: impulses are passed on until nothing is left
-MOST_SHAPES = 400
 
 
 def switch_off(space: pymunk.Space, element: str) -> None:
@@ -70,6 +68,10 @@ class OwnPymunk:
         return ("contact", "limit")
 
     @property
+    def suspects(self) -> Mapping[str, str]:
+        return self.described.suspects
+
+    @property
     def settings(self) -> Mapping[str, str]:
         space = self.described.space
         known = ", assumed: the space has not been stepped; give --step" if self.assumed else ""
@@ -99,7 +101,7 @@ class OwnPymunk:
         if element is not None:
             switch_off(space, element)
         space.iterations = max(space.iterations, SWEEPS)
-        space.step(step)
+        self._stepper(space, bodies)(step)
         return (_twists(bodies) - self.mechanism.twist) / step
 
     def give(self, gap: Array) -> Give:
@@ -108,31 +110,8 @@ class OwnPymunk:
 
     def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
         space, bodies = self._fresh()
-        found: dict[str, float] = {}
-        shapes = [shape for shape in space.shapes if not shape.sensor]
-        if len(shapes) > MOST_SHAPES:
-            raise refuse("the space", f"it has {len(shapes)} shapes; more than {MOST_SHAPES} are not looked at")
-        pairs = [pair for pair in itertools.combinations(shapes, 2) if _may_touch(*pair)]
-        limits = [
-            (mine, label)
-            for mine, label in zip(space.constraints, self.described.constraints.values(), strict=True)
-            if isinstance(mine, SlideJoint | RotaryLimitJoint | GrooveJoint)
-        ]
-        names = {id(body): word for body, word in zip(bodies, self.described.words.values(), strict=True)}
-        for at, poses in zip(t, pose, strict=True):
-            for body, (x, y, angle) in zip(bodies, poses, strict=True):
-                body.angle = float(angle)
-                body.position = pymunk.Vec2d(float(x), float(y)) - body.center_of_gravity.rotated(float(angle))
-            for shape in shapes:
-                shape.cache_bb()
-            for one, other in pairs:
-                if one.bb.intersects(other.bb) and _touch(one, other):
-                    who = [names.get(id(shape.body), "the ground") for shape in (one, other)]
-                    found.setdefault(f"a shape of {who[0]} touches one of {who[1]}", float(at))
-            for limit, label in limits:
-                if _reached(limit):
-                    found.setdefault(f"{label} reaches its end", float(at))
-        return sorted((at, words) for words, at in found.items())
+        labels = list(self.described.constraints.values())
+        return obstacles(space, bodies, list(self.described.words.values()), labels, t, pose)
 
     def changes(self, smallest: float) -> list[Change]:
         space = self.described.space
@@ -160,7 +139,7 @@ class OwnPymunk:
             if options["bias"] is not None:
                 for joint in space.constraints:
                     joint.error_bias = options["bias"]
-        steps = max(1, round(spacing / dt))
+        steps, step = max(1, round(spacing / dt)), self._stepper(space, bodies)
         t = np.arange(samples + 1, dtype=np.float64) * spacing
         shape = (samples + 1, len(bodies), 3)
         pose, twist, acceleration = (np.full(shape, np.nan) for _ in range(3))
@@ -169,10 +148,10 @@ class OwnPymunk:
         for sample in range(1, samples + 1):
             begin = time.process_time()
             for _ in range(steps - 1):
-                space.step(dt)
+                step(dt)
             stepping += time.process_time() - begin
             before, begin = _twists(bodies), time.process_time()
-            space.step(dt)
+            step(dt)
             stepping += time.process_time() - begin
             pose[sample], twist[sample] = _poses(bodies), _twists(bodies)
             # The kick of a step is of the pose after its drift: this is the acceleration at the sample.
@@ -186,6 +165,19 @@ class OwnPymunk:
             reaction[sound] = self.mechanism.reaction(pose[sound], acceleration[sound], twist=twist[sound])
             reaction[:, self._prescribed] = np.nan
         return Trajectory(t, pose, twist, reaction, stepping)
+
+    def _stepper(self, space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[float], None]:
+        """The space's own step, with the forces that stand on bodies set anew before it."""
+        pushed = [(bodies[place], *push) for place, push in self.described.pushed.items()]
+        if not pushed:
+            return space.step
+
+        def step(dt: float) -> None:
+            for body, force, torque in pushed:
+                body.force, body.torque = force, torque
+            space.step(dt)
+
+        return step
 
     @property
     def _prescribed(self) -> NDArray[np.bool_]:
@@ -215,38 +207,3 @@ def _poses(bodies: Sequence[pymunk.Body]) -> Array:
 
 def _twists(bodies: Sequence[pymunk.Body]) -> Array:
     return np.array([(*body.velocity, body.angular_velocity) for body in bodies])
-
-
-def _touch(one: pymunk.Shape, other: pymunk.Shape) -> bool:
-    try:
-        return bool(one.shapes_collide(other).points)
-    except AssertionError:  # what pymunk itself calls likely a bug of its own: two shapes in exactly the same place
-        return True
-
-
-def _may_touch(one: pymunk.Shape, other: pymunk.Shape) -> bool:
-    """Whether pymunk would let these shapes collide."""
-    if one.body is other.body or one.body is None or other.body is None:
-        return False
-    if pymunk.Body.DYNAMIC not in (one.body.body_type, other.body.body_type):
-        return False
-    joined: Any = one.body.constraints & other.body.constraints
-    if any(not joint.collide_bodies for joint in joined):
-        return False
-    mine, theirs = one.filter, other.filter
-    if mine.group and mine.group == theirs.group:
-        return False
-    return bool(mine.categories & theirs.mask) and bool(theirs.categories & mine.mask)
-
-
-def _reached(limit: Any) -> bool:
-    """Whether a limit is at or beyond an end where its bodies are now."""
-    a, b = limit.a, limit.b
-    if isinstance(limit, SlideJoint):
-        apart = a.local_to_world(limit.anchor_a).get_distance(b.local_to_world(limit.anchor_b))
-        return not limit.min < apart < limit.max
-    if isinstance(limit, RotaryLimitJoint):
-        return not limit.min < b.angle - a.angle < limit.max
-    begin, end = a.local_to_world(limit.groove_a), a.local_to_world(limit.groove_b)
-    share = (b.local_to_world(limit.anchor_b) - begin).dot(end - begin) / (end - begin).dot(end - begin)
-    return not 0 < share < 1

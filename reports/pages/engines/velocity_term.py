@@ -9,23 +9,35 @@ be soft hold exactly. Both laws follow from the mechanism alone, and no step is 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine
 from engines.tree import spanning_tree
 from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
-from reports.grid.tasks import Task, Values
+from reports.grid.tasks import Values
+from reports.pages.engines.asked import Asked
 
 Array = NDArray[np.float64]
 INSTANTS = 12
 STEP = 1e-3  # s, that a model is built for; none is compared
 
 
-def reactions_with(mechanism: Mechanism, soft: tuple[bool, ...], complete: bool) -> Array:
-    """The start's reactions (rows,) [N] if soft rows have their velocity term or not."""
+def started_anew(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
+    """The mechanism with its bodies at these poses and twists (bodies, 3)."""
+    bodies = tuple(
+        replace(body, pose=tuple(place.tolist()), twist=tuple(speed.tolist()))
+        for body, place, speed in zip(mechanism.bodies, pose, twist, strict=True)
+    )
+    return replace(mechanism, bodies=bodies)
+
+
+def reactions_with(
+    mechanism: Mechanism, soft: tuple[bool, ...], complete: bool, compliance: Array | float = 0.0
+) -> Array:
+    """The start's reactions (rows,) [N] if soft rows have their velocity term or not; `compliance` (rows,) [1/kg]."""
     rows = mechanism.rows(mechanism.pose)
     bias = mechanism.bias(mechanism.pose, mechanism.twist)
     if not complete:
@@ -35,26 +47,15 @@ def reactions_with(mechanism: Mechanism, soft: tuple[bool, ...], complete: bool)
         bias = np.where(soft, rows @ carried.reshape(-1), bias)
     weight = 1 / mechanism.inertias.reshape(-1)
     right: Array = bias - rows @ mechanism.free_fall.reshape(-1)
-    return np.asarray(np.linalg.solve((rows * weight) @ rows.T, right), dtype=np.float64)
+    inverse = (rows * weight) @ rows.T + np.diag(np.broadcast_to(compliance, right.shape))
+    return np.asarray(np.linalg.solve(inverse, right), dtype=np.float64)
 
 
 @dataclass(frozen=True)
-class VelocityTerm(Task):
+class VelocityTerm(Asked):
     """How far an engine's reactions (instants,) are from those with the velocity term and without, of the largest."""
 
-    of: Engine
-
-    @property
-    def cost(self) -> float:
-        return 0.1 + getattr(self.of, "building", 0.0)
-
-    @property
-    def label(self) -> str:
-        return f"{self.of.name} {self.of.variant}: the velocity term of a loop"
-
-    @property
-    def engine(self) -> Engine:
-        return self.of
+    what: ClassVar[str] = "the velocity term of a loop"
 
     def run(self) -> Values:
         scene = FreeFourBar()
@@ -66,11 +67,7 @@ class VelocityTerm(Task):
         truth = scene.motion(t)
         found: dict[str, list[float]] = {"with": [], "without": []}
         for pose, twist in zip(truth.pose, truth.twist, strict=True):
-            bodies = tuple(
-                replace(body, pose=tuple(place.tolist()), twist=tuple(speed.tolist()))
-                for body, place, speed in zip(described.bodies, pose, twist, strict=True)
-            )
-            now = replace(described, bodies=bodies)
+            now = started_anew(described, pose, twist)
             told = self.of.build(now, STEP)(1, 1).reaction[0]
             for name, complete in (("with", True), ("without", False)):
                 wanted = reactions_with(now, softness.rows, complete)

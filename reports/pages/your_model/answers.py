@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.check.checked import Checked, check
+from reports.check.numbers import data
 from reports.check.readers import read
 from reports.check.settings import Tried
 from reports.check.shown import shown_of
-from reports.check.telling import data
 from reports.grid.tasks import Task, Values
 
 MODELS = Path(__file__).parent / "models"

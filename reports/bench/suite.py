@@ -1,0 +1,126 @@
+"""Where the time of a run goes: CPU seconds by part, engine and scene, and what the workers wait."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from reports.grid.cells import Cell
+from reports.grid.measure import Measurement
+from reports.grid.outcomes import Loss
+from reports.grid.pool import TIMED, run_cells
+from reports.grid.spending import taken
+from reports.grid.supervisor import Answer, supervise
+from reports.grid.tasks import Task
+
+STARTING, BETWEEN, OTHER = "starting workers", "between items", "other work on items"
+NEARLY = 0.1  # relative: timings that differ by less count as the same
+
+
+@dataclass(frozen=True)
+class Spent:
+    """Of one item: the process that worked on it, CPU seconds of that process since its last item, and by part."""
+
+    process: int
+    before: float
+    parts: dict[str, float]
+
+
+_ended = 0.0  # CPU time of this process when its last item ended
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A function of an item that also tells what it spent."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, item: Any) -> tuple[Any, Spent]:
+        global _ended
+        taken()
+        begin = time.process_time()
+        result = self.function(item)
+        end = time.process_time()
+        before, _ended = begin - _ended, end
+        parts = dict(taken())
+        parts[OTHER] = end - begin - sum(parts.values())
+        return result, Spent(os.getpid(), before, parts)
+
+
+@dataclass
+class Account:
+    """CPU seconds of workers by part, by method and by scene, and `wall` seconds of all rounds of workers."""
+
+    parts: dict[str, float] = field(default_factory=dict)
+    methods: dict[str, float] = field(default_factory=dict)
+    scenes: dict[str, float] = field(default_factory=dict)
+    longest: list[tuple[float, str]] = field(default_factory=list)
+    wall: float = 0.0
+    last: dict[int, float] = field(default_factory=dict)  # when each process gave its last answer
+    lost: int = 0
+
+    @property
+    def seconds(self) -> float:
+        return sum(self.parts.values())
+
+    @property
+    def tail(self) -> float:
+        """Seconds between the last answers of the first worker to run out of work and of the last one."""
+        return max(self.last.values()) - min(self.last.values()) if self.last else 0.0
+
+    def supervise(self, function: Callable[[Any], Any], items: Iterable[Any], *terms: Any) -> Iterator[Answer]:
+        """As `reports.grid.supervisor.supervise`, and count."""
+        begin = time.monotonic()
+        seen: set[int] = set()
+        for item, result, note in supervise(Counted(function), items, *terms):
+            if isinstance(result, Loss):
+                self.lost += 1
+                yield item, result, note
+                continue
+            own, spent = result
+            self._count(item, spent, spent.process not in seen)
+            seen.add(spent.process)
+            self.last[spent.process] = time.monotonic()
+            yield item, own, note
+        self.wall += time.monotonic() - begin
+
+    def _count(self, item: Cell | Task, spent: Spent, first: bool) -> None:
+        for part, seconds in {**spent.parts, STARTING if first else BETWEEN: spent.before}.items():
+            self.parts[part] = self.parts.get(part, 0.0) + seconds
+        seconds, engine = sum(spent.parts.values()), item.engine
+        method = "tasks of no engine" if engine is None else f"{engine.name} {engine.variant}"
+        scene = item.scene.name if isinstance(item, Cell) else "tasks"
+        self.methods[method] = self.methods.get(method, 0.0) + seconds
+        self.scenes[scene] = self.scenes.get(scene, 0.0) + seconds
+        self.longest = sorted([*self.longest, (seconds, item.label)], reverse=True)[:10]
+
+
+@dataclass(frozen=True)
+class Alike:
+    """How timings of a cell by one worker and by all at once compare: the middle ratio, and the share within NEARLY."""
+
+    cells: int
+    workers: int
+    middle: float
+    within: float
+
+
+def timings_alike(cells: Sequence[Cell], workers: int, turns: int = 3) -> Alike:
+    """Time these cells `turns` times by one worker and by all, in turn, and compare the least of each."""
+    least: dict[tuple[str, int], float] = {}
+    timed = [cell for cell in cells if cell.purpose in TIMED]
+    for _ in range(turns):
+        for count in (1, workers):
+            for row in run_cells(timed, workers=count):
+                if isinstance(row, Measurement) and row.cpu > 0:
+                    key = (row.key, count)
+                    least[key] = min(row.cpu, least.get(key, row.cpu))
+    both = [key for key, count in least if count == 1 and (key, workers) in least]
+    ratios = sorted(least[key, workers] / least[key, 1] for key in both)
+    if not ratios:
+        return Alike(0, workers, float("nan"), float("nan"))
+    near = sum(abs(ratio - 1) <= NEARLY for ratio in ratios)
+    return Alike(len(ratios), workers, ratios[len(ratios) // 2], near / len(ratios))

@@ -1,0 +1,54 @@
+"""Exact motions kept beside a store, so that workers and later runs share them: some take seconds.
+
+A file is named by all that its motion depends on, and so is never stale. The folder may be deleted at any time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import time
+import zipfile
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from reference.kinds import Floats
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+FOLDER = "truths"
+SHORT = 5e-3  # s: a motion that takes less is worked out again sooner than it is read
+PARTS = ("t", "pose", "twist", "reaction")
+
+
+def kept_motion(scene: Scene, t: Floats, name: str, folder: Path | None) -> Trajectory:
+    """The scene's motion at instants t (times,) [s], read from the folder or kept there; `name`: `Cell.truth`.
+
+    A folder that is None or is not there is not used. Raises ValueError where the scene refuses.
+    """
+    if folder is None or not folder.is_dir():
+        return scene.motion(t)
+    file = folder / f"{hashlib.sha256(name.encode() + t.tobytes()).hexdigest()[:32]}.npz"
+    damages = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
+    with suppress(*damages), np.load(io.BytesIO(file.read_bytes())) as kept:
+        return Trajectory(*(kept[part] for part in PARTS))
+    begin = time.process_time()
+    found = scene.motion(t)
+    if time.process_time() - begin > SHORT:
+        _keep(found, file)
+    return found
+
+
+def _keep(found: Trajectory, file: Path) -> None:
+    """Write it whole or not at all; without it only time is lost."""
+    half = file.with_name(f"{file.stem}.{os.getpid()}.half")
+    with suppress(OSError):
+        try:
+            with half.open("wb") as stream:
+                np.savez(stream, **{part: getattr(found, part) for part in PARTS})
+            half.replace(file)
+        finally:
+            half.unlink(missing_ok=True)

@@ -1,0 +1,125 @@
+"""A mechanism written in small whole numbers: bodies, the links between them, and how they are stored."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, fields
+from decimal import Decimal
+from typing import Any
+
+KINDS = ("pin", "slot", "skate", "roll", "drive")  # from the beginning; the same seed still gives the same of them
+LINKS = ("rod", "gear", "weld")
+FORCES = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
+EVERY = (*KINDS, *LINKS, *FORCES)
+SHAPES = ("line", "circle", "ring", "ellipse")
+
+ANGLE = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
+RATE = Decimal("0.5")  # m/s, and rad/s
+
+
+@dataclass(frozen=True)
+class Part:
+    """A body. `parent`: 0 is the ground, 1 the first body, and so on; it is earlier than the body itself.
+
+    `offset`: from the parent's place, in tenths of the body's own `size`; `angle` in steps of 0.3 rad; `velocity` in
+    steps of 0.5 m/s and rad/s. `size`, `mass` and `gyration` (a share of the size) are steps on the ladder ..., 0.5,
+    1, 2, 5, 10, ...
+    """
+
+    parent: int = 0
+    offset: tuple[int, int] = (0, 0)
+    angle: int = 0
+    size: int = 0
+    mass: int = 0
+    gyration: int = 0
+    velocity: tuple[int, int, int] = (0, 0, 0)
+
+
+@dataclass(frozen=True)
+class Rim:
+    """A curve that rolls: its `shape`; its `size` on the ladder, times that of the second body; and for an ellipse the
+    `ratio` of its axes on the ladder, and where it touches, `place` in steps of 0.3 rad of its natural parameter.
+    """
+
+    shape: str = "circle"
+    size: int = 0
+    ratio: int = 0
+    place: int = 0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A joint, or a force, of the bodies `first` (0: the ground) and `second`, at `at`: tenths of the second
+    body's size from it.
+
+    `turn`, in steps of 0.3 rad: the direction in the world of a slot, a blade, or the tangent of a contact, with the
+    first body's material on its left. `more`: how far the slot's own point lies from there along it (tenths of the
+    size), or the rate of a drive in steps of 0.5 rad/s. `rims`: the curves of the first and the second body of a roll.
+
+    Of a rod, a spring and a damper `more` and `turn` say where the first body's point lies. Of a gear `more` is the
+    ratio, of a force (in the direction `turn`) and a torque how strong it is, in halves. The others' `strength` is a
+    step on the ladder, and `rest` what a spring is shorter than at rest: tenths, or steps of 0.3 rad.
+    """
+
+    kind: str
+    first: int
+    second: int
+    at: tuple[int, int] = (0, 0)
+    turn: int = 0
+    more: int = 0
+    rims: tuple[Rim, ...] = ()
+    strength: int = 0
+    rest: int = 0
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """`gravity` in m/s^2; `decades` of the units of length, mass and time in which everything is written."""
+
+    parts: tuple[Part, ...]
+    links: tuple[Link, ...]
+    gravity: tuple[int, int] = (0, 0)
+    decades: tuple[int, int, int] = (0, 0, 0)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of its joints and forces, each once, in the order of EVERY."""
+        return tuple(kind for kind in EVERY if any(link.kind == kind for link in self.links))
+
+
+def ladder(step: int) -> Decimal:
+    """..., 0.2, 0.5, 1, 2, 5, 10, ... with 1 at step 0."""
+    return Decimal((1, 2, 5)[step % 3]).scaleb(step // 3)
+
+
+def as_text(recipe: Recipe) -> str:
+    """JSON, with what is as usual left out."""
+
+    def short(value: Any) -> dict[str, Any]:
+        usual = {field.name: field.default for field in fields(value)}
+        own = {name: getattr(value, name) for name in usual if name not in ("parts", "links", "rims")}
+        return {name: each for name, each in own.items() if each != usual[name]}
+
+    def linked(link: Link) -> dict[str, Any]:
+        return short(link) | ({"rims": [short(rim) for rim in link.rims]} if link.rims else {})
+
+    parts, links = [short(part) for part in recipe.parts], [linked(link) for link in recipe.links]
+    return json.dumps({**short(recipe), "parts": parts, "links": links}, sort_keys=True)
+
+
+def from_text(text: str) -> Recipe:
+    """The recipe that `as_text` wrote. Raises ValueError for text that is none."""
+    try:
+        told = json.loads(text)
+        parts = tuple(Part(**{k: _frozen(v) for k, v in part.items()}) for part in told.pop("parts"))
+        links = []
+        for link in told.pop("links"):
+            rims = tuple(Rim(**rim) for rim in link.pop("rims", ()))
+            links.append(Link(**{k: _frozen(v) for k, v in link.items()}, rims=rims))
+        return Recipe(parts, tuple(links), **{k: _frozen(v) for k, v in told.items()})
+    except (TypeError, KeyError, AttributeError) as error:
+        raise ValueError(f"recipe: this is no recipe ({error}); it must be what `as_text` writes") from None
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
