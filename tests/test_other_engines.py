@@ -22,6 +22,7 @@ from reports.grid.cells import QUICK, SLOW_TO_BUILD, beside_cells
 from reports.grid.ending import BadInput
 from reports.pages.catalogue import PAGES, SCENES
 from reports.search.mechanisms import mechanism
+from reports.search.parts import FORCES, LINKS
 from tests.present import present
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if getattr(engine, "building", 0.0) < SLOW_TO_BUILD)
@@ -95,10 +96,10 @@ def test_reactions_carry_a_body_that_hangs(engine):
 
 # What each engine takes of random mechanisms: most draws of all kinds are refused by those with few joints.
 DRAWN = {
-    "exudyn": ("pin", "slot", "skate", "drive"),
-    "box2d": ("pin",),
-    "pinocchio": ("pin", "drive"),
-    "bullet": ("pin",),
+    "exudyn": ("pin", "slot", "skate", "drive", *LINKS, *FORCES),
+    "box2d": ("pin", "rod", "weld", *FORCES),
+    "pinocchio": ("pin", "drive", "weld", *FORCES),
+    "bullet": ("pin", "weld", *FORCES),
 }
 
 
