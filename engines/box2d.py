@@ -73,6 +73,7 @@ class Box2D(Optional):
     extra: ClassVar[str] = "box2d"
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
+    forces_by: ClassVar[Holder] = "ours"
 
     variant: Name
     substeps: Count = 4

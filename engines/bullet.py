@@ -66,6 +66,7 @@ class Bullet(Optional):
     extra: ClassVar[str] = "bullet"
     modules: ClassVar[tuple[str, ...]] = ("pybullet",)
     distributions: ClassVar[tuple[str, ...]] = ("pybullet",)
+    forces_by: ClassVar[Holder] = "ours"
 
     variant: Name
     iterations: Count = SHIPPED_ITERATIONS

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Holder, Promise, Run, Size, Unpromised
+from engines.finer import steps_for_one
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -49,6 +51,8 @@ class Extrapolated(Valid):
     finest run, the estimate is the largest distance of another run from it, `unresolved_at` is the time, and a warning
     tells it. Two runs can't show it.
 
+    `divides`: where a motion becomes faster than its start lets expect, all levels take more steps (`engines.finer`).
+
     Raises ValueError for levels that are not rising whole numbers or powers that do not fit them.
     """
 
@@ -56,6 +60,7 @@ class Extrapolated(Valid):
     variant: Name
     levels: tuple[Count, ...]
     powers: tuple[Count, ...]
+    divides: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -125,22 +130,48 @@ class Extrapolated(Valid):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Build the engine once a level; raises whatever it raises."""
-        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-        return ExtrapolatedRun(self, tuple(self.engine.build(mechanism, dt / level) for level in self.levels), size)
+        if not self.divides or len(self.levels) < 3 or isinstance(self.order(mechanism), Unpromised):
+            return ExtrapolatedRun(self, mechanism, dt)
+        plain, order = replace(self, divides=False), self.powers[-1] + 1.0
+        return ExtrapolatedRun(
+            self,
+            mechanism,
+            dt,
+            lambda lasts: steps_for_one(plain, lambda own: plain.build(mechanism, own), mechanism, lasts, order),
+        )
 
 
 class ExtrapolatedRun:
     """The built models of all levels, ready to be stepped once; see `engines.Run`."""
 
-    def __init__(self, method: Extrapolated, runs: tuple[Run, ...], scale: Array) -> None:
-        """`scale` (3,) [m, m, rad]: what differences of poses are measured by."""
-        self._method, self._runs, self._scale = method, runs, scale
-        self.size: Size = runs[0].size
+    def __init__(
+        self,
+        method: Extrapolated,
+        mechanism: Mechanism,
+        dt: float,
+        divided: Callable[[float], int] | None = None,
+    ) -> None:
+        """`divided` tells into how many steps each has to be divided in a motion of so many seconds."""
+        self._method, self._mechanism, self._dt, self._divided = method, mechanism, dt, divided
+        # What differences of poses are measured by [m, m, rad].
+        self._scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        self._runs, self._over = self._built(1), False
+        self.size: Size = self._runs[0].size
+
+    def _built(self, finer: int) -> tuple[Run, ...]:
+        levels = self._method.levels
+        return tuple(self._method.engine.build(self._mechanism, self._dt / (level * finer)) for level in levels)
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         levels, powers = self._method.levels, self._method.powers
-        parts = [run(samples, every * level) for run, level in zip(self._runs, levels, strict=True)]
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+        finer = self._divided(samples * every * self._dt) if self._divided else 1
+        runs = self._runs if finer == 1 else self._built(finer)
+        every *= finer
+        parts = [run(samples, every * level) for run, level in zip(runs, levels, strict=True)]
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")

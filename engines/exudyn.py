@@ -159,7 +159,7 @@ class _System:
         return 0.0 if name is None else self.mechanism.bodies[self.mechanism.body_index(name)].pose[2]
 
     def _hold(self, ends: list[int], **what: Any) -> None:
-        """factorValue1 times the second coordinate minus the first is the offset."""
+        """factor1 times the second coordinate minus the first is the offset."""
         self.system.AddObject(self.items.ObjectConnectorCoordinate(markerNumbers=ends, **what))
 
     def _join(self, joint: Joint) -> int:
@@ -175,7 +175,7 @@ class _System:
             case Gear():
                 turned = self._start(joint.second) - joint.ratio * self._start(joint.first) - joint.phase
                 ends = [self._rotation(joint.second), self._rotation(joint.first)]
-                self._hold(ends, factorValue1=joint.ratio, offset=turned)
+                self._hold(ends, factor1=joint.ratio, offset=turned)
                 return 1
             case Rod():
                 system.AddObject(items.ObjectConnectorDistance(markerNumbers=self._ends(joint), distance=joint.length))

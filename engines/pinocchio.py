@@ -65,6 +65,7 @@ class Pinocchio(Optional):
     extra: ClassVar[str] = "pinocchio"
     modules: ClassVar[tuple[str, ...]] = ("pinocchio",)
     distributions: ClassVar[tuple[str, ...]] = ("pin",)
+    forces_by: ClassVar[Holder] = "ours"
 
     variant: Name
     integrator: Integrator = "euler"

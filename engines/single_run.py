@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Size, Softness, Unsupported
+from engines.contract import Holder, Size, Softness, Unsupported
 from engines.read_reactions import reactions
 from engines.tree import Tree
 from reference.mechanism import Mechanism
@@ -35,8 +35,8 @@ class Optional(Valid):
 
     `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
     belong to; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
-    takes to build [s], where that is no matter of milliseconds. A package is imported when the
-    first mechanism is built, because some take seconds.
+    takes to build [s], where that is no matter of milliseconds; `forces_by`: who works out what springs, dampers and
+    the like do. A package is imported when the first mechanism is built, because some take seconds.
     """
 
     extra: ClassVar[str]
@@ -44,6 +44,7 @@ class Optional(Valid):
     distributions: ClassVar[tuple[str, ...]]
     apart: ClassVar[str] = ""
     building: ClassVar[float] = 0.0
+    forces_by: ClassVar[Holder] = "engine"
 
     @property
     def name(self) -> str:

@@ -35,7 +35,7 @@ NOT_MADE_BY_USERS = {
     *("reference.errata.pendulum.BarState", "reference.four_bar.closed_form.Constants", "reference.kinds.Rule"),
     *("reference.joint_rows.JointGroup", "reference.joint_rows.JointRows"),
     *("reference.applied_forces.ForceGroup", "reference.applied_forces.AppliedForces"),
-    *("reference.kinds.Kind", "reference.numerics.integration.Integrated"),
+    *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.numerics.windows.Windows"),
     *("reference.pendulum.double_pendulum.TwoPoints", "engines.altered.Altered", "engines.contract.Size"),
     "engines.pymunk.contraction.Sweeping",
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),

@@ -36,7 +36,7 @@ def suite(pytester):
 
 
 def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
-    found = suite.runpytest_subprocess(
+    found = suite.runpytest_inprocess(
         "-s", "--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md"
     )
     found.assert_outcomes(passed=1, deselected=2)
@@ -63,7 +63,7 @@ def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
     ],
 )
 def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):
-    found = suite.runpytest_subprocess("--baseline", "errors.csv", *arguments)
+    found = suite.runpytest_inprocess("--baseline", "errors.csv", *arguments)
     assert found.ret == pytest.ExitCode.USAGE_ERROR
     assert told in found.stderr.str()
     assert "Traceback" not in found.stderr.str()

@@ -19,6 +19,7 @@ from engines.lagrange.dynamics import Dynamics
 from engines.lagrange.flat import CHANGE, MATRIX, ROWS, flat
 from engines.lagrange.tableaus import RK4
 from reference.four_bar.scenes import FreeFourBar
+from reference.joints import Drive, Pin, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.pendulum.many_links import LongPendulum
 from reference.rolling.scenes import RollingEllipse
@@ -46,11 +47,29 @@ def test_every_method_gives_the_numbers_of_numpy(method):
     assert max(differences(four_bar(crank_rate=3.0), method, 1e-3, 5)) < allowed
 
 
-@pytest.mark.parametrize("number", range(40))
-def test_random_mechanisms_of_all_joints_move_as_in_numpy(number):
+JOINTS = {Drive, Pin, Roll, Skate, Slot}
+SOME = range(12, 24)  # of the random mechanisms: every kind of joint, and no roll whose table takes seconds
+
+
+def moves_as_in_numpy(number: int) -> None:
     mechanism = random_mechanism(11, number)
     # Least pivots of these are about 1e-4 (`recipe.LEAST_RANK`), which costs numpy's reactions up to four digits.
     assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
+
+
+@pytest.mark.parametrize("number", SOME)
+def test_random_mechanisms_of_all_joints_move_as_in_numpy(number):
+    moves_as_in_numpy(number)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", sorted({*range(40)} - {*SOME}))
+def test_more_random_mechanisms_of_all_joints_move_as_in_numpy(number):
+    moves_as_in_numpy(number)
+
+
+def test_some_random_mechanisms_have_all_joints():
+    assert {type(joint) for number in SOME for joint in random_mechanism(11, number).joints} >= JOINTS
 
 
 def exact_acceleration(mechanism: Mechanism) -> np.ndarray:

@@ -46,7 +46,7 @@ def test_a_batch_is_the_same_as_one_state_at_a_time() -> None:
     assert np.abs(chain.forces(angle, rate) - alone).max() < 1e-12 * np.abs(alone).max()
 
 
-SCENES = [LinkPendulum(), LinkPendulum(links=3, tip=50.0, rate=1.0), TenLinks(), HundredLinks()]
+SCENES = [LinkPendulum(), LinkPendulum(links=3, tip=50.0, rate=1.0, duration=1.0), TenLinks(), HundredLinks()]
 
 
 @pytest.mark.parametrize("scene", SCENES)

@@ -2,97 +2,41 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-import zipfile
-from pathlib import Path
+from dataclasses import asdict
 
 import mujoco
 import numpy as np
-import pymunk
 import pytest
 
 from engines import Unsupported
 from engines.mujoco import read
 from reference.validation import InvalidMechanism
 from reports.check.comparing import refuse_disagreement
+from reports.pages.your_model.others import rows
+from tests.models_of_others import models, spaces, unpacked
 
 pytestmark = pytest.mark.slow
 
-EXAMPLES = Path(pymunk.__file__).parent / "examples"
-# In a process of its own: windows and drawing are replaced, and the space of the first step is looked at.
-ASK = """
-import json, os, runpy, signal, sys
-from unittest.mock import MagicMock
-
-for name in ("pygame", "pygame.locals", "pygame.color", "pygame.font", "pyglet", "pyglet.gl", "pyglet.window"):
-    sys.modules[name] = MagicMock()
-import pymunk
-
-for name in ("pygame_util", "pyglet_util"):
-    sys.modules[f"pymunk.{name}"] = MagicMock()
-    setattr(pymunk, name, sys.modules[f"pymunk.{name}"])
-
-class Stepped(BaseException):
-    pass
-
-def step(space, dt):
-    raise Stepped(space, dt)
-
-own, pymunk.Space.step = pymunk.Space.step, step
-pymunk.Space.debug_draw = lambda space, options: None
-signal.alarm(20)
-try:
-    runpy.run_path(sys.argv[1], run_name="__main__")
-    print(json.dumps(None))
-except Stepped as stepped:
-    space, dt = stepped.args
-    pymunk.Space.step = own
-    from engines import Unsupported
-    from engines.pymunk import read
-    from reference.validation import InvalidMechanism
-    from reports.check.comparing import refuse_disagreement
-    try:
-        reading = read(space, dt)
-        told = {"read": [len(reading.mechanism.bodies), refuse_disagreement(reading)]}
-    except (Unsupported, InvalidMechanism) as reason:
-        told = {"refused": str(reason)}
-    print(json.dumps(told))
-except BaseException as reason:
-    print(json.dumps(None))
-"""
-
 
 @pytest.fixture(scope="module")
-def answers():
-    """By the name of an example what became of its space; None where the example makes none without a window."""
-    out = {}
-    for path in sorted(EXAMPLES.glob("*.py")):
-        if path.name.startswith("_"):
-            continue
-        told = subprocess.run(
-            [sys.executable, "-c", ASK, str(path)],
-            cwd=Path(__file__).resolve().parents[1],
-            env={"PYTHONPATH": f"{Path(__file__).resolve().parents[1]}:{EXAMPLES}", "PATH": ""},
-            capture_output=True,
-            text=True,
-        )
-        lines = told.stdout.splitlines()
-        out[path.stem] = json.loads(lines[-1]) if lines and told.returncode == 0 else "crashed"
-    return out
+def examples():
+    return list(spaces())
 
 
-def test_every_space_of_pymunks_examples_is_read_or_refused_in_a_sentence(answers):
-    assert "crashed" not in answers.values()
-    spaces = {name: told for name, told in answers.items() if told is not None}
-    assert len(spaces) >= 10
-    for told in spaces.values():
-        if "read" in told:
-            assert told["read"][1] < 1e-6
-        else:
-            assert "\n" not in told["refused"]
-            assert 20 < len(told["refused"]) < 400
+def test_every_space_of_pymunks_examples_is_read_or_refused_in_a_sentence(examples):
+    assert len(examples) >= 10
+    for found in examples:
+        if not found.bodies:
+            assert "\n" not in found.reason
+            assert 20 < len(found.reason) < 400
+
+
+def test_the_table_of_the_page_has_every_example_of_pymunk(examples):
+    assert [asdict(found) for found in examples] == [row for row in rows() if row["source"] == "pymunk"]
+
+
+def test_the_table_of_the_page_has_every_model_of_the_packages(packages):
+    assert [asdict(found) for found in models(packages)] == [row for row in rows() if row["source"] != "pymunk"]
 
 
 # What each is expected to give, with all that is no ideal joint switched off, or the words of the refusal.
@@ -127,13 +71,8 @@ DM_CONTROL = {
 def packages(tmp_path_factory):
     """The packages' own files, fetched by pip and unpacked; skipped where no registry answers."""
     folder = tmp_path_factory.mktemp("packages")
-    command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(folder)]
-    told = subprocess.run([*command, "gymnasium", "dm_control"], capture_output=True, text=True)
-    if told.returncode:
+    if not unpacked(folder):
         pytest.skip("pip finds no registry here")
-    for wheel in folder.glob("*.whl"):
-        with zipfile.ZipFile(wheel) as archive:
-            archive.extractall(folder / wheel.name.split("-")[0])
     return folder
 
 

@@ -19,6 +19,7 @@ from engines.mujoco.stiffness import Hardened
 from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reports.search.mechanisms import mechanism
+from tests.present import present
 
 DURATION, STEP, SAMPLES = 0.2, 1e-3, 2
 EVERY = round(DURATION / SAMPLES / STEP)
@@ -27,8 +28,8 @@ HELD = ("pin", "slot", "skate", "drive")
 ALL = (*HELD, "roll")
 
 GOAL = 1e-7  # rad
-# Of an error that the estimate should know. What it can't know is the compliance of the rows, 1e-12 of their inertia.
-UNKNOWN = 1e-9
+# Of an error that the estimate should know: below there is rounding, as in all of the grid.
+UNKNOWN = 1e-11
 
 
 @dataclass(frozen=True)
@@ -41,9 +42,13 @@ class Miss:
     warnings: tuple[str, ...]
 
 
-def miss(own: Mechanism, engine: MuJoCo = EXTENDED, step: float = STEP) -> Miss:
+def miss(own: Mechanism, engine: MuJoCo = EXTENDED, step: float = STEP, divided: bool = True) -> Miss | None:
+    """None where the motion ends in a singular position, at which the judge stops."""
     truth = TRUTH.build(own, DURATION / SAMPLES)(SAMPLES, 1)
-    motion = engine.build(own, step)(SAMPLES, round(DURATION / SAMPLES / step))
+    if not np.isfinite(truth.pose).all():
+        return None
+    run = engine.build(own, step)
+    motion = (run if divided else replace(run, divided=None))(SAMPLES, round(DURATION / SAMPLES / step))
     assert motion.estimate is not None
     # What the heaviest body needs to follow the mechanism's own time, where nothing is held with force.
     usual = max(body.mass for body in own.bodies) * own.length_scale / own.time_scale**2
@@ -55,36 +60,38 @@ def miss(own: Mechanism, engine: MuJoCo = EXTENDED, step: float = STEP) -> Miss:
     )
 
 
-def assert_right(misses: list[Miss], known: float) -> None:
-    """Below the goal, or told: the share `known` of them may be beyond it where the estimate says so."""
-    for one in misses:
-        assert one.angle < GOAL or one.estimate > GOAL / 2 or one.warnings
-        assert one.angle < 10 * max(one.estimate, UNKNOWN)
-    angles, reactions = (np.array([getattr(one, name) for one in misses]) for name in ("angle", "reaction"))
-    assert np.mean(angles > GOAL) <= known
-    assert np.mean(reactions > 1e-3) <= known
+def assert_right(found: list[Miss | None]) -> None:
+    misses = [one for one in found if one is not None]
+    angles, reactions, estimates = (
+        np.array([getattr(one, name) for one in misses]) for name in ("angle", "reaction", "estimate")
+    )
+    assert angles.max() < GOAL
+    assert reactions.max() < 1e-3
+    wild = angles > 10 * np.maximum(estimates, UNKNOWN)
+    assert np.mean(wild) <= 1e-3, np.flatnonzero(wild)
     assert np.median(angles) < 1e-11
     assert np.median(reactions) < 1e-9
 
 
 def test_forty_random_mechanisms_move_as_they_should_to_1e_7() -> None:
-    assert_right([miss(mechanism(11, number, HELD)) for number in range(40)], 0.05)
+    assert_right([miss(mechanism(11, number, HELD)) for number in range(40)])
 
 
 @pytest.mark.slow
-def test_two_thousand_random_mechanisms_move_as_they_should_to_1e_7_or_say_so() -> None:
-    # A motion that shoots through a nearly singular position asks for smaller steps, and the estimate knows it.
+def test_two_thousand_random_mechanisms_move_as_they_should_to_1e_7() -> None:
     found = [miss(mechanism(12, number, HELD)) for number in range(1850)]
-    found += [miss(mechanism(13, number, ALL)) for number in range(150)]
-    assert_right(found, 0.01)
+    assert_right(found + [miss(mechanism(13, number, ALL)) for number in range(150)])
 
 
-def test_what_is_beyond_the_goal_is_told_and_falls_with_the_fourth_power_of_the_step() -> None:
+def test_a_motion_that_becomes_fast_takes_more_steps() -> None:
     own = mechanism(1, 479, HELD)  # rates rise fivefold within 10 ms, between two skates that are nearly in line
-    coarse, fine = miss(own), miss(own, step=2.5e-4)
+    coarse, fine = present(miss(own, divided=False)), present(miss(own, step=2.5e-4, divided=False))
     assert coarse.angle > 1e-4
     assert coarse.angle < coarse.estimate < 10 * coarse.angle
     assert fine.angle < coarse.angle / 100
+    divided = present(miss(own))
+    assert divided.angle < GOAL / 10
+    assert divided.angle < 10 * divided.estimate
 
 
 def test_a_light_body_that_carries_a_heavy_one_makes_rows_softer_and_loses_nothing() -> None:
@@ -92,7 +99,7 @@ def test_a_light_body_that_carries_a_heavy_one_makes_rows_softer_and_loses_nothi
     model = EXTENDED.model(own, STEP)
     # 1e-8 of MuJoCo's own would leave Newton's iterations without effect: 4e-4 rad, and nobody said so.
     assert _lost(model.compiled, model.start()) < 0.1
-    found = miss(own)
+    found = present(miss(own))
     assert found.angle < 1e-9
     assert found.reaction < 1e-8
 

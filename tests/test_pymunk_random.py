@@ -10,6 +10,9 @@ import pytest
 from engines import Engine, Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, EXTENDED, METHODS, TUNED
+from engines.pymunk.contraction import Sweeping
+from engines.pymunk.methods import AIMED, SETTLED
+from engines.pymunk.running import record
 from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
 from reference.skate.sleigh import ChaplyginSleigh
@@ -22,6 +25,7 @@ EVERY = round(DURATION / SAMPLES / STEP)
 # Contacts of curves that are not round cost the judge a hundred times as much as the other rows: they are the fewest.
 HELD = ("pin", "slot", "skate", "drive")
 ALL = (*HELD, "roll")
+GOAL = 1e-7  # rad
 
 
 @dataclass(frozen=True)
@@ -37,17 +41,24 @@ class Case:
     @property
     def sound(self) -> bool:
         """As exact as a user may expect of an extrapolation with steps of 1e-3 s."""
-        return self.angle < 1e-7 and self.reaction < 1e-3
+        return self.angle < GOAL and self.reaction < 1e-3
+
+    @property
+    def told(self) -> bool:
+        """In words, or by its estimate."""
+        return bool(self.said) or self.estimate > GOAL / 2
 
 
 def compared(engine: Engine, described: Mechanism, number: int) -> Case | None:
-    """None where the engine has no such joint."""
+    """None where the engine has no such joint, or the motion ends in a singular position, where the judge stops."""
+    truth = TRUTH.build(described, DURATION / SAMPLES)(SAMPLES, 1)
+    if not np.isfinite(truth.pose).all():
+        return None
     try:
         with np.errstate(all="ignore"):
             found = engine.build(described, STEP)(SAMPLES, EVERY)
     except Unsupported:
         return None
-    truth = TRUTH.build(described, DURATION / SAMPLES)(SAMPLES, 1)
     # A torque counts as the force that it is at the mechanism's length. Where nothing is held with force, the heaviest
     # body's need at the mechanism's own time is the measure.
     arm = np.where(described.turning, described.length_scale, 1.0)
@@ -72,7 +83,7 @@ def holds(found: list[Case], share: float) -> None:
     """So large a share is sound, the others say that they aren't, and hardly an estimate is ten times too small."""
     wrong = [case for case in found if not case.sound]
     assert len(wrong) <= (1 - share) * len(found), wrong
-    assert all(case.said for case in wrong), [case for case in wrong if not case.said]
+    assert all(case.told for case in wrong), [case for case in wrong if not case.told]
     # Below 1e-11 rad there is rounding, as in all of the grid.
     wild = [case for case in found if not case.angle <= max(10 * case.estimate, 1e-11)]
     assert len(wild) <= 1e-3 * len(found), wild
@@ -80,14 +91,60 @@ def holds(found: list[Case], share: float) -> None:
 
 
 def test_extended_is_exact_on_forty_random_mechanisms_or_says_that_it_is_not():
-    holds(cases(EXTENDED, 21, 40, HELD), 0.95)  # two of forty may miss it, where one in a hundred is expected to
+    holds(cases(EXTENDED, 21, 40, HELD), 0.97)  # one of forty may miss it, where one in a hundred is expected to
 
 
 @pytest.mark.slow
 def test_extended_is_exact_on_two_thousand_random_mechanisms_or_says_that_it_is_not():
-    # One in a hundred was wanted. Of 377 that were drawn 2.9 % miss it: rows so nearly dependent that 300 sweeps leave
-    # nearly all of the slowest mode. Each of them says so, and that is asked of all.
-    holds(cases(EXTENDED, 22, 1850, HELD) + cases(EXTENDED, 23, 150, ALL), 0.95)
+    holds(cases(EXTENDED, 22, 1850, HELD) + cases(EXTENDED, 23, 150, ALL), 0.99)
+
+
+def test_rows_on_which_no_number_of_sweeps_converges_are_projected_and_the_holder_is_told():
+    # Three slots, two pins and a skate on four bodies: a sweep leaves all but 6e-6 of the slowest mode.
+    own = mechanism(22, 263, HELD)
+    swept = replace(EXTENDED, skates=replace(EXTENDED.skates, engine=replace(AIMED, projects=False)))
+    missed, found = compared(swept, own, 263), compared(EXTENDED, own, 263)
+    assert missed is not None
+    assert found is not None
+    assert missed.reaction > 1e-2
+    assert any("not converged" in words for words in missed.said)
+    assert found.angle < 1e-10
+    assert found.reaction < 1e-4
+    assert not found.said
+    assert {swept.holder(joint, own) for joint in own.joints} <= {"engine", "engine, our rows"}
+    assert {EXTENDED.holder(joint, own) for joint in own.joints} == {"ours"}
+
+
+def test_a_blade_on_a_crank_is_where_the_description_says():
+    # The origin of a crank is its pin in pymunk, and not its centre of mass: 0.07 rad, and nothing said so.
+    found = compared(EXTENDED, mechanism(22, 483, HELD), 483)
+    assert found is not None
+    assert found.angle < 1e-10
+    assert found.reaction < 1e-6
+
+
+def test_a_projection_changes_nothing_where_sweeps_converge():
+    # What it takes out is what sweeps leave: of converged ones nothing but rounding.
+    own = MOVED["slider-crank"]
+    dt = 1e-3
+    swept, projected = (SETTLED.swept_model(own, dt, Sweeping(3000, projected=which)) for which in (False, True))
+    plain, other = (record(model, dt, 20, 10, raw=True) for model in (swept, projected))
+    assert np.abs(plain.pose - other.pose).max() < 1e-12
+    assert np.abs(plain.after - other.after).max() < 1e-10
+    # And with a single sweep it gives the same all the same.
+    single = record(SETTLED.swept_model(own, dt, Sweeping(1, projected=True)), dt, 20, 10, raw=True)
+    assert np.abs(plain.pose - single.pose).max() < 1e-12
+
+
+def test_a_motion_that_becomes_fast_takes_more_steps():
+    own = mechanism(22, 358, HELD)  # a slot on a crank runs along a rod: 3 rad/s become 20 within 0.2 s
+    plain = replace(EXTENDED, pins=replace(EXTENDED.pins, divides=False))
+    missed, found = compared(plain, own, 358), compared(EXTENDED, own, 358)
+    assert missed is not None
+    assert found is not None
+    assert missed.angle > 1e-5
+    assert missed.told
+    assert found.angle < 1e-8
 
 
 @pytest.mark.slow

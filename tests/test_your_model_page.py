@@ -9,6 +9,7 @@ import pytest
 
 from reports.grid.tasks import Answer, answered
 from reports.pages.page import Material
+from reports.pages.your_model import others
 from reports.pages.your_model.answers import CART, FOUR_BAR, SWING, WALKS
 from reports.pages.your_model.page import PAGE
 from reports.text.rendering import render_page
@@ -57,3 +58,14 @@ def test_what_the_titles_claim_is_so(answers):
 def test_an_answer_is_the_same_at_every_run(answers):
     again = answered(replace(CART, duration=0.3))
     assert again.values == answers[CART].values
+
+
+def test_every_model_of_others_is_on_the_page_by_name(answers):
+    text = page(answers)
+    told = text[text.index("## Models that others ship") :]
+    for row in others.rows():
+        assert f"`{row['model']}`" in told
+        assert row["reason"].replace("|", "\\|") in told
+    assert "| Gymnasium | `half_cheetah` | read: 7 bodies, with `--without armature` |" in told
+    assert len(others.rows()) >= 50
+    assert len({(row["source"], row["model"]) for row in others.rows()}) == len(others.rows())

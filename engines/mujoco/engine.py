@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import itertools
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import mujoco
 
 from engines import Holder, Promise, Size, Softness, Unpromised
+from engines.finer import steps_for_one
 from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
@@ -50,7 +51,7 @@ class MuJoCo(Valid):
     `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever
     the integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a
     second run with half as many steps tells the error of the first, if that falls with the fourth power of the
-    step.
+    step, and a motion that becomes faster than its start lets expect takes more steps (`engines.finer`).
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -144,12 +145,20 @@ class MuJoCo(Valid):
         )
         promised = self.order(mechanism) if self.estimates else None
         fourth = isinstance(promised, Promise) and promised.order >= 4
-        return MuJoCoRun(model, data, size, (lambda other: self.build(mechanism, other)) if fourth else None)
+        if not fourth:
+            return MuJoCoRun(model, data, size)
+
+        def plain(other: float) -> MuJoCoRun:
+            return replace(self.build(mechanism, other), divided=None)
+
+        return MuJoCoRun(
+            model, data, size, plain, lambda duration: steps_for_one(self, plain, mechanism, duration, 4.0, finest=64)
+        )
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive) -> Model:
-        """The compiled model alone."""
-        return self._model(mechanism, dt, as_text=False)
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
+        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps."""
+        return self._model(mechanism, dt, as_text)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:

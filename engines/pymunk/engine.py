@@ -17,7 +17,8 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstructio
 from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
-from engines.pymunk.running import PymunkRun
+from engines.pymunk.projection import COST, MOST_ROWS
+from engines.pymunk.running import UNSETTLED, PymunkRun
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -48,6 +49,7 @@ class Pymunk(Valid):
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
     more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
+    `projects`: where these sweeps don't converge, our code takes out what they leave (`engines.pymunk.projection`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -71,6 +73,7 @@ class Pymunk(Valid):
     settled: bool = False
     fewest: Count = FEWEST
     work: Whole = 0
+    projects: bool = False
 
     @property
     def name(self) -> str:
@@ -92,7 +95,9 @@ class Pymunk(Valid):
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
         """About how long a step takes [s]: the bodies, and every joint in every sweep."""
-        return STEP_COST * over_three(mechanism) + SWEEP_COST * len(mechanism.joints) * self.sweeps(mechanism)
+        swept = self.sweeping(mechanism)
+        sweeps = SWEEP_COST * len(mechanism.joints) * swept.iterations
+        return STEP_COST * over_three(mechanism) + sweeps + (COST if swept.projected else 0.0)
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -137,6 +142,8 @@ class Pymunk(Valid):
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
+        if self.projects and mechanism.row_count <= MOST_ROWS and (found.gain < 1 or found.unsettled > UNSETTLED):
+            return Sweeping(self.fewest, left=found.left, converged=self.fewest, projected=True)
         if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
             found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
         return found
@@ -152,5 +159,14 @@ class Pymunk(Valid):
         bias, unit = self.error_bias, 1.0
         if not isinstance(bias, int | float):
             bias, unit = 1 - sweeping.gain, (1.0 if sweeping.gain == 1 else dt)
-        settings = Settings(sweeping.iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact)
+        settings = Settings(
+            sweeping.iterations,
+            float(bias),
+            unit,
+            self.skate,
+            self.roll,
+            self.slot,
+            self.contact,
+            projected=dt if sweeping.projected else 0.0,
+        )
         return build_model(mechanism, settings)

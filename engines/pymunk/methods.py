@@ -23,10 +23,20 @@ LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate
 # What is extrapolated has to be smooth in the step from the first sample on, and stable: about two milliseconds a step
 # for the few mechanisms whose rows nearly depend on each other, where 300 sweeps leave nearly all.
 WORK = 200_000
-SETTLED = replace(LEAPFROG, settled=True, work=WORK)
+SETTLED = replace(LEAPFROG, settled=True, work=WORK, projects=True)
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
 # To aim a groove takes as long as these forty.
-AIMED = Pymunk("aimed", "contraction", "contraction", skate="groove", roll="pivot", settled=True, fewest=40, work=WORK)
+AIMED = Pymunk(
+    "aimed",
+    "contraction",
+    "contraction",
+    skate="groove",
+    roll="pivot",
+    settled=True,
+    fewest=40,
+    work=WORK,
+    projects=True,
+)
 # The leapfrog's error has all powers from the second, not only even ones; with a skate from the first.
 FIVE = (2, 3, 4, 6, 8)
 # Even numbers of steps only, as a reflection asks for, and even powers, as it gives.
@@ -34,8 +44,8 @@ EVEN, EVEN_POWERS = (2, 4, 6, 8), (2, 4, 6)
 EXTENDED = Extended(
     "extended",
     single=Extrapolated(Reflected("reflection"), "extended", levels=EVEN, powers=EVEN_POWERS),
-    skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4)),
-    pins=Extrapolated(SETTLED, "extended", levels=FIVE, powers=(2, 3, 4, 5)),
+    skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4), divides=True),
+    pins=Extrapolated(SETTLED, "extended", levels=FIVE, powers=(2, 3, 4, 5), divides=True),
 )
 VARIANTS: tuple[Engine, ...] = (DEFAULT, TUNED, EXTENDED)
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)

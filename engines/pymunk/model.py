@@ -20,6 +20,7 @@ from engines.pymunk.joints.rod_gear_weld import gear, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
+from engines.pymunk.projection import Projection
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -32,7 +33,8 @@ ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1, GearJoint: 1
 class Settings:
     """What a model is built with: sweeps, the part of a gap that is left after a unit of time, constructions.
 
-    `unit` [s] is the engine's second: its velocities, gravity and steps are counted in it.
+    `unit` [s] is the engine's second: its velocities, gravity and steps are counted in it. `projected` [s]: velocities
+    are projected after steps of this length (`engines.pymunk.projection`); 0 for none.
     """
 
     iterations: int
@@ -42,6 +44,7 @@ class Settings:
     roll: RollConstruction
     slot: SlotConstruction
     contact: Contact
+    projected: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -94,6 +97,8 @@ class Model:
         self.space.step(dt)
         for body in self.bodies:
             body.position_func = pymunk.Body.update_position  # pymunk restores the C pointer: no cost afterwards
+        for repair in self.repairs:
+            repair()
 
 
 def _stay(body: pymunk.Body, dt: float) -> None:
@@ -148,6 +153,9 @@ class _Builder:
         size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
         origins = np.array([self._origin(name) for name in self.bodies])
         unit = self.settings.unit
+        if self.settings.projected:
+            bodies = tuple(self.bodies.values())
+            self.repairs.append(Projection(self.mechanism, bodies, origins, self.settings.projected, unit))
         return Model(
             self.space, tuple(self.bodies.values()), origins, size, unit, tuple(self.aims), tuple(self.repairs)
         )
@@ -196,7 +204,10 @@ class _Builder:
                 self.aims += aims
                 return constraints
             case Skate():
-                constraints, aims, repairs = blade(joint, settings.skate, first, second, self.mechanism.length_scale)
+                point = self._own(joint.second, joint.second_point)
+                constraints, aims, repairs = blade(
+                    joint, settings.skate, first, second, point, self.mechanism.length_scale
+                )
                 self.aims += aims
                 self.repairs += repairs
                 self.rows += 0 if constraints else 1  # held by hand

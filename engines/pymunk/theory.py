@@ -73,7 +73,12 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
 
 
 def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
-    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared."""
+    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared.
+
+    Where velocities are projected after every step, what the engine's joints did decides nothing.
+    """
+    if engine.sweeping(mechanism).projected:
+        return "ours"
     match joint:
         case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):
             return "engine, our rows"

@@ -25,6 +25,8 @@ from reference.validation import Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
+NEAR = 0.5  # of m s: up to there exponentials have not gone apart
+
 
 @dataclass(frozen=True)
 class Tow(Valid):
@@ -84,7 +86,31 @@ class Tow(Valid):
         if swing == 0:
             return cosine * way  # psi stays as it is
         across, along, scale = self._moved(way)
-        return 2 * self.length * (np.log(np.hypot(across, along)) + scale)
+        far = 2 * self.length * (np.log(np.hypot(across, along)) + scale)
+        return np.where(self._near(way), self.length * self._grown(way), far)
+
+    def _near(self, way: Array) -> NDArray[np.bool_]:
+        """Where exponentials have not gone apart yet; where the wheel goes round for ever they never do."""
+        if self._discriminant < 0:
+            return np.full(way.shape, True)
+        return math.sqrt(self._discriminant) * np.abs(way) / (2 * self.length) < NEAR
+
+    def _grown(self, way: Array) -> Array:
+        """ln(p^2 + q^2) (...) of the unit vector that has become (q, p): of a short way it keeps all digits.
+
+        With e = cosh(m s) and o = sinh(m s)/(2 L m), p^2 + q^2 - 1 = 2 o (e cos psi + o (1 + c L sin psi)), psi that of
+        the start.
+        """
+        sine, cosine, _ = self._start
+        if self._discriminant < 0:
+            rest = self._rest(way)
+            even, odd = np.cos(rest), np.sin(rest) / (2 * self.length * self._rate)
+        else:
+            size = np.minimum(math.sqrt(self._discriminant) * np.abs(way) / (2 * self.length), NEAR)
+            some = np.where(size > 0, size, 1.0)
+            even, odd = np.cosh(size), way / (2 * self.length) * np.where(size > 0, np.sinh(some) / some, 1.0)
+        with np.errstate(invalid="ignore", divide="ignore"):  # further on it is not asked for
+            return np.log1p(2 * odd * (even * cosine + odd * (1 + self.length * self.curvature * sine)))
 
     @validated
     def wheel_path_length(self, way: ArrayLike) -> Array:
@@ -128,17 +154,21 @@ class Tow(Valid):
         """Of the turn of (q, p) where the wheel goes round for ever [rad/m]."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
+    def _rest(self, way: Array) -> Array:
+        """The turn of (q, p) less its half turns [rad]."""
+        return self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+
     def _moved(self, way: Array) -> tuple[Array, Array, Array]:
         """(q, p), that began as a unit vector, across and along its start; both times e^scale."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
-            rest = self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+            rest = self._rest(way)
             double = 2 * self.length * self._rate
             across, along = -np.sin(rest) * swing, np.cos(rest) * double + np.sin(rest) * cosine
             return across, along, np.full(way.shape, -math.log(double))
         root = math.sqrt(self._discriminant)  # 2 L m
         size = root * np.abs(way) / (2 * self.length)
-        near = size < 0.5
+        near = size < NEAR
         # tanh(m s)/(2 L m), also for m = 0.
         some = np.where(near & (size > 0), size, 1.0)
         tangent = way / (2 * self.length) * np.where(size > 0, np.tanh(some) / some, 1.0)
@@ -158,7 +188,13 @@ class Tow(Valid):
     def heading(self, way: ArrayLike) -> Array:
         """The drawbar's direction in the world, from the wheel to the hitch [rad]."""
         way = np.asarray(way, dtype=float)
-        return self.start[2] + self.curvature * way + self.relative_angle(way)
+        if self._discriminant >= 0:
+            return self.start[2] + self.curvature * way + self.relative_angle(way)
+        # The hitch's turn and psi nearly cancel on a small circle: what they share, 2 rate s, is not added at all.
+        across, along, _ = self._moved(way)
+        slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
+        shared = math.copysign(1.0, self.radius) * (slower * way + 2 * self._rest(way))
+        return self.start[2] + self.angle + shared + 2 * np.arctan2(across, along)
 
     @validated
     def hitch(self, way: ArrayLike) -> Array:

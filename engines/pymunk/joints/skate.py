@@ -29,7 +29,7 @@ from pymunk.constraints import Constraint, GrooveJoint
 
 from engines import Unsupported
 from engines.pymunk.joints.link import Link, drifted
-from reference.joints import Skate
+from reference.joints import Skate, Vector
 
 SkateConstruction = Literal["centre", "point", "projection", "stale groove", "groove", "friction"]
 
@@ -40,16 +40,20 @@ Repair = Callable[[], None]
 
 
 def blade(
-    joint: Skate, construction: SkateConstruction, first: pymunk.Body, second: pymunk.Body, length: float
+    joint: Skate, construction: SkateConstruction, first: pymunk.Body, second: pymunk.Body, point: Vector, length: float
 ) -> tuple[list[Constraint], list[Aim], list[Repair]]:
-    """Constraints, what to do before each step and what after it; `length` [m] of the mechanism; raises Unsupported."""
+    """Constraints, what to do before each step and what after it; raises Unsupported.
+
+    `point` [m] is the blade's from the origin of the engine's second body, which is not the centre of mass of a crank;
+    `length` [m] of the mechanism.
+    """
     if construction == "friction":
         raise Unsupported(
             f"joint {joint.name!r}: no friction of pymunk's shapes makes a blade: contacts press in the plane, and a "
             "blade seen from above presses on nothing in the plane, so there is no normal force to multiply"
         )
     if construction == "groove" and joint.first is not None:
-        link = Link(joint, first, second, joint.second_point, reach=LINK_REACH * length)
+        link = Link(joint, first, second, point, reach=LINK_REACH * length)
         return [link.constraint], [link], []
     if joint.first is not None:
         raise Unsupported(f"joint {joint.name!r}: the construction {construction!r} knows a skate on the ground only")

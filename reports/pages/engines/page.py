@@ -2,39 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from engines import Engine, registry
+from engines import registry
 from reports.charts.theme import svg
 from reports.charts.work_precision import work_precision
 from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer
-from reports.pages.engines.capabilities import ASKED, Capabilities
+from reports.pages.engines.capabilities import Capabilities
 from reports.pages.engines.cells import (
     BORROWED,
     CHARTED,
+    CLOSED_AT,
     CLOSED_BY,
     CLOSING,
     COMPILED,
+    CORRECTED,
     FREE,
-    MILLISECOND,
     OPEN,
     PINS,
     SHARES,
+    SPRUNG,
     SUBSTEPPED,
 )
 from reports.pages.engines.chart import draw_shares
 from reports.pages.engines.open_work import OpenWork
+from reports.pages.engines.tables import (
+    correction_table,
+    experiment_table,
+    free_table,
+    frequency_table,
+    line_of,
+    matrix,
+    missed,
+    moves_table,
+    rows_of,
+    sentences,
+    share_table,
+)
 from reports.pages.engines.velocity_term import VelocityTerm
 from reports.pages.page import Failure, Material, Page
-from reports.text.provenance import told_versions
-from reports.text.tables import NOTHING, markdown, milliseconds, number
+from reports.text.tables import markdown, number
 
 NAME = "engines"
-LONGEST_WORD = len("with code of ours")  # what is longer is the sentence of a refusal
 # One of each, as shipped where that is a variant: what is built does not depend on settings, but for constructions.
 ASKED_OF = tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1]
 MATRIX = tuple(map(Capabilities, ASKED_OF))
@@ -54,7 +64,14 @@ EXPERIMENTS = (
     Failure(
         title="How much of a gap a step closes",
         expected="The share that a step closes decides how far pins stay open, and so the error, at equal step.",
-        cells=(*CLOSED_BY, *SUBSTEPPED.values(), *PINS.values()),
+        cells=tuple(
+            dict.fromkeys(
+                [
+                    *(*CLOSED_BY, *SUBSTEPPED.values(), *PINS.values()),
+                    *(*CLOSED_AT.values(), *SPRUNG.values(), *CORRECTED.values()),
+                ]
+            )
+        ),
     ),
     Failure(
         title="Compiled models",
@@ -65,23 +82,12 @@ EXPERIMENTS = (
 )
 
 
-def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of these scenes in all engines, those beside the grid as if they were of it."""
-    names = {*scenes}
-    found = (row for cell, row in material.rows.items() if cell.scene.name in names and cell.purpose != "failure")
-    return [replace(row, purpose="sweep") for row in found if row.purpose in ("sweep", "beside")]
-
-
-def _error(row: Measurement, field: str) -> float:
-    return getattr(row, field) if Outcome(row.outcome).comparable and getattr(row, field) > 0 else float("inf")
-
-
 def shown(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
     """(scene, method) of each engine as shipped, and of the variant of it that comes nearest to the truth."""
     chosen: set[tuple[str, str]] = set()
     for scene, engine in dict.fromkeys((row.scene, row.engine) for row in rows):
         own = [row for row in rows if (row.scene, row.engine) == (scene, engine)]
-        best = min(own, key=lambda row: _error(row, field))
+        best = min(own, key=lambda row: missed(row, field))
         chosen |= {(scene, best.method)} | {(scene, row.method) for row in own if row.variant == "default"}
     return chosen
 
@@ -90,14 +96,14 @@ def figures(material: Material) -> dict[str, str]:
     """Work and precision by quantity, and the error against the share of a gap that is closed."""
     drawn: dict[str, str] = {}
     for field, names in CHARTED.items():
-        rows = [row for row in rows_of(material, names) if _error(row, field) < float("inf") and row.cpu > 0]
+        rows = [row for row in rows_of(material, names) if missed(row, field) < float("inf") and row.cpu > 0]
         if rows:
             chosen = shown(rows, field)
             figure = work_precision(rows, lambda row, chosen=chosen: (row.scene, row.method) in chosen, field)
             drawn[f"work_{field}"] = svg(
                 figure, f"Each engine as shipped and at its best: {field} error against CPU time"
             )
-    lines = {name: _line(material, cells) for name, cells in CLOSING.items()}
+    lines = {name: line_of(material, cells) for name, cells in CLOSING.items()}
     lines = {name: points for name, points in lines.items() if points}
     if lines:
         marked = {"as shipped": (SHARES[1], lines), "its usual erp": (0.2, lines)}
@@ -109,69 +115,6 @@ def figures(material: Material) -> dict[str, str]:
         }
         drawn["shares"] = svg(draw_shares(lines, shipped), "Angle error against the share of a gap that a step closes")
     return drawn
-
-
-def _line(material: Material, cells: Mapping[float, Any]) -> list[tuple[float, float]]:
-    return [
-        (share, material.rows[cell].angle)
-        for share, cell in cells.items()
-        if cell in material.rows and _error(material.rows[cell], "angle") < float("inf")
-    ]
-
-
-def matrix(answers: Mapping[Capabilities, Answer]) -> str:
-    """A line an engine, from what it built; empty where nothing was asked yet."""
-    body = []
-    for task, answer in answers.items():
-        cells = [_short(str(answer.values[what])) for what in (*ASKED, "reactions", "width")]
-        body.append([task.of.name, *cells])
-    return markdown(["engine", *ASKED, "reactions", "numbers"], body, left=len(ASKED) + 3) if body else ""
-
-
-def _short(told: str) -> str:
-    return told if len(told) <= LONGEST_WORD else "no"
-
-
-def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str]]:
-    """(engine, what, its own sentence) of what it refuses."""
-    return [
-        (task.of.name, what, told)
-        for task, answer in answers.items()
-        for what in ASKED
-        if _short(told := str(answer.values[what])) == "no"
-    ]
-
-
-def free_table(material: Material) -> str:
-    """Every variant on the free four-bar at a step of a millisecond; empty without rows."""
-    rows = [row for row in rows_of(material, [FREE.name]) if row.every == MILLISECOND]
-    body = [
-        [
-            row.method,
-            number(row.angle) if Outcome(row.outcome).comparable else f"**{row.outcome}**",
-            *(number(getattr(row, name)) for name in ("gap", "energy", "reaction")),
-            milliseconds(row.cpu) if row.cpu > 0 else NOTHING,
-        ]
-        for row in sorted(rows, key=lambda row: _error(row, "angle"), reverse=True)
-    ]
-    header = ["method", "angle error [rad]", "gap [m]", "energy [relative]", "reaction [relative]", "CPU [ms/s]"]
-    return markdown(header, body) if body else ""
-
-
-def _share_table(material: Material) -> str:
-    lines = {name: dict(_line(material, cells)) for name, cells in CLOSING.items()}
-    body = [[number(share), *(number(lines[name].get(share, float("nan"))) for name in lines)] for share in SHARES]
-    header = ["share closed in a step", *(f"{name}: angle error [rad]" for name in lines)]
-    return markdown(header, body, left=0) if any(lines.values()) else ""
-
-
-def _experiment_table(material: Material, cells: Mapping[Any, Any], head: str, said: Mapping[Any, str]) -> str:
-    body = [
-        [said[key], number(row.angle), number(row.gap), number(row.energy)]
-        for key, cell in cells.items()
-        if (row := material.rows.get(cell)) is not None
-    ]
-    return markdown([head, "angle error [rad]", "gap [m]", "energy [relative]"], body) if body else ""
 
 
 def _terms(material: Material) -> str:
@@ -200,17 +143,18 @@ def words(material: Material) -> Mapping[str, Any]:
     """Tables by name, each empty where nothing was run."""
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
     pins = {"": "none", **{pin: f"{pin} alone" for pin in OPEN}, "ABCD": "all four"}
-    engines: tuple[Engine, ...] = tuple(task.of for task in answers)
     return {
         "matrix": matrix(answers),
         "refused": sentences(answers),
-        "package_versions": told_versions(engines),
         "free": free_table(material),
-        "shares": _share_table(material),
-        "pins": _experiment_table(material, PINS, "gap closed as shipped at", pins),
-        "substeps": _experiment_table(
+        "shares": share_table(material),
+        "pins": experiment_table(material, PINS, "gap closed as shipped at", pins),
+        "substeps": experiment_table(
             material, SUBSTEPPED, "sub-steps in a millisecond", {count: str(count) for count in SUBSTEPPED}
         ),
+        "moves": moves_table(material),
+        "frequencies": frequency_table(material),
+        "corrections": correction_table(material),
         "works": _works(material),
         "terms": _terms(material),
         "absent": list(registry.ABSENT.values()),

@@ -10,6 +10,7 @@ from reference.four_bar import FreeFourBar
 from reports.check.pictures import pictures
 from reports.check.shown import from_text
 from reports.pages.page import Material, Page
+from reports.pages.your_model import others
 from reports.pages.your_model.answers import WALKS, Walk
 from reports.text.tables import markdown, number
 
@@ -52,7 +53,7 @@ def words(material: Material) -> Mapping[str, Any]:
         found = found_of(material, walk)
         stem = walk.file.split(".")[0]
         told[stem] = None if found is None else {**found, "table": table(found)}
-    return {"found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
+    return {"others": others.told(), "found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
 
 
 PAGE = Page(

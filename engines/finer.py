@@ -1,0 +1,87 @@
+"""How many steps stand for one, in a motion that becomes much faster than its start lets expect.
+
+Near a singular position rates rise tenfold within a few steps, and no order of a method helps where its step is longer
+than what happens. A method that estimates its own error can know that before it runs: it makes a rough run, with steps
+of a fixed share of the mechanism's time scale, and asks it for its estimate. The answer is a number of the mechanism
+and the duration, not of the step that was asked for: so the method keeps its order, with a smaller factor.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from math import ceil, isfinite
+from typing import Any
+
+import numpy as np
+
+from engines.contract import Engine, Run, Unsupported
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reference.validation import Count, Positive, validated
+
+SAMPLES = 16  # a motion that is fast for a while is met by some of them, and an error stays
+SHARE, FEWEST, MOST = 100, 64, 1024  # rough steps in the mechanism's time scale; at least; at most, or it is too long
+DEAREST = 1.0  # s, by the method's own `step_cost`: a rough run of long chains would cost more than smaller steps bring
+# Of a radian or of the mechanism's length, lost in its time scale by a rough run. Usual motions lose 1e-6 at most by
+# Runge and Kutta's fourth order and less by higher ones. Beyond FAST, smaller steps must bring it back to USUAL. In
+# between, and above RESOLVED, the rough steps may be too long for the order to be seen: more of them are asked.
+USUAL, FAST, RESOLVED = 1e-6, 1e-5, 1e-3
+ROUGHER = 4  # times as many rough steps, until they are short enough
+
+_known: deque[tuple[Any, Mechanism, float, int]] = deque(maxlen=64)
+
+
+@validated
+def steps_for_one(
+    method: Engine,
+    build: Callable[[float], Run],
+    mechanism: Mechanism,
+    duration: Positive,
+    order: Positive,
+    finest: Count = 16,
+) -> int:
+    """Into how many a step has to be divided in a motion of `duration` [s]; 1 for nearly all mechanisms.
+
+    `build(dt)` makes a run of the method as it is, whose estimate falls with this order of its step. `method` is what
+    the answer is kept by, together with the mechanism. Where even `finest` times as many rough steps resolve nothing,
+    or a motion is so long, or a step so dear, that a rough run would take as long as a fine one, the answer is 1: the
+    run's own estimate tells the rest.
+    """
+    for known, same, lasting, found in _known:
+        if same is mechanism and lasting == duration and known == method:
+            return found
+    found = _found(build, mechanism, duration, order, finest, method.step_cost(mechanism))
+    _known.append((method, mechanism, duration, found))
+    return found
+
+
+def _found(
+    build: Callable[[float], Run], mechanism: Mechanism, duration: float, order: float, finest: int, cost: float
+) -> int:
+    steps = max(FEWEST, ceil(SHARE * duration / mechanism.time_scale))
+    if steps > MOST:
+        return 1
+    every, finer = ceil(steps / SAMPLES), 1
+    while finer <= finest and finer * steps * cost <= DEAREST:
+        lost = _lost(build, mechanism, duration, every * finer) * mechanism.time_scale / duration
+        if finer == 1 and lost <= USUAL:
+            return 1
+        if finer > 1 and lost <= RESOLVED:
+            return ceil(finer * (lost / USUAL) ** (1 / order)) if lost * finer**order > FAST else 1
+        finer *= ROUGHER
+    return 1
+
+
+def _lost(build: Callable[[float], Run], mechanism: Mechanism, duration: float, every: Count) -> float:
+    """The largest estimate of a run with so many steps between samples, in radians or lengths; infinite if lost."""
+    try:
+        with np.errstate(all="ignore"):
+            run: Trajectory = build(duration / SAMPLES / every)(SAMPLES, every)
+    except (Unsupported, ValueError, ArithmeticError):
+        return np.inf
+    if run.estimate is None or run.reset_at is not None:
+        return np.inf
+    size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    lost = float((run.estimate / size).max())
+    return lost if isfinite(lost) else np.inf

@@ -1,0 +1,90 @@
+"""What sweeps leave, taken out exactly: velocities projected after every step, where no number of sweeps would do.
+
+A sweep leaves rho of its slowest mode, and where rows nearly depend on each other rho is so near 1 that a million of
+them change nothing (`engines.pymunk.contraction`). Impulses of joints move velocities only in the directions that the
+rows span, so whatever the sweeps have done, what they would end at is the nearest velocity that the rows allow, in the
+metric of the masses. It is found here in one go, and closes all of a gap in a step, as joints do with an error_bias of
+zero. The engine's own joints stay as they are, and their warm start is stable: it sees neither a gap nor a slip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import lib
+
+from reference.joints import Drive
+from reference.mechanism import Mechanism
+from reference.row_system import RANK_TOLERANCE
+
+Array = NDArray[np.float64]
+
+MOST_ROWS = 40  # least squares of more take longer than the sweeps that are too few
+COST = 2.5e-4  # s, of some ten rows
+
+
+class Projection:
+    """Takes gaps and slips out of the velocities of a model's bodies, as the steps of `dt` [s] can.
+
+    `origins` (bodies, 2) [m] are the engine's in the mechanism's body frames. Velocities that no impulse changes, of
+    bodies whose motion is prescribed, are left alone.
+    """
+
+    def __init__(
+        self, mechanism: Mechanism, bodies: Sequence[pymunk.Body], origins: Array, dt: float, unit: float
+    ) -> None:
+        """`unit` [s] is the model's second."""
+        self._rows, self._rate = mechanism.joint_rows, mechanism.rate
+        self._bodies = [(body._body, x, y) for body, (x, y) in zip(bodies, origins.tolist(), strict=True)]
+        self._unit = unit
+        # A motor knows a rate and no angle, and a skate has no gap.
+        closing = [joint.holonomic and not isinstance(joint, Drive) for joint in mechanism.joints]
+        sizes = [joint.size for joint in mechanism.joints]
+        self._closed = np.repeat(np.where(closing, 1 / dt, 0.0), sizes)
+        root = 1 / np.sqrt(mechanism.inertias)
+        moved: list[tuple[int, Any, bool]] = []
+        for index, body in enumerate(bodies):
+            dynamic, turns = body.body_type == pymunk.Body.DYNAMIC, np.isfinite(body.moment)
+            root[index] *= (dynamic, dynamic, dynamic and turns)
+            if dynamic:
+                moved.append((index, body._body, bool(turns)))
+        self._root, self._moved = root.reshape(-1), moved
+
+    def __call__(self) -> None:
+        pose, twist = self._state()
+        matrix = self._rows.dense(pose)
+        wanted = self._rate - self._closed * np.nan_to_num(self._rows.gap(pose, _START)) - matrix @ twist.reshape(-1)
+        if not (np.isfinite(wanted).all() and np.isfinite(matrix).all()):
+            return  # it has blown up
+        matrix *= self._root
+        # Rows of equal length, so that no unit of theirs decides which of them depend on others.
+        norm = np.sqrt(np.einsum("ij,ij->i", matrix, matrix))
+        scale = np.divide(1.0, norm, out=np.zeros_like(norm), where=norm > 0)
+        change, *_ = np.linalg.lstsq(matrix * scale[:, None], wanted * scale, rcond=RANK_TOLERANCE)
+        twist += (change * self._root).reshape(twist.shape)
+        twist *= self._unit
+        for index, body, turns in self._moved:
+            x, y, rate = twist[index].tolist()
+            lib.cpBodySetVelocity(body, (x, y))
+            if turns:
+                lib.cpBodySetAngularVelocity(body, rate)
+
+    def _state(self) -> tuple[Array, Array]:
+        """Poses (bodies, 3) [m, m, rad] and twists (bodies, 3) [m/s, m/s, rad/s] of the centres of mass."""
+        values = []
+        for body, x, y in self._bodies:
+            place, velocity = lib.cpBodyGetPosition(body), lib.cpBodyGetVelocity(body)
+            angle, rate = lib.cpBodyGetAngle(body), lib.cpBodyGetAngularVelocity(body)
+            out_x, out_y = x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)
+            moving = velocity.x + rate * out_y, velocity.y - rate * out_x, rate
+            values.append((place.x - out_x, place.y - out_y, angle, *moving))
+        state = np.array(values)
+        return state[:, :3], state[:, 3:] / self._unit
+
+
+_START = np.asarray(0.0)  # s: only drives ask for the time, and their gap is not closed
