@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
+from engines.mujoco import TUNED
 from engines.mujoco.written_urdf import urdf
+from engines.pymunk import DEFAULT as PYMUNK
+from engines.pymunk.written_script import script
 from reference.four_bar import FreeFourBar
 from reference.scenes import SCENES
 from reports.check import rendering, settings
@@ -118,6 +121,26 @@ def test_coordinates_that_cannot_part_are_not_said_to_open(tmp_path):
     sentences = [sentence for section in told for sentence in section.sentences]
     assert "No joint opens by more than rounding." in sentences
     assert any(sentence.startswith("Step: your run is off the ideal motion") for sentence in sentences)
+
+
+def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):
+    scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
+    found = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
+    # Of first order, so of the size of a step times a rate of 10 rad/s; the crank's own forces nobody knows.
+    assert 0 < found.own_errors.worst("reaction") < 0.1
+    sentences = [sentence for section in sections(found) for sentence in section.sentences]
+    assert "The whole motion is prescribed, so a small error of the start has nothing to grow in." in sentences
+    assert any("0 freedoms by the rank" in sentence for sentence in sentences)
+
+
+def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
+    scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
+    found = found_in(tmp_path, TUNED.text(scene.mechanism(), 1e-3))
+    # The file's bodies stand parallel to the world at the start, so angles are counted from there.
+    truth, judge = scene.motion(found.own.t).pose, found.judge.trajectory.pose
+    assert np.abs((judge - judge[0]) - (truth - truth[0])).max() < 1e-10
+    assert found.met
+    assert any("taken as driven at 10 rad/s" in note.reason for note in found.reading.notes)
 
 
 def test_drawings_of_an_html_report_share_no_names(tmp_path):
