@@ -74,9 +74,9 @@ HEADER = 48
 
 # What is told, among the real numbers from TOLD on: the smallest pivot; the roll and the angle without a cell; accepted
 # steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if never; and how
-# much rounding alone may have changed the speeds, in parts of the mechanism's own.
-SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED = range(7)
-TOLDS = 7
+# much rounding alone may have changed the speeds, in parts of the mechanism's own; the last factor's smallest pivot.
+SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED, PIVOTED = range(8)
+TOLDS = 8
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def flat(mechanism: Mechanism) -> Flat:
     )
     real = np.concatenate([*numbers, np.zeros(sum(room))])
     real[header[TURNED] : header[TURNED] + 2 * bodies + 2 : 2] = 1.0  # the ground's stay so
-    real[header[TOLD] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0
+    real[header[TOLD] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0
     whole = np.concatenate(
         [np.array(header, dtype=np.int64), *(record.reshape(-1).astype(np.int64) for record in records)]
     )

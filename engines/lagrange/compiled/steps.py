@@ -7,7 +7,7 @@ import math
 from engines.lagrange.compiled.forces import free
 from engines.lagrange.compiled.inner import inner
 from engines.lagrange.compiled.rows import rows
-from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, solved
+from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, missed, solved
 from engines.lagrange.flat import (
     ACCELERATION,
     BIAS,
@@ -33,7 +33,7 @@ from engines.lagrange.flat import (
 )
 
 # Newton's correction is squared by the next one: after one this small, in parts of the mechanism, the next is lost in
-# rounding.
+# rounding. So is what a factor of the rows before it leaves of the slip, which is itself a small part of the speeds.
 CLOSED = 1e-9
 
 
@@ -44,17 +44,17 @@ def accelerated(whole, real, cells, pose, twist, t, out):
     if whole[ROWS] == 0:
         return
     rows(whole, real, cells, pose, twist, t)
-    for row in range(whole[ROWS]):
-        value = real[whole[BIAS] + row] - along(whole, real, out, row)
-        if whole[SOFT] > 0:
+    missed(whole, real, out, whole[BIAS], whole[RIGHT])
+    if whole[SOFT] > 0:
+        for row in range(whole[ROWS]):
             slip = along(whole, real, twist, row) - real[whole[RATE] + row]
-            value -= real[whole[DAMPING] + row] * slip + real[whole[STIFFNESS] + row] * real[whole[GAP] + row]
-            value -= real[whole[LACKING] + row] * real[whole[BIAS] + row]
-        real[whole[RIGHT] + row] = value
+            value = real[whole[DAMPING] + row] * slip + real[whole[STIFFNESS] + row] * real[whole[GAP] + row]
+            real[whole[RIGHT] + row] -= value + real[whole[LACKING] + row] * real[whole[BIAS] + row]
     whole[WHICH] = ALL
-    solved(whole, real)
+    solved(whole, real, False, False)
+    change = whole[CHANGE]
     for k in range(whole[COLUMNS]):
-        real[out + k] += real[whole[CHANGE] + k]
+        real[out + k] += real[change + k]
 
 
 @inner
@@ -64,25 +64,27 @@ def projected(whole, real, cells, pose, twist, t, most):
         return
     holonomic = most if whole[HOLONOMIC_ROWS] > 0 else 0
     which = HOLONOMIC if whole[HOLONOMIC_ROWS] < whole[ROWS] else ALL
+    kept, columns, right, gaps = False, whole[COLUMNS], whole[RIGHT], whole[GAP]
+    change, units = whole[CHANGE], whole[POSE_UNIT]
     for iteration in range(holonomic + 1):  # the last one for the twist
         last, largest = iteration == holonomic, 0.0
         rows(whole, real, cells, pose, twist, t)
-        for row in range(whole[ROWS]):
-            if last:
-                real[whole[RIGHT] + row] = along(whole, real, twist, row) - real[whole[RATE] + row]
-            else:
-                real[whole[RIGHT] + row] = real[whole[GAP] + row]
-        whole[WHICH] = ALL if last else which
-        solved(whole, real)
         if last:
-            for k in range(whole[COLUMNS]):
-                real[twist + k] -= real[whole[CHANGE] + k]
+            missed(whole, real, twist, whole[RATE], right)
+        else:
+            for row in range(whole[ROWS]):
+                real[right + row] = -real[gaps + row]
+        whole[WHICH] = ALL if last else which
+        solved(whole, real, True, last and kept)
+        if last:
+            for k in range(columns):
+                real[twist + k] += real[change + k]
             return
-        for k in range(whole[COLUMNS]):
-            real[pose + k] -= real[whole[CHANGE] + k]
-            largest = max(largest, abs(real[whole[CHANGE] + k]) / real[whole[POSE_UNIT] + k])
+        for k in range(columns):
+            real[pose + k] += real[change + k]
+            largest = max(largest, abs(real[change + k]) / real[units + k])
         if not largest > CLOSED:
-            holonomic = iteration + 1
+            holonomic, kept = iteration + 1, which == ALL
 
 
 @inner
@@ -90,16 +92,18 @@ def staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
     """One stage of a tableau, from the state at these places: its velocity and its acceleration."""
     columns = whole[COLUMNS]
     velocity, acceleration = whole[VELOCITY] + stage * columns, whole[ACCELERATION] + stage * columns
+    place = whole[STAGE_POSE]
     for k in range(columns):
-        real[velocity + k], real[whole[STAGE_POSE] + k] = real[twist + k], real[pose + k]
+        real[velocity + k], real[place + k] = real[twist + k], real[pose + k]
     for earlier in range(stage):
         share = stages[stage, earlier] * dt
         if share != 0:
+            gain, rate = whole[ACCELERATION] + earlier * columns, whole[VELOCITY] + earlier * columns
             for k in range(columns):
-                real[velocity + k] += share * real[whole[ACCELERATION] + earlier * columns + k]
-                real[whole[STAGE_POSE] + k] += share * real[whole[VELOCITY] + earlier * columns + k]
+                real[velocity + k] += share * real[gain + k]
+                real[place + k] += share * real[rate + k]
     at = t + nodes[stage] * dt
-    accelerated(whole, real, cells, whole[STAGE_POSE], velocity, at, acceleration)
+    accelerated(whole, real, cells, place, velocity, at, acceleration)
 
 
 @inner
@@ -109,9 +113,10 @@ def combined(whole, real, weights, dt, pose, twist):
     for stage in range(len(weights)):
         share = dt * weights[stage]
         if share != 0:
+            gain, rate = whole[ACCELERATION] + stage * columns, whole[VELOCITY] + stage * columns
             for k in range(columns):
-                real[pose + k] += share * real[whole[VELOCITY] + stage * columns + k]
-                real[twist + k] += share * real[whole[ACCELERATION] + stage * columns + k]
+                real[pose + k] += share * real[rate + k]
+                real[twist + k] += share * real[gain + k]
 
 
 @inner

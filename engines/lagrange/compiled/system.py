@@ -23,6 +23,7 @@ from engines.lagrange.flat import (
     MATRIX,
     MOBILITY,
     PIVOT,
+    PIVOTED,
     REACTION,
     RIGHT,
     ROW,
@@ -66,13 +67,13 @@ def assembled(whole, real):
     ends, mobility, matrix = whole[ENDS], whole[MOBILITY], whole[MATRIX]
     for entry in range(matrix, whole[CHANGE]):
         real[entry] = 0.0
+    before, x, y, turn = -1, 0.0, 0.0, 0.0
     for term in range(whole[TERM_AT], whole[TERM_AT] + TERM * whole[TERMS], TERM):
-        one, other, body = ends + whole[term + 1], ends + whole[term + 2], mobility + whole[term + 3]
-        real[matrix + whole[term]] += (
-            real[one] * real[body] * real[other]
-            + real[one + 1] * real[body + 1] * real[other + 1]
-            + real[one + 2] * real[body + 2] * real[other + 2]
-        )
+        one, other = ends + whole[term + 1], ends + whole[term + 2]
+        if one != before:  # terms of one end stand together
+            body, before = mobility + whole[term + 3], one
+            x, y, turn = real[one] * real[body], real[one + 1] * real[body + 1], real[one + 2] * real[body + 2]
+        real[matrix + whole[term]] += x * real[other] + y * real[other + 1] + turn * real[other + 2]
 
 
 @inner
@@ -166,29 +167,57 @@ def along(whole, real, vector, row):
 
 
 @inner
-def solved(whole, real):
-    """Fill the change with the least one, by mass, along which J changes by the right side, and its reactions."""
+def missed(whole, real, vector, right, out):
+    """Fill `out` with what J times the vector of columns lacks of the right side."""
+    end, record = whole[ENDS], whole[ROW_AT]
+    for row in range(whole[ROWS]):
+        one, other = vector + whole[record], vector + whole[record + 1]
+        real[out + row] = real[right + row] - (
+            real[end] * real[one]
+            + real[end + 1] * real[one + 1]
+            + real[end + 2] * real[one + 2]
+            + real[end + 3] * real[other]
+            + real[end + 4] * real[other + 1]
+            + real[end + 5] * real[other + 2]
+        )
+        end += 6
+        record += ROW
+
+
+@inner
+def solved(whole, real, small, kept):
+    """Fill the change with the least one, by mass, along which J changes by the right side, and its reactions.
+
+    `small`: of a change that is itself a correction, so that a long chain's digits need none. `kept`: with the factor
+    of the call before, for rows that have hardly turned since.
+    """
     rows, reaction, left, told = whole[ROWS], whole[REACTION], whole[LEFT], whole[TOLD]
-    soft_rows = whole[SOFT] > 1 and whole[WHICH] == ALL
-    if soft_rows:
-        softened(whole, real)
-    else:
-        assembled(whole, real)
-    pivot = factorised(whole, real)
+    right, pivots, some = whole[RIGHT], whole[PIVOT], whole[WHICH] != ALL
+    soft_rows = whole[SOFT] > 1 and not some
+    pivot = real[told + PIVOTED]
+    if not kept or pivot < EASY:
+        if soft_rows:
+            softened(whole, real)
+        else:
+            assembled(whole, real)
+        pivot = factorised(whole, real)
+        real[told + PIVOTED] = pivot
     real[told + SMALLEST] = min(real[told + SMALLEST], pivot)
     for row in range(rows):
-        real[reaction + row] = 0.0 if left_out(whole, real, row) else real[whole[RIGHT] + row]
+        real[reaction + row] = 0.0 if some and left_out(whole, real, row) else real[right + row]
     substituted(whole, real, reaction)
     pushed(whole, real)
-    if (pivot > EASY and rows <= FEW_ROWS) or soft_rows:
+    if (pivot > EASY and (small or rows <= FEW_ROWS)) or soft_rows:
         return  # reactions of soft rows miss the right side on purpose
     before = math.inf
     for _ in range(MOST_CORRECTIONS if pivot < EASY else 1):
         largest = 0.0
+        missed(whole, real, whole[CHANGE], right, left)
         for row in range(rows):
-            missing = real[whole[RIGHT] + row] - along(whole, real, whole[CHANGE], row)
-            real[left + row] = 0.0 if left_out(whole, real, row) else missing
-            largest = max(largest, real[left + row] * real[left + row] * real[whole[PIVOT] + row])
+            if some and left_out(whole, real, row):
+                real[left + row] = 0.0
+            missing = real[left + row]
+            largest = max(largest, missing * missing * real[pivots + row])
         if not 0 < largest < 0.25 * before:
             return
         before = largest
