@@ -177,7 +177,7 @@ def car(mass: Any, other: Any, inertia: Any, own: Any, ahead: Any, before: Any, 
 
 
 def our_car(
-    mass: float, other: float, inertia: float, own: float, ahead: float, before: float, *rest: float
+    mass: float, other: float, inertia: float, own: float, ahead: float, before: float, *rest: Any
 ) -> list[Any]:
     wheelbase, steering, hitch, length, speed, bend = rest
     scene = CarAndTrailer(
