@@ -2,9 +2,11 @@
 PYTHON ?= python3
 BIN := .venv/bin
 # A worker of pytest for each processor, with one thread each. A file stays in one worker, so that what its tests share
-# is made once. The grid has a pool of its own, and runs after the others.
-WORKERS := -n auto --dist loadfile
+# is made once; tests/conftest.py says which files begin. The grid has a pool of its own, and runs after the others.
+WORKERS := -n auto --dist loadfile --no-loadscope-reorder
 export OMP_NUM_THREADS ?= 1
+# The tests start many programs, each of which would compile every module again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report test slow check bench mutants lower clean
 

@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from engines.contract import Run, Unsupported
+from engines.contract import Engine, Run, Unsupported
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, Positive, validated
 
 SAMPLES = 16  # a motion that is fast for a while is met by some of them, and an error stays
-SHARE, FEWEST, MOST = 100, 64, 4096  # rough steps in the mechanism's time scale; at least; at most, or it is too long
+SHARE, FEWEST, MOST = 100, 64, 1024  # rough steps in the mechanism's time scale; at least; at most, or it is too long
+DEAREST = 1.0  # s, by the method's own `step_cost`: a rough run of long chains would cost more than smaller steps bring
 # Of a radian or of the mechanism's length, lost in its time scale by a rough run. Usual motions lose 1e-6 at most by
 # Runge and Kutta's fourth order and less by higher ones. Beyond FAST, smaller steps must bring it back to USUAL. In
 # between, and above RESOLVED, the rough steps may be too long for the order to be seen: more of them are asked.
@@ -33,7 +34,7 @@ _known: deque[tuple[Any, Mechanism, float, int]] = deque(maxlen=64)
 
 @validated
 def steps_for_one(
-    method: Any,
+    method: Engine,
     build: Callable[[float], Run],
     mechanism: Mechanism,
     duration: Positive,
@@ -44,23 +45,25 @@ def steps_for_one(
 
     `build(dt)` makes a run of the method as it is, whose estimate falls with this order of its step. `method` is what
     the answer is kept by, together with the mechanism. Where even `finest` times as many rough steps resolve nothing,
-    or a motion is so long that a rough run would take as long as a fine one, the answer is 1: the run's own estimate
-    tells the rest.
+    or a motion is so long, or a step so dear, that a rough run would take as long as a fine one, the answer is 1: the
+    run's own estimate tells the rest.
     """
     for known, same, lasting, found in _known:
         if same is mechanism and lasting == duration and known == method:
             return found
-    found = _found(build, mechanism, duration, order, finest)
+    found = _found(build, mechanism, duration, order, finest, method.step_cost(mechanism))
     _known.append((method, mechanism, duration, found))
     return found
 
 
-def _found(build: Callable[[float], Run], mechanism: Mechanism, duration: float, order: float, finest: int) -> int:
+def _found(
+    build: Callable[[float], Run], mechanism: Mechanism, duration: float, order: float, finest: int, cost: float
+) -> int:
     steps = max(FEWEST, ceil(SHARE * duration / mechanism.time_scale))
     if steps > MOST:
         return 1
     every, finer = ceil(steps / SAMPLES), 1
-    while finer <= finest:
+    while finer <= finest and finer * steps * cost <= DEAREST:
         lost = _lost(build, mechanism, duration, every * finer) * mechanism.time_scale / duration
         if finer == 1 and lost <= USUAL:
             return 1

@@ -133,8 +133,12 @@ def _programs() -> tuple[Any, Any, Any]:
             jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
         from mujoco import mjx
 
+    def step(model: Any, now: Any) -> Any:
+        # With doubles, whole numbers that it writes (of tendons' paths) become longer than those that it was given.
+        return jax.tree.map(lambda new, old: new.astype(old.dtype), mjx.step(model, now), now)
+
     def steps(model: Any, data: Any, count: Any) -> Any:
-        return jax.lax.fori_loop(0, count, lambda _, now: mjx.step(model, now), data)
+        return jax.lax.fori_loop(0, count, lambda _, now: step(model, now), data)
 
     return mjx, jax.jit(steps), jax.jit(mjx.forward)
 

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.distance import between, distance, length_of
+from reference.distance import apart, distance, length_of, point_rows
 from reference.plane import from_body
 from reference.validation import Name, NonNegative, Positive, Valid
 
@@ -44,17 +44,18 @@ class Spring(Valid):
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]; NaN where the points coincide, unless the rest length is zero."""
-        apart, rows = between(first, second, self.first_point, self.second_point)
+        points = self.first_point, self.second_point
+        vector, rows = apart(first, second, *points), point_rows(first, second, *points)
         rest = np.asarray(self.rest_length)
         with np.errstate(divide="ignore", invalid="ignore"):
-            stretched = 1 - np.where(rest == 0, 0.0, rest / np.where(rest == 0, 1.0, length_of(apart)))
+            stretched = 1 - np.where(rest == 0, 0.0, rest / np.where(rest == 0, 1.0, length_of(vector)))
             pull = (np.asarray(self.stiffness) * stretched)[..., None]
-            return -pull * (apart[..., 0, None] * rows[..., 0, :] + apart[..., 1, None] * rows[..., 1, :])
+            return -pull * (vector[..., 0, None] * rows[..., 0, :] + vector[..., 1, None] * rows[..., 1, :])
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
         """stiffness (distance - rest length)^2 / 2 (...) [J]."""
-        apart, _ = between(first, second, self.first_point, self.second_point)
-        return 0.5 * np.asarray(self.stiffness) * (length_of(apart) - np.asarray(self.rest_length)) ** 2
+        length = length_of(apart(first, second, self.first_point, self.second_point))
+        return 0.5 * np.asarray(self.stiffness) * (length - np.asarray(self.rest_length)) ** 2
 
 
 @dataclass(frozen=True)
@@ -102,13 +103,15 @@ class TorsionSpring(Valid):
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
         """Generalised force (..., 6) [N, N, N m]: torques alone."""
-        twisted = second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
-        return _couple(-np.asarray(self.stiffness) * twisted)
+        return _couple(-np.asarray(self.stiffness) * self._twisted(first, second))
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
         """stiffness (relative angle - rest angle)^2 / 2 (...) [J]."""
-        twisted = second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
-        return 0.5 * np.asarray(self.stiffness) * twisted**2
+        return 0.5 * np.asarray(self.stiffness) * self._twisted(first, second) ** 2
+
+    def _twisted(self, first: AnyArray, second: AnyArray) -> AnyArray:
+        """How far (...) the spring is from its rest [rad]."""
+        return second[..., 2] - first[..., 2] - np.asarray(self.rest_angle)
 
 
 @dataclass(frozen=True)

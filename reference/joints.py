@@ -18,6 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.distance import apart, point_rows
 from reference.links import Gear, Rod, Vector, Weld
 from reference.plane import from_body
 from reference.rolling.roll import Roll
@@ -48,25 +49,11 @@ class Pin(Valid):
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the two points, second minus first (..., 2) [m], for the bodies' poses (..., 3)."""
-        first_x, first_y = from_body(first[..., 2], self.first_point)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        return np.stack(
-            [second[..., 0] + second_x - first[..., 0] - first_x, second[..., 1] + second_y - first[..., 1] - first_y],
-            axis=-1,
-        )
+        return apart(first, second, self.first_point, self.second_point)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
-        first_x, first_y = from_body(first[..., 2], self.first_point)
-        second_x, second_y = from_body(second[..., 2], self.second_point)
-        rows = np.zeros((*first_x.shape, 2, 6), dtype=first_x.dtype)
-        rows[..., 0, 0] = rows[..., 1, 1] = -1
-        rows[..., 0, 3] = rows[..., 1, 4] = 1
-        rows[..., 0, 2] = first_y
-        rows[..., 1, 2] = -first_x
-        rows[..., 0, 5] = -second_y
-        rows[..., 1, 5] = second_x
-        return rows
+        return point_rows(first, second, self.first_point, self.second_point)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.distance import between, distance
+from reference.distance import apart, distance, point_rows
 from reference.kinds import Rule
 from reference.validation import Name, Positive, Valid
 
@@ -116,13 +116,12 @@ class Weld(Valid):
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the points, second minus first, and what the angle is off (..., 3) [m, m, rad]."""
-        apart, _ = between(first, second, self.first_point, self.second_point)
         off = second[..., 2] - first[..., 2] - np.asarray(self.angle)
-        return np.concatenate([apart, off[..., None]], axis=-1)
+        return np.concatenate([apart(first, second, self.first_point, self.second_point), off[..., None]], axis=-1)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         """Velocity rows (..., 3, 6): columns are the first body's x, y, angle and then the second's."""
-        _, points = between(first, second, self.first_point, self.second_point)
+        points = point_rows(first, second, self.first_point, self.second_point)
         rows = np.zeros((*points.shape[:-2], 3, 6), dtype=points.dtype)
         rows[..., :2, :] = points
         rows[..., 2, 2] = -1

@@ -22,6 +22,7 @@ from reference.joints import Drive, Gear, Pin, Roll, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
 from reference.validation import InvalidMechanism
+from reports.charts import outlines
 from reports.check.law import accelerations
 
 # Numbers are written with all their digits. What is left is the rounding of two ways to the same place, times the
@@ -223,3 +224,52 @@ def test_gravity_stands_in_the_urdf_file_for_mujoco_and_points_down_for_others()
     model = mujoco.MjModel.from_xml_string(urdf(tilted))  # type: ignore[attr-defined]
     np.testing.assert_array_equal(model.opt.gravity, (0.5, 0.0, -2.0))
     assert read_mujoco(model).mechanism.gravity == (0.5, -2.0)
+
+
+@pytest.mark.parametrize("scene", IDEAL[:12], ids=lambda scene: scene.name)
+def test_bars_that_show_an_exported_model_change_no_step(scene):
+    """They are in the file alone: the engine's own model has none, and both go the same way."""
+    mechanism = scene.mechanism()
+    shown = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))  # type: ignore[attr-defined]
+    own = DEFAULT.model(mechanism, 1e-3)
+    assert own.compiled.ngeom == 0
+    named = {mechanism.bodies[index].name: f"body {index}" for index in range(len(mechanism.bodies))}
+    assert all(shown.body(name).geomnum[0] > 0 for name in named)
+    assert not shown.geom_contype.any()
+    assert not shown.geom_conaffinity.any()
+    data, start = mujoco.MjData(shown), own.start()  # type: ignore[attr-defined]
+    mujoco.mj_resetDataKeyframe(shown, data, 0)  # type: ignore[attr-defined]
+    for _ in range(20):
+        mujoco.mj_step(shown, data)  # type: ignore[attr-defined]
+        mujoco.mj_step(own.compiled, start)  # type: ignore[attr-defined]
+    # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding.
+    np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-9)
+
+
+def test_bars_go_through_the_joints():
+    scene = next(scene for scene in SCENES if scene.name == "free_four_bar")
+    mechanism = scene.mechanism()
+    model = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))  # type: ignore[attr-defined]
+    data = mujoco.MjData(model)  # type: ignore[attr-defined]
+    mujoco.mj_resetDataKeyframe(model, data, 0)  # type: ignore[attr-defined]
+    mujoco.mj_kinematics(model, data)  # type: ignore[attr-defined]
+    for name, wanted in outlines.body_points(mechanism, mechanism.pose).items():
+        geom = int(model.body(name).geomadr[0])
+        along = model.geom_size[geom][1] * data.geom_xmat[geom].reshape(3, 3)[:, 2]
+        ends = sorted((data.geom_xpos[geom] + side * along)[:2].tolist() for side in (1, -1))
+        np.testing.assert_allclose(ends, sorted(wanted.tolist()), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["sleigh", "cart", "rolling_ellipse"])
+def test_an_exported_contact_moves_as_the_engines(name):
+    """A blade's shape is pressed into the plane after the model is compiled: the file has it there too."""
+    mechanism = next(scene for scene in SCENES if scene.name == name).mechanism()
+    shown = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))  # type: ignore[attr-defined]
+    own = DEFAULT.model(mechanism, 1e-3)
+    data, start = mujoco.MjData(shown), own.start()  # type: ignore[attr-defined]
+    mujoco.mj_resetDataKeyframe(shown, data, 0)  # type: ignore[attr-defined]
+    for _ in range(60):
+        mujoco.mj_step(shown, data)  # type: ignore[attr-defined]
+        mujoco.mj_step(own.compiled, start)  # type: ignore[attr-defined]
+    # Of the solver's tolerance; a blade that is pressed otherwise is 3e-7 m and more off.
+    np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-8)

@@ -17,20 +17,20 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from engines.mujoco import TUNED
 from engines.registry import trouble
-from reference.four_bar import DrivenFourBar, FreeFourBar
+from reference.four_bar import FreeFourBar
 from reports.grid.ending import FileTrouble
 from reports.grid.tasks import answered
-from reports.site import live, markdown
-from reports.site.build import MARKER, Source, build, tasks
+from reports.site import markdown
+from reports.site.build import MARKER, build, tasks
 from reports.site.embed import data, picture, shown
 from reports.site.lesson import Take
 from reports.site.lessons import LESSONS
 from reports.site.markdown import Formulas, html, section
 from reports.site.packages import NotFetched, Package, fetched
 from reports.site.reference_pages import reference_pages
-from reports.site.rows import explored, stored_rows
+from reports.site.rows import explored
+from reports.site.source import Source
 from reports.site.writing import compressed_size, refuse_strangers, write_site
 
 ROOT = Path(__file__).parents[1]
@@ -236,56 +236,6 @@ def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
     assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
     write_site(new, {MARKER: b"{}", "c.html": b"two"})
     assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
-
-
-def test_every_place_of_the_sliders_is_a_linkage_that_turns_fully():
-    corners = list(live.corners())
-    assert len(corners) == len(live.CRANKS) * len(live.COUPLERS) * len(live.RATIOS)
-    assert (live.CRANKS[2], live.COUPLERS[1], live.RATIOS[2]) == (0.4, DrivenFourBar().coupler, 1.0)
-    for crank, coupler, ratio in corners:
-        scene = live.with_sliders(crank, coupler, ratio, 10.0)
-        assert np.all(np.isfinite(scene.motion(np.linspace(0, scene.duration, 40)).pose))
-
-
-def test_the_text_of_a_model_gives_back_the_model_that_the_adapter_compiles():
-    import mujoco  # its bindings carry no types
-
-    compiler: Any = mujoco
-
-    scene = live.with_sliders(0.3, 0.65, 10.0, 10.0)
-    table = live.told([live.place(scene), live.place(live.with_sliders(0.2, 0.9, 0.1, 10.0))])
-    numbers = table["numbers"][0].split(",")
-    text = "".join(part + number for part, number in zip(table["mjcf"], [*numbers, ""], strict=True))
-    again, ours = compiler.MjModel.from_xml_string(text), TUNED.model(scene.mechanism(), 1e-3).compiled
-    for field in ("body_pos", "body_mass", "body_inertia", "jnt_pos", "dof_armature", "eq_data"):
-        assert np.allclose(getattr(again, field), getattr(ours, field), rtol=1e-15, atol=1e-17), field
-
-
-def test_what_munk2d_is_given_is_what_pymunk_holds():
-    scene = DrivenFourBar()
-    plan = live.munk(scene)
-    mechanism = scene.mechanism()
-    bodies = np.reshape(plan[3:36], (3, 11))
-    assert list(plan[:3]) == [*mechanism.gravity, 3]
-    assert bodies[:, 0].tolist() == [1, 0, 0]  # the crank is kinematic
-    assert bodies[1:, 1:3] == pytest.approx(mechanism.inertias[1:, 1:])
-    assert bodies[1:, 3:6] == pytest.approx(mechanism.pose[1:])
-    assert bodies[1:, 6:9] == pytest.approx(mechanism.twist[1:])
-    pivots = np.reshape(plan[36:], (-1, 6))
-    assert pivots[:, :2].tolist() == [[0, 1], [1, 2], [-1, 2]]
-
-
-def test_stored_rows_are_series_of_steps_and_errors():
-    header = "scene,engine,variant,purpose,outcome,step,angle"
-    lines = [header, "driven_four_bar,pymunk,default,sweep,finished,0.01,0.5", "x,pymunk,default,sweep,finished,1,1"]
-    lines += [
-        "driven_four_bar,pymunk,default,sweep,finished,0.001,0.05",
-        "driven_four_bar,pymunk,default,map,finished,1,1",
-    ]
-    (series,) = stored_rows("\n".join(lines))
-    assert series["points"] == [[0.01, 0.5], [0.001, 0.05]]
-    published = stored_rows((RESULTS / "errors.csv").read_text("utf-8"))
-    assert {each["method"] for each in published} >= {"pymunk default", "mujoco default"}
 
 
 def test_every_file_of_the_site_is_in_a_wheel():

@@ -72,7 +72,11 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(installation.CACHE, str(tmp_path / "cache"))
     monkeypatch.setattr(sys, "path", list(sys.path))
-    return tmp_path
+    for name in ("adapter", "scene"):  # of another test's folder
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    yield tmp_path
+    for name in ("adapter", "scene"):
+        sys.modules.pop(name, None)
 
 
 def test_a_worse_build_is_told_and_what_it_prints_and_leaves_behind_is_contained(here, capfd):

@@ -156,9 +156,9 @@ class MuJoCo(Valid):
         )
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive) -> Model:
-        """The compiled model alone."""
-        return self._model(mechanism, dt, as_text=False)
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
+        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps."""
+        return self._model(mechanism, dt, as_text)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:

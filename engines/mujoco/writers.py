@@ -59,7 +59,7 @@ def show(text: str) -> None:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    with mujoco.viewer.launch_passive(model, data) as window:
+    with mujoco.viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as window:
         while window.is_running():
             begin = time.monotonic()
             mujoco.mj_step(model, data)

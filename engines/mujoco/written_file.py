@@ -11,6 +11,7 @@ from xml.etree import ElementTree as xml
 import mujoco
 
 from engines import Unsupported
+from engines.mujoco.visuals import add_visuals
 
 if TYPE_CHECKING:
     from engines.mujoco.model import Model
@@ -48,6 +49,8 @@ def as_text(model: Model, softening: float) -> str:
         each for each in root if len(each) == 0 and each.tag in ("equality", "tendon", "actuator", "contact")
     ]:
         root.remove(section)
+    _place_shapes(root, compiled)
+    add_visuals(root, model.mechanism)
     _rename(root, model)
     start = model.start()
     key = {"name": "start", "qpos": _row(start.qpos), "qvel": _row(start.qvel)}
@@ -56,6 +59,15 @@ def as_text(model: Model, softening: float) -> str:
     xml.SubElement(xml.SubElement(root, "keyframe"), "key", key)
     xml.indent(root)
     return xml.tostring(root, encoding="unicode") + "\n"
+
+
+def _place_shapes(root: xml.Element, compiled: Any) -> None:
+    """Shapes where the compiled model has them: a blade is pressed into its plane once its weight is known."""
+    owners = [owner for owner in root.iter() if owner.tag in ("worldbody", "body")]
+    shapes = [shape for owner in owners for shape in owner.findall("geom")]
+    for shape, place in zip(shapes, compiled.geom_pos, strict=True):
+        if shape.get("pos") is not None:
+            shape.set("pos", _row(place))
 
 
 def _rename(root: xml.Element, model: Model) -> None:

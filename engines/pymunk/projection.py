@@ -24,7 +24,7 @@ from reference.row_system import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 
-MOST_ROWS = 100  # least squares of so many take as long as a few hundred sweeps over a hundred joints
+MOST_ROWS = 40  # least squares of more take longer than the sweeps that are too few
 COST = 2.5e-4  # s, of some ten rows
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from reference.curves.curve import Array, Vector
-from reference.numerics.integration import Integrated, error_of, integrate, units_of_motion
+from reference.numerics.integration import Integrated, IntegrationFailed, error_of, integrate, units_of_motion
 from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
@@ -68,7 +69,34 @@ class RollingBody(Valid):
         return 0.5 * inertia * np.asarray(rate) ** 2 - self.mass * (place @ np.asarray(self.gravity))
 
     def _rates(self, state: Array) -> Array:
-        return np.stack([state[..., 1], self.angular_acceleration(state[..., 0], state[..., 1])], axis=-1)
+        """NaN beyond the rotations at which the body can roll: a step with a stage there is then taken shorter."""
+        theta, rate = state[..., 0], state[..., 1]
+        low, high = self.rolling.limits
+        known = np.isfinite(theta) & np.isfinite(rate)  # a stage after one that was beyond is not
+        rolls = known & (theta >= low) & (theta <= high)
+        if np.any(known & ~rolls):
+            farthest = max(
+                (*self._beyond, *theta[known & ~rolls].flat), key=lambda angle: abs(angle - self.rolling.theta)
+            )
+            self._beyond[:] = [float(farthest)]
+        own, turning = np.where(rolls, theta, self.rolling.theta), np.where(rolls, rate, 0.0)
+        rates = np.stack([turning, self.angular_acceleration(own, turning)], axis=-1)
+        return np.where(rolls[..., None], rates, np.nan)
+
+    @cached_property
+    def _beyond(self) -> list[float]:
+        """The farthest beyond the limits that a stage of the integrator was [rad], if any."""
+        return []
+
+    @contextmanager
+    def _rolling_on(self) -> Iterator[None]:
+        """A motion that can't be carried on because the rolling ends is refused as the rolling refuses it."""
+        try:
+            yield
+        except IntegrationFailed:
+            if self._beyond:
+                self.rolling.contact(self._beyond[0])
+            raise
 
     @cached_property
     def _units(self) -> Array:
@@ -84,13 +112,16 @@ class RollingBody(Valid):
         until = float(t.max(initial=0.0)) or math.ulp(1.0)
         # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
         if not self._known or self._known[0][0] < until:
-            self._known[:] = [(until, integrate(self._rates, self.start, until, unit=self._units))]
+            with self._rolling_on():
+                self._known[:] = [(until, integrate(self._rates, self.start, until, unit=self._units))]
         states = self._known[0][1](t)
         return states[:, 0], states[:, 1]
 
     def truth_error(self, t: ArrayLike) -> Array:
         """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
-        return error_of(self._rates, self.start, sample_times("rolling body", t), unit=self._units)
+        times = sample_times("rolling body", t)
+        with self._rolling_on():
+            return error_of(self._rates, self.start, times, unit=self._units)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""

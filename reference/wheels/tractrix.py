@@ -103,7 +103,7 @@ class Tow(Valid):
         """
         sine, cosine, _ = self._start
         if self._discriminant < 0:
-            rest = self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+            rest = self._rest(way)
             even, odd = np.cos(rest), np.sin(rest) / (2 * self.length * self._rate)
         else:
             size = np.minimum(math.sqrt(self._discriminant) * np.abs(way) / (2 * self.length), NEAR)
@@ -154,11 +154,15 @@ class Tow(Valid):
         """Of the turn of (q, p) where the wheel goes round for ever [rad/m]."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
+    def _rest(self, way: Array) -> Array:
+        """The turn of (q, p) less its half turns [rad]."""
+        return self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+
     def _moved(self, way: Array) -> tuple[Array, Array, Array]:
         """(q, p), that began as a unit vector, across and along its start; both times e^scale."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
-            rest = self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+            rest = self._rest(way)
             double = 2 * self.length * self._rate
             across, along = -np.sin(rest) * swing, np.cos(rest) * double + np.sin(rest) * cosine
             return across, along, np.full(way.shape, -math.log(double))
@@ -184,7 +188,13 @@ class Tow(Valid):
     def heading(self, way: ArrayLike) -> Array:
         """The drawbar's direction in the world, from the wheel to the hitch [rad]."""
         way = np.asarray(way, dtype=float)
-        return self.start[2] + self.curvature * way + self.relative_angle(way)
+        if self._discriminant >= 0:
+            return self.start[2] + self.curvature * way + self.relative_angle(way)
+        # The hitch's turn and psi nearly cancel on a small circle: what they share, 2 rate s, is not added at all.
+        across, along, _ = self._moved(way)
+        slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
+        shared = math.copysign(1.0, self.radius) * (slower * way + 2 * self._rest(way))
+        return self.start[2] + self.angle + shared + 2 * np.arctan2(across, along)
 
     @validated
     def hitch(self, way: ArrayLike) -> Array:

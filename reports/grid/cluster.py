@@ -135,8 +135,8 @@ class Cluster:
     ) -> Iterator[Answer]:
         """Yield (item, result or Loss, note), each once, in no order, as `reports.grid.supervisor.supervise` does.
 
-        `workers` and `alone` are not used: the cluster has the workers that it has. Raises WorkersLost if there are
-        none for long, and BadInput if one has other versions.
+        `workers` and `alone` are not used: the cluster has its own workers. Raises WorkersLost if there are none
+        for long, and BadInput if one has other versions.
         """
         wall = wall_limit(limit) if wall is None else wall
         paths = tuple(path for path in sys.path if path)

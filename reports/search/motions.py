@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from engines import Engine, Promise, Unpromised
 from engines.lagrange import TRUTH
+from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
+from reports.search.relations import touches
 
 Array = NDArray[np.float64]
 
@@ -20,7 +22,7 @@ SAMPLES, COARSE = 4, 10  # and steps between samples
 ROOM = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
 LEAST = {"motion": 1e-8, "reactions": 1e-5}
-ROUNDINGS = 10.0  # of a velocity in a step
+ROUNDINGS = 10.0  # of a place or a velocity
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 ESTIMATED = 10.0  # times its own estimate an error may be
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
@@ -31,6 +33,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
 
     Raises NotAsked where nothing is promised or joints give way for good; Fault where a motion is lost in silence.
     """
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and touches(engine):
+        raise NotAsked("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
     dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
     coarse = _run(engine, mechanism, dt, COARSE)
     promise = engine.order(mechanism)
@@ -65,19 +69,21 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Traject
 
 
 def _size(mechanism: Mechanism, truth: Trajectory) -> float:
-    """How far anything moves [m]."""
-    moved = np.abs((truth.pose - mechanism.pose) * np.array([1.0, 1.0, mechanism.length_scale])).max()
-    return max(float(moved), 1e-300)
+    """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST."""
+    size = np.array([1.0, 1.0, mechanism.length_scale])
+    moved = float(np.abs((truth.pose - mechanism.pose) * size).max())
+    pulled = np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * size).max()
+    free = float(pulled) * (SPAN * mechanism.time_scale) ** 2 / 2
+    place = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    return max(moved, free, ROUNDINGS * np.finfo(float).eps * place / LEAST["motion"])
 
 
 def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, float]:
-    moved = [
-        difference(mechanism, pose, right, (truth.pose[-1] - mechanism.pose,))
-        for pose, right in _moves(mechanism, run, truth)
-    ]
-    largest = _force_size(mechanism, truth)
+    largest = np.array([[_size(mechanism, truth), 0.0, 0.0]])
+    moved = [difference(mechanism, pose, right, (largest,)) for pose, right in _moves(mechanism, run, truth)]
+    most = _force_size(mechanism, truth)
     pulled = [
-        force_difference(mechanism, own, right, (largest,))
+        force_difference(mechanism, own, right, (most,))
         for own, right in zip(run.reaction[1:], truth.reaction[1:], strict=True)
     ]
     return {"motion": max(moved), "reactions": max(pulled)}

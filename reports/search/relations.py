@@ -40,7 +40,7 @@ NAMES = (*CHANGES, *UNITS)
 def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
     """By what the poses and velocities differ, relative to the motion; raises NotAsked, Fault and Unsupported."""
     mechanism = build(recipe)
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and _touches(engine):
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and touches(engine):
         raise NotAsked("whether two shapes that just touch do touch depends on rounding")
     name = NAMES[number % len(NAMES)]
     if name in UNITS:
@@ -52,22 +52,28 @@ def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
     except ValueError as reason:
         raise NotAsked(str(reason)) from None
     pose, twist, _ = back(_run(engine, changed))
-    return {name: _apart(mechanism, engine, pose[-1], twist[-1])}
+    return {name: _apart(mechanism, engine, pose[-1], twist[-1], float(np.abs(changed.pose[:, :2]).max()))}
 
 
 def _run(engine: Engine, mechanism: Mechanism):
     return engine.build(mechanism, STEP * mechanism.time_scale)(1, STEPS)
 
 
-def _apart(mechanism: Mechanism, engine: Engine, pose: Array, twist: Array) -> float:
+def _apart(mechanism: Mechanism, engine: Engine, pose: Array, twist: Array, away: float = 0.0) -> float:
+    """How different a pose and a twist are from those of the mechanism itself; `away` [m] is how far the other stood.
+
+    A shift costs digits of a place, those of its distance; and a velocity those of a place divided by a step.
+    """
     own = _run(engine, mechanism)
     moved, turned = own.pose[-1] - mechanism.pose, pose - mechanism.pose
     if not np.isfinite(own.pose[-1]).all():
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(own.warnings)}")
-    # A shift costs digits of a place: they are those of its distance.
-    far = (mechanism.twist * STEPS * STEP * mechanism.time_scale, 1e-6 * mechanism.pose)
+    step = STEP * mechanism.time_scale
+    place = 1e-6 * max(away, float(np.abs(mechanism.pose[:, :2]).max()))
+    far, fast = np.array([[place, 0.0, 0.0]]), np.array([[place / step, 0.0, 0.0]])
     return max(
-        difference(mechanism, turned, moved, far), difference(mechanism, twist, own.twist[-1], (mechanism.twist,))
+        difference(mechanism, turned, moved, (mechanism.twist * STEPS * step, 1e-6 * mechanism.pose, far)),
+        difference(mechanism, twist, own.twist[-1], (mechanism.twist, fast)),
     )
 
 
@@ -83,7 +89,7 @@ def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tup
     return _apart(mechanism, engine, pose, twist)
 
 
-def _touches(engine: Engine) -> bool:
+def touches(engine: Engine) -> bool:
     """Whether rolls may be held by contacts."""
     rolls = getattr(engine, "rolls", None)
     return getattr(engine, "roll", "") == "contact" or (rolls is not None and type(rolls).__name__ == "RollContact")

@@ -4,49 +4,33 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup
 
-from reports.grid.tasks import Answer, Motion
-from reports.site import live, markdown
-from reports.site.embed import data, picture, shown
+from reports.grid.tasks import Motion
+from reports.site import markdown
 from reports.site.formulas import rendered
 from reports.site.lesson import Lesson
+from reports.site.lesson_page import front_page, lesson_page
 from reports.site.lessons import LESSONS
+from reports.site.live.parts import engine_files, running_in
 from reports.site.markdown import Formulas
-from reports.site.munk2d.compiling import compiled
 from reports.site.packages import NotFetched, Package, fetched
 from reports.site.packages_used import D3, KATEX, MUJOCO, PLOT
 from reports.site.reference_pages import reference_pages
-from reports.site.rows import explored, stored_rows
+from reports.site.rows import explored
+from reports.site.source import Source
 from reports.site.style import colours
 
 HERE = Path(__file__).parent
 ASSETS = HERE / "assets"
 MARKER = "site.json"
-OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
 CHART_TITLE = re.compile(r"<h1[^>]*>(.*?)</h1>", re.DOTALL)
 
 Files = dict[str, bytes]
-
-
-@dataclass
-class Source:
-    """What a site is built from: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
-
-    pages: Mapping[str, str]
-    pictures: Mapping[str, str]
-    tables: Mapping[str, str]  # CSV files by name
-    answers: Mapping[Motion, Answer]
-    cache: Path
-    foot: str
-    contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
-    api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
-    troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
 
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
@@ -59,7 +43,7 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     lessons = tuple(lessons)
     formulas = Formulas()
     taken = _packages((D3, PLOT), source)
-    running, missing = _engines(source, any(lesson.live for lesson in lessons))
+    running, missing = engine_files(source, lessons)
     environment = _environment()
     pages: dict[str, str] = {}
     files: Files = {path.relative_to(ASSETS).as_posix(): path.read_bytes() for path in _assets()}
@@ -83,8 +67,8 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
         write(
             f"lessons/{lesson.name}.html",
             "lesson.html",
-            **_lesson(lesson, source, formulas, names),
-            **_running(running, missing),
+            **lesson_page(lesson, source, formulas, names, _elsewhere),
+            **running_in(lesson, running, missing),
         )
     api = _reference(source)
     files |= api
@@ -93,11 +77,11 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     for name, text in guides:
         told = environment.from_string(text).render(contributing=lambda part: Markup(_quoted(source, part)))
         body = markdown.linked(markdown.html(told, formulas), below, _elsewhere)
-        write(f"howto/{name}.html", "article.html", title=_title(text), body=Markup(body))
-    titles = [(name, _title(text)) for name, text in guides]
+        write(f"howto/{name}.html", "article.html", title=markdown.title(text), body=Markup(body))
+    titles = [(name, markdown.title(text)) for name, text in guides]
     write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
     write("results/rows.html", "explorer.html", title="All stored rows")
-    write("index.html", "index.html", title="How far from ideal?", **_front(lessons, source))
+    write("index.html", "index.html", title="How far from ideal?", **front_page(lessons[0], source))
     listed, why = rendered(formulas, source.cache)
     if why:
         source.troubles.append(f"Formulas are shown as TeX, since {why}.")
@@ -128,28 +112,6 @@ def _packages(packages: Iterable[Package], source: Source) -> Files:
     return found
 
 
-def _engines(source: Source, wanted: bool) -> tuple[Files, list[str]]:
-    """The files with which pages run engines themselves, and what to say of those that are missing."""
-    files: Files = {}
-    missing = []
-    if not wanted:
-        return files, missing
-    try:
-        content = fetched(MUJOCO, source.cache)
-        files |= {name: content[path] for path, name in MUJOCO.files}
-    except NotFetched as reason:
-        missing.append(f"This site was built without MuJoCo: {reason}.")
-    try:
-        files["packages/munk2d.js"] = compiled(source.cache)
-    except NotFetched as reason:
-        missing.append(f"This site was built without Munk2D, the engine in pymunk: {reason}.")
-    source.troubles += missing
-    if files:
-        files["live/four_bar.json"] = json.dumps(live.data(), separators=(",", ":")).encode()
-        files["live/rows.json"] = json.dumps(stored_rows(source.tables.get("errors.csv", ""))).encode()
-    return files, missing
-
-
 def _reference(source: Source) -> Files:
     if not source.api:
         return {}
@@ -165,25 +127,6 @@ def _quoted(source: Source, part: str) -> str:
     if not source.contributing:
         return "The steps stand in CONTRIBUTING.md of the checkout."
     return markdown.section(source.contributing, part)
-
-
-def _running(files: Files, missing: list[str]) -> dict[str, object]:
-    """What a page says of the engines that it can run."""
-    known = {"packages/munk2d.js": ("munk2d", "Munk2D"), "packages/mujoco.js": ("mujoco", "MuJoCo")}
-    there = [told for path, told in known.items() if path in files]
-    words = ["Munk2D, the engine in pymunk", "MuJoCo"]
-    figure = {"motions": {word: None for word in words if any(name in word for _, name in there)}, "lost": {}}
-    return {
-        "engines": [word for word, _ in there],
-        "names": [name for _, name in there],
-        "missing": missing,
-        "nothing": figure,
-        "places": {
-            "cranks": live.CRANKS,
-            "couplers": [round(length, 4) for length in live.COUPLERS],
-            "ratios": live.RATIOS,
-        },
-    }
 
 
 def _assets() -> list[Path]:
@@ -203,65 +146,3 @@ def _environment() -> jinja2.Environment:
 def _elsewhere(name: str) -> str:
     """Where a file stands that is no page of results."""
     return {"../../README.md": "../index.html", "../../CONTRIBUTING.md": "../howto/index.html"}.get(name, name)
-
-
-def _front(lessons: tuple[Lesson, ...], source: Source) -> dict[str, object]:
-    lesson = lessons[0]
-    take = shown(lesson.takes["free"] if "free" in lesson.takes else next(iter(lesson.takes.values())), source.answers)
-    return {
-        "figure": Markup(picture(take, "A four-bar linkage falls: the truth, and two engines over it")),
-        "take": _json(data(take)),
-        "shown": take,
-        "results": [(name, _title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")],
-    }
-
-
-def _title(text: str) -> str:
-    return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
-
-
-def _lesson(lesson: Lesson, source: Source, formulas: Formulas, names: Mapping[str, str]) -> dict[str, object]:
-    takes = {name: shown(take, source.answers) for name, take in lesson.takes.items()}
-
-    def words(text: str) -> str:
-        return markdown.html(text, formulas)
-
-    def quoted(text: str) -> Markup:
-        """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", words(text)), names, _elsewhere)
-        return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
-
-    steps = []
-    for index, ((heading, text), step) in enumerate(zip(lesson.words, lesson.steps, strict=True)):
-        more = None
-        if step.section is not None and f"{step.section[0]}.md" in source.pages:
-            page, part = step.section
-            body = quoted(markdown.section(source.pages[f"{page}.md"], part))
-            more = {"heading": part, "href": f"../results/{page}.html#{markdown.slug(part)}", "body": body}
-        steps.append(
-            {
-                "number": index + 1,
-                "heading": heading,
-                "words": Markup(words(text)),
-                "take": step.take,
-                "shown": takes[step.take],
-                "picture": Markup(picture(takes[step.take], f"{lesson.title}: {heading}")),
-                "on": sorted(step.switched_on),
-                "broken": step.broken,
-                "pictures": {
-                    name: Markup(picture(takes[name], f"{lesson.title}: {word}")) for word, name, _ in step.broken
-                },
-                "more": more,
-            }
-        )
-    return {
-        "title": lesson.title,
-        "lesson": lesson,
-        "steps": steps,
-        "takes": {name: _json(data(take)) for name, take in takes.items()},
-    }
-
-
-def _json(value: object) -> Markup:
-    """JSON that can stand in a script element."""
-    return Markup(json.dumps(value, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"))

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.joints import Drive, Pin
+from reference.joints import Drive, Skate
 from reference.mechanism import Mechanism
-from reference.plane import rotated
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.grid.tasks import Answer, trajectory_of
 from reports.site import drawn
+from reports.site.joints import between, demanded, joints_of, loose, measure_of, opened, place_of
 from reports.site.lesson import Take
 
 Array = NDArray[np.float64]
@@ -35,12 +35,14 @@ class Shown:
     t: Array  # (frames,) s
     truth: Trajectory
     motions: Mapping[str, Array]  # legend -> poses (frames, bodies, 3), NaN where the method gave up
+    twists: Mapping[str, Array]  # legend -> twists, as the poses
     lost: Mapping[str, str]  # legend -> why there is no motion
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
     """The take at its frames. A method that was not run, or did not finish, is told in `lost`."""
     motions: dict[str, Array] = {}
+    twists: dict[str, Array] = {}
     lost: dict[str, str] = {}
     spacing = take.scene.duration / take.sample_count
     t = np.arange(take.sample_count + 1, dtype=np.float64)[take.shown] * np.float64(spacing)
@@ -49,28 +51,20 @@ def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
         if answer is None or not answer.finished:
             lost[word] = "not run" if answer is None else f"{answer.outcome}: {answer.sentence}".rstrip(": ")
             continue
-        motions[word] = trajectory_of(answer).pose[take.shown]
-    return Shown(take, take.scene.mechanism(), t, take.scene.motion(t), motions, lost)
+        found = trajectory_of(answer)
+        motions[word], twists[word] = found.pose[take.shown], found.twist[take.shown]
+    return Shown(take, take.scene.mechanism(), t, take.scene.motion(t), motions, twists, lost)
 
 
 def data(shown: Shown) -> dict[str, Any]:
     """What the page's script needs, in plain lists: poses one instant after another, body after body."""
     mechanism, truth = shown.mechanism, shown.truth
-    joints = [
-        {
-            "name": joint.name,
-            "first": _index(mechanism, joint.first),
-            "second": _index(mechanism, joint.second),
-            "firstPoint": list(joint.first_point),
-            "secondPoint": list(joint.second_point),
-        }
-        for joint in mechanism.joints
-        if isinstance(joint, Pin)
-    ]
     return {
         "t": _listed(shown.t),
         "bodies": [body.name for body in mechanism.bodies],
-        "joints": joints,
+        "joints": joints_of(mechanism),
+        "loose": openings(shown),
+        "measure": measure_of(mechanism),
         "size": mechanism.length_scale,
         "truth": {"pose": _listed(truth.pose), "twist": _listed(truth.twist, DIGITS)},
         "motions": [{"name": name, "pose": _listed(pose, METHOD_DIGITS)} for name, pose in shown.motions.items()],
@@ -81,10 +75,28 @@ def data(shown: Shown) -> dict[str, Any]:
     }
 
 
+def openings(shown: Shown) -> list[dict[str, Any]]:
+    """Skates and rolling contacts: where they are by the truth [m], and how they slip or part in each motion."""
+    mechanism, truth = shown.mechanism, shown.truth
+    return [
+        {
+            "name": joint.name,
+            "unit": "m/s" if isinstance(joint, Skate) else "m",
+            "at": _listed(place_of(joint, *between(mechanism, joint, truth.pose)), 6),
+            "motions": [
+                _listed(opened(mechanism, joint, pose, shown.twists[name]), METHOD_DIGITS)
+                for name, pose in shown.motions.items()
+            ],
+        }
+        for joint in loose(mechanism)
+    ]
+
+
 def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
     """The reaction of each joint on its second body: where it acts [m] and the force [N], two numbers an instant.
 
-    Nothing for a drive, whose reaction is a torque, and for a joint whose reaction the motion does not determine.
+    Of a rolling contact also the friction that it demands [1]. Nothing for a drive, whose reaction is a torque, and for
+    a joint whose reaction the motion does not determine.
     """
     found, row = [], 0
     for joint in mechanism.joints:
@@ -92,23 +104,18 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
         row += joint.size
         if isinstance(joint, Drive) or not np.all(np.isfinite(own)):
             continue
-        ground = np.zeros((len(truth.t), 3))
-        first, second = (
-            ground if name is None else truth.pose[:, mechanism.body_index(name)]
-            for name in (joint.first, joint.second)
-        )
+        first, second = between(mechanism, joint, truth.pose)
         force = np.einsum("ti,tij->tj", own, joint.rows(first, second)[..., 3:5])
+        told = {
+            "name": joint.name,
+            "at": _listed(place_of(joint, first, second), 6),
+            "force": _listed(force, 6),
+        }
         if isinstance(joint, Roll):
-            own_place = joint.rolling.contact(second[:, 2] - first[:, 2]).point
-            at = first[:, :2] + rotated(first[:, 2], own_place)
-        else:
-            at = drawn.point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
-        found.append({"name": joint.name, "at": _listed(at, 6), "force": _listed(force, 6)})
+            normal = own[:, 1:] * joint.rows(first, second)[:, 1, 3:5]
+            told |= {"normal": _listed(normal, 6), "friction": _listed(demanded(own), 6)}
+        found.append(told)
     return found
-
-
-def _index(mechanism: Mechanism, name: str | None) -> int:
-    return -1 if name is None else mechanism.body_index(name)
 
 
 def _listed(values: Array, digits: int = TRUTH_DIGITS) -> list[float | None]:

@@ -11,6 +11,7 @@ from engines import Engine
 from reference.scene import Scene
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
+from reports.site.live.sliders import Live
 
 Point = tuple[float, float]
 
@@ -79,7 +80,7 @@ class Lesson:
     page: str  # the Markdown page of the same mechanism
     takes: Mapping[str, Take]
     steps: tuple[Step, ...]
-    live: str = ""  # the mechanism that the engines can run in the page, if there is one
+    live: tuple[Live, ...] = ()  # scenes that the engines can run in the page
 
     @cached_property
     def words(self) -> list[tuple[str, str]]:
@@ -92,4 +93,5 @@ class Lesson:
 
     def tasks(self) -> tuple[Motion, ...]:
         """All motions that have to be run."""
-        return tuple(motion for take in self.takes.values() for motion in take.motions().values())
+        own = [motion for take in self.takes.values() for motion in take.motions().values()]
+        return (*own, *(motion for live in self.live for motion in live.shipped().values()))

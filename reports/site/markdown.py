@@ -67,6 +67,11 @@ def linked(text: str, known: Mapping[str, str], elsewhere: Callable[[str], str])
     return OWN_PAGE.sub(own, text)
 
 
+def title(text: str) -> str:
+    """The first heading of a Markdown page."""
+    return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
+
+
 def section(text: str, heading: str) -> str:
     """The part of a Markdown page below a heading, up to the next of its rank. Raises ValueError if there is none."""
     lines = text.splitlines()

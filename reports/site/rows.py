@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Iterable
 from typing import Any
 
-BESIDE_SLIDERS = ("driven_four_bar", "free_four_bar")
+MEASURES = ("angle", "position")
 SERIES = (("pymunk", "default", 1), ("pymunk", "tuned", 3), ("mujoco", "default", 2), ("mujoco", "tuned", 4))
 
 
@@ -17,15 +18,21 @@ def read(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO("\n".join(lines))))
 
 
-def stored_rows(errors: str) -> list[dict[str, Any]]:
-    """Angle errors against steps of the scenes with sliders: one series a scene and method; `mark` is its colour."""
+def stored_rows(errors: str, scenes: Iterable[str]) -> list[dict[str, Any]]:
+    """Errors against steps of these scenes: one series a scene and method; `mark` is its colour.
+
+    `points`: (step [s], largest error) by what is measured, "angle" [rad] and "position" [m].
+    """
     rows = [row for row in read(errors) if row["purpose"] == "sweep" and row["outcome"] == "finished"]
     found = []
-    for scene in BESIDE_SLIDERS:
+    for scene in scenes:
         for engine, variant, mark in SERIES:
             own = [row for row in rows if (row["scene"], row["engine"], row["variant"]) == (scene, engine, variant)]
-            points = [[float(row["step"]), float(row["angle"])] for row in own if float(row["angle"]) > 0]
-            if points:
+            points = {
+                measure: [[float(row["step"]), float(row[measure])] for row in own if float(row[measure]) > 0]
+                for measure in MEASURES
+            }
+            if own:
                 found.append({"scene": scene, "method": f"{engine} {variant}", "mark": mark, "points": points})
     return found
 

@@ -30,6 +30,7 @@ PACKAGES = "site-packages"
 VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
+OFFLINE = "no connection to a package index; with network it is installed once and kept"
 SHOWN = 6  # versions that are named when another was asked for
 # Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
@@ -121,10 +122,8 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
 def _reason(text: str, status: int) -> str:
     """Of all that pip says the part that tells why."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    if any(
-        "NewConnectionError" in line or "Name or service" in line or "Failed to establish" in line for line in lines
-    ):
-        return "no connection to a package index; with network it is installed once and kept"
+    if any(word in line for line in lines for word in UNCONNECTED):
+        return OFFLINE
     offered = next((match[1] for line in lines if (match := OFFERED.search(line))), None)
     if offered is not None:
         return offered
@@ -142,6 +141,8 @@ def _sentence(version: str, reasons: Sequence[tuple[str, str]]) -> str:
         elif why != "none":
             told.append(f"{name}: {why}")
     names = " or ".join(name for name, _ in reasons)
+    if all(why == OFFLINE for _, why in reasons):
+        return f"{names} {version} can't be fetched: {OFFLINE}"
     about = f"no wheel of {names} {version} for this Python ({sys.version_info[0]}.{sys.version_info[1]})"
     if found:
         return f"{about}; there are {', '.join(nearest_versions(version, found))}"

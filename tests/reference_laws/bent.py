@@ -185,7 +185,9 @@ def by_arc(name: str, exact: Callable[..., Exact], ours: Callable[..., Curve], d
         point = curve.point(numbers[-1])
         return [place, curve.angle(numbers[-1]), *point, curve.curvature(numbers[-1])]
 
-    return Law(f"{name} at an arc", draw, found, truth, vectors=(slice(2, 4),))
+    return Law(
+        f"{name} at an arc", draw, found, truth, vectors=(slice(2, 4),), quick=0 if name == "ellipse" else 12, many=300
+    )
 
 
 def drawn_ellipse(rng: np.random.Generator) -> tuple[float, ...]:

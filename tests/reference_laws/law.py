@@ -32,7 +32,8 @@ class Law:
     """`ours` in doubles and `exact` in fifty digits take the same arguments and give the same values, in order.
 
     `vectors` are slices of values that are the components of one vector; `angles` are values known up to whole turns;
-    `size` gives the size of each value's whole motion, where a value that passes zero is a part of one.
+    `size` gives the size of each value's whole motion, where a value that passes zero is a part of one. So many cases
+    are `quick`, a second or less (0: one takes as long), and so `many` take a minute.
     """
 
     name: str
@@ -42,6 +43,8 @@ class Law:
     vectors: tuple[slice, ...] = ()
     angles: tuple[int, ...] = ()
     size: Callable[..., Sequence[Any]] | None = None
+    quick: int = 12
+    many: int = 600
 
 
 @dataclass(frozen=True)

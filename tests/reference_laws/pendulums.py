@@ -88,7 +88,11 @@ def links(count: int) -> Law:
             length / clock**2,
         )
 
-    return Law(f"chain of {count}", draw, ours, exact, vectors=(slice(0, count),))
+    def size(*numbers):
+        """Where a link whirls, its forces have the size of its centripetal acceleration, not of what turns it."""
+        return [max(abs(value), rate**2) for value, rate in zip(exact(*numbers), numbers[3 * count : -1], strict=True)]
+
+    return Law(f"chain of {count}", draw, ours, exact, vectors=(slice(0, count),), size=size)
 
 
 def side_by_side(length, mass, gravity, speed, t):

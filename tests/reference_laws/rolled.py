@@ -54,9 +54,11 @@ def rolls(name: str, body: tuple[Maker, Maker], ground: tuple[Maker, Maker], own
         reach = other.arc(on_ground) + one.arc(on_body)
         v = mp.mpf(float(rolling.ground.parameter(float(contact.ground_arc))))
         start = other.angle(on_ground) - one.angle(on_body)
+        # A direction is rounded with the arc of its place, and the body's angle in all its turns.
+        rounded = other.curvature(v) * reach + start + mp.pi + turned
         for _ in range(30):
             arcs = other.arc(v) + unit * one.arc(u) - reach
-            angles = other.angle(v) - one.angle(u) - start - turned + other.curvature(v) * reach * (other_unit - 1)
+            angles = other.angle(v) - one.angle(u) - start - turned + rounded * (other_unit - 1)
             # d angle / d parameter is curvature times speed.
             a, b = other.speed(v), one.speed(u)  # the units are 1 to all digits that Newton needs
             c, d = other.curvature(v) * a, -one.curvature(u) * b
@@ -77,7 +79,9 @@ def rolls(name: str, body: tuple[Maker, Maker], ground: tuple[Maker, Maker], own
         rate = 1 / (other.curvature(v) + one.curvature(u))
         return [point.real, point.imag, arm.real, arm.imag, rate]
 
-    return Law(name, draw, found, truth, vectors=(slice(0, 2), slice(2, 4)))
+    return Law(
+        name, draw, found, truth, vectors=(slice(0, 2), slice(2, 4)), quick=0 if "ellipse" in name else 4, many=100
+    )
 
 
 def drawn(*parts: Callable[[np.random.Generator, float], tuple[float, ...]], most: float = 20.0) -> Any:

@@ -68,9 +68,11 @@ def over_versions(
 def _draw_lines(panel: Axes, entries: Sequence[Entry], versions: Sequence[str], theme: Theme) -> None:
     found = {scene: members for (_, scene, _), members in lines(entries).items()}
     stepped = sorted((scene for scene in found if _change(found[scene]) > 1), key=lambda scene: -_change(found[scene]))
+    # Beside coloured lines the others are a background; where there are no coloured ones, they are the picture.
+    others = {"color": theme.grid if stepped else theme.quiet, "linewidth": 1.2, "zorder": 2}
     for scene, members in found.items():
         if scene not in stepped[:MARKED]:
-            _line(panel, members, versions, {"color": theme.grid, "linewidth": 1.2, "zorder": 2})
+            _line(panel, members, versions, others)
     for index, scene in enumerate(stepped[:MARKED]):
         look = {
             "color": getattr(theme, SERIES[index % len(SERIES)]),

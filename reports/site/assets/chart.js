@@ -18,10 +18,13 @@ export function svg(tag, attributes, text) {
   return made;
 }
 
+/** @typedef {"angle"|"position"} Measure */
+const MEASURES = { angle: "largest error of an angle [rad]", position: "largest error of a place [m]" };
+
 /** Draw lines over time; what is returned moves the mark of the present instant.
- * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {string} unit
+ * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {Measure} measure
  * @returns {(time: number) => void} */
-export function errorChart(place, t, lines, unit) {
+export function errorChart(place, t, lines, measure) {
   place.replaceChildren();
   const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
   if (!positive.length) return () => {};
@@ -33,9 +36,9 @@ export function errorChart(place, t, lines, unit) {
   const first = t[0];
   const x = (/** @type {number} */ time) => LEFT + ((WIDTH - LEFT - 12) * (time - first)) / (last - first || 1);
   const y = (/** @type {number} */ power) => TOP + ((HEIGHT - TOP - BOTTOM) * (high - power)) / Math.max(1, high - low);
-  const label = `Error against time [${unit}], logarithmic`;
+  const label = `Against time, logarithmic: ${MEASURES[measure]}`;
   const chart = svg("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label });
-  chart.append(svg("text", { x: LEFT, y: 13 }, `largest error of an angle [${unit}]`));
+  chart.append(svg("text", { x: LEFT, y: 13 }, MEASURES[measure]));
   const stride = Math.ceil((high - low) / 5);
   for (let power = high; power >= low; power -= stride) {
     chart.append(svg("line", { class: "axis", x1: LEFT, x2: WIDTH - 12, y1: y(power), y2: y(power) }));
@@ -69,9 +72,10 @@ export function errorChart(place, t, lines, unit) {
 }
 
 /** Stored rows and the present setting: error against the step, both logarithmic.
- * @param {Element} place @param {{method: string, mark: number, points: [number, number][]}[]} series
- * @param {{x: number, y: number, mark: number, name: string}[]} own */
-export function scatter(place, series, own) {
+ * @param {Element} place @param {{method: string, mark: number, points: Record<Measure, [number, number][]>}[]} stored
+ * @param {Measure} measure @param {{x: number, y: number, mark: number, name: string}[]} own */
+export function scatter(place, stored, measure, own) {
+  const series = stored.map(({ method, mark, points }) => ({ method, mark, points: points[measure] }));
   const height = 300;
   const bottom = 44;
   const seen = own.filter(({ y }) => Number.isFinite(y) && y > 0);
@@ -82,9 +86,9 @@ export function scatter(place, series, own) {
   const [low, high] = [Math.floor(Math.min(...ys)), Math.ceil(Math.max(...ys))];
   const x = (/** @type {number} */ value) => LEFT + ((WIDTH - LEFT - 12) * (Math.log10(value) - left)) / (right - left || 1);
   const y = (/** @type {number} */ value) => TOP + ((height - TOP - bottom) * (high - Math.log10(value))) / (high - low || 1);
-  const label = "Largest angle error against the step: stored rows, and the present setting";
+  const label = `Against the step, in stored rows and with the present sliders: ${MEASURES[measure]}`;
   const chart = svg("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": label });
-  chart.append(svg("text", { x: LEFT, y: 13 }, "largest error of an angle [rad]; large marks: these sliders"));
+  chart.append(svg("text", { x: LEFT, y: 13 }, `${MEASURES[measure]}; large marks: these sliders`));
   for (let power = low; power <= high; power += Math.ceil((high - low) / 6)) {
     chart.append(svg("line", { class: "axis", x1: LEFT, x2: WIDTH - 12, y1: y(10 ** power), y2: y(10 ** power) }));
     chart.append(svg("text", { x: LEFT - 8, y: y(10 ** power) + 4, "text-anchor": "end" }, `1e${power}`));
@@ -100,7 +104,7 @@ export function scatter(place, series, own) {
     group.append(svg("path", { class: "line thin", d }), svg("title", {}, method));
     for (const [px, py] of sorted) {
       const dot = svg("circle", { class: "row", cx: x(px), cy: y(py), r: 3 });
-      dot.append(svg("title", {}, `${method} at ${px} s: ${py} rad`));
+      dot.append(svg("title", {}, `${method} at ${px} s: ${py}`));
       group.append(dot);
     }
     const [tx, ty] = sorted[0];

@@ -2,196 +2,165 @@
 /** The part of a lesson in which sliders act on the engines themselves. */
 
 import { scatter, svg } from "./chart.js";
+import { doubles, drawingOf, jointsOf, stepOf, times, truth, whyNot } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
-import { joints, stepOf, times, truth } from "./live_models.js";
-import { ends, errors, largestGap, told } from "./motion.js";
+import { Form } from "./live_form.js";
+import { UNITS, errors, largestGap, placed, told } from "./motion.js";
 import { Player } from "./player.js";
 
-/** @typedef {import("./live_models.js").Live} Live @typedef {import("./live_models.js").Setting} Setting */
+/** @typedef {import("./live_data.js").Setting} Setting */
+/** @typedef {import("./live_data.js").Scene} Scene @typedef {import("./live_data.js").Drawing} Drawing */
+/** @typedef {"munk"|"mujoco"} Name */
+/** @typedef {{name: Name, pose: Float64Array, milliseconds: number, mark: number}} Run */
 
-const FRAMES = { driven: 60, free: 100 };
-const NAMES = { munk: "Munk2D, the engine in pymunk", mujoco: "MuJoCo" };
+const WORDS = { munk: "Munk2D, the engine in pymunk", mujoco: "MuJoCo" };
+const MARKS = { munk: 1, mujoco: 2 };
 const root = /** @type {HTMLElement} */ (document.getElementById("live"));
-const form = /** @type {HTMLFormElement} */ (root.querySelector("form"));
 const status = /** @type {HTMLElement} */ (root.querySelector(".status"));
-const table = /** @type {HTMLTableSectionElement} */ (root.querySelector("tbody"));
-const inputs = /** @type {HTMLInputElement[]} */ ([...form.querySelectorAll("input[name]")]);
+const table = /** @type {HTMLTableElement} */ (root.querySelector("table"));
+const place = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
 
-/** What a slider's place means: its values stand beside it. @param {HTMLInputElement} input */
-const valuesOf = (input) => JSON.parse(input.dataset.values ?? "[]");
-/** @param {string} name */
-const inputOf = (name) => inputs.find((input) => input.name === name);
-/** @param {string} name */
-const valueOf = (name) => {
-  const input = inputOf(name);
-  return input ? valuesOf(input)[Number(input.value)] : undefined;
-};
-
-/** The present place of all sliders. @returns {Setting} */
-function setting() {
-  const free = Boolean(valueOf("free"));
-  const most = free ? FRAMES.free : FRAMES.driven;
-  const steps = valueOf(free ? "freeSteps" : "steps");
-  return {
-    free, steps, every: Math.max(1, steps / most),
-    crank: Number(inputOf("crank")?.value), coupler: Number(inputOf("coupler")?.value), ratio: Number(inputOf("ratio")?.value),
-    speed: valueOf("speed"), integrator: valueOf("integrator"), timeConstant: valueOf("timeConstant"),
-    impedance: valueOf("impedance"), solverIterations: valueOf("solverIterations"), tolerance: valueOf("tolerance"),
-    iterations: valueOf("iterations"), bias: valueOf("bias"),
-  };
+/** The drawing of a place of the sliders: bodies of each run, and of the truth over them.
+ * @param {Drawing} drawing @param {number[]} marks */
+function stage(drawing, marks) {
+  const bodies = drawing.bodies.map((shape) => `<g class="body">${shape}</g>`).join("");
+  const kinds = [...marks.map((mark) => `method method-${mark}`), "truth"];
+  const groups = kinds.map((kind) => `<g class="motion ${kind}"><g class="traces"></g>${bodies}</g>`).join("");
+  return (
+    `<svg class="stage" viewBox="${drawing.box}" role="img" aria-label="The mechanism"><g class="world" ` +
+    `transform="scale(1 -1)"><g class="ground">${drawing.ground}</g>${groups}<g class="overlay"></g></g></svg>`
+  );
 }
 
-/** Beside each slider what it stands at; what has no meaning for this motion can't be moved. @param {Live} live */
-function label(live) {
-  const now = setting();
-  for (const input of inputs) {
-    const output = input.closest("label")?.querySelector(".value");
-    const words = JSON.parse(input.dataset.words ?? "null");
-    let text = words ? words[Number(input.value)] : String(valueOf(input.name));
-    if (input.name === "steps" || input.name === "freeSteps") text = `${told(stepOf(live, now) * 1000)} ms`;
-    if (output) output.textContent = text;
-    input.setAttribute("aria-valuetext", text);
-    const lengths = ["crank", "coupler", "ratio", "speed"].includes(input.name);
-    input.disabled = now.free && lengths;
-    const row = input.closest("label");
-    if (row) row.hidden = (input.name === "steps" && now.free) || (input.name === "freeSteps" && !now.free);
-  }
-}
-
-/** The drawing for these lengths: bars of the truth and of each engine. @param {number} motions @param {number[]} lengths */
-function stage(motions, lengths) {
-  const drawing = svg("svg", { class: "stage", viewBox: "-0.75 -1.35 2.95 2.15", role: "img", "aria-label": "The four-bar" });
-  const world = svg("g", { class: "world", transform: "scale(1 -1)" });
-  const ground = svg("g", { class: "ground" });
-  for (const x of [0, 1.2]) ground.append(svg("path", { class: "support", d: `M${x} 0L${x - 0.05} -0.09L${x + 0.05} -0.09Z` }));
-  world.append(ground);
-  for (let motion = 0; motion <= motions; motion++) {
-    const group = svg("g", { class: `motion ${motion === motions ? "truth" : `method method-${motion + 1}`}` });
-    const traces = svg("g", { class: "traces" });
-    traces.append(svg("path", { class: "trace", d: "" }));
-    group.append(traces);
-    for (const length of lengths) {
-      const body = svg("g", { class: "body" });
-      body.append(svg("path", { class: "bar", d: `M${-length / 2} 0L${length / 2} 0` }));
-      for (const end of [-1, 1]) body.append(svg("circle", { class: "pin", cx: (end * length) / 2, cy: 0, r: 0.018 }));
-      group.append(body);
-    }
-    world.append(group);
-  }
-  world.append(svg("g", { class: "overlay" }));
-  drawing.append(world);
-  return drawing;
-}
-
-/** @param {ArrayLike<number>} pose */
-function couplerPath(pose) {
+/** The path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
+function pathOf(pose, bodies, body, point) {
   let path = "";
-  for (let place = 3; place < pose.length; place += 9) {
-    if (Number.isFinite(pose[place])) path += `${path ? "L" : "M"}${pose[place].toFixed(4)} ${pose[place + 1].toFixed(4)}`;
+  for (let start = 3 * body; start < pose.length; start += 3 * bodies) {
+    const [x, y] = placed([pose[start], pose[start + 1], pose[start + 2]], point);
+    if (Number.isFinite(x + y)) path += `${path ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
   }
   return path;
 }
 
-/** Values that JSON and charts can have: what blew up is no number. @param {Float64Array} pose */
-function finite(pose) {
-  return pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
+/** Values that charts can have: what blew up is no number. @param {Float64Array} pose */
+const finite = (pose) => pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
+
+/** Run every engine that is there and can. @param {Setting} now @param {Record<Name, any>} engines */
+function runs(now, engines) {
+  /** @type {Run[]} */
+  const found = [];
+  for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
+    if (!engines[name] || whyNot(now, name)) continue;
+    const before = performance.now();
+    const pose = finite((name === "munk" ? runMunk : runMujoco)(engines[name], now));
+    found.push({ name, pose, milliseconds: performance.now() - before, mark: MARKS[name] });
+  }
+  return found;
 }
 
-/** @param {Live} live @param {{mujoco: any, munk: any}} engines @param {any[]} rows */
-function start(live, engines, rows) {
+/** How far each run is from what Python's engine of its release made of the same model.
+ * @param {Scene} scene @param {Run[]} found @param {any} engines */
+function apart(scene, found, engines) {
+  const own = { munk: "Munk2D", mujoco: `MuJoCo ${engines.mujoco?.mj_versionString?.() ?? ""}`.trim() };
+  const told_ = found.map(({ name, pose }) => {
+    const { version, pose: kept } = scene.native[name];
+    if (!kept) return `${own[name]} is not compared: Python's ${version} has no stored run of this.`;
+    const native = doubles(kept);
+    const most = pose.reduce((largest, value, index) => Math.max(largest, Math.abs(value - native[index])), 0);
+    root.dataset[`apart_${name}`] = String(most);
+    return `${own[name]} in this page and ${version} in Python: poses at most ${told(most)} m or rad apart.`;
+  });
+  return `As shipped, ${told_.join(" ")}`;
+}
+
+/** @param {Record<Name, any>} engines @param {any[]} rows @param {Form} form */
+function start(engines, rows, form) {
   const figure = /** @type {HTMLElement} */ (root.querySelector("figure"));
-  const frame = /** @type {HTMLElement} */ (figure.querySelector(".frame"));
-  const place = /** @type {HTMLElement} */ (root.querySelector(".stored"));
   /** @type {Player|null} */
   let player = null;
 
   const run = () => {
-    label(live);
-    const now = setting();
+    form.label();
+    const now = form.setting();
+    const { scene } = now;
     const begin = performance.now();
-    const exact = truth(live, now);
-    /** @type {{name: string, pose: Float64Array, milliseconds: number, method: string}[]} */
-    const motions = [];
-    const one = (/** @type {string} */ name, /** @type {string} */ method, /** @type {() => Float64Array} */ compute) => {
-      const before = performance.now();
-      const pose = finite(compute());
-      motions.push({ name, pose, milliseconds: performance.now() - before, method });
-    };
-    if (engines.munk) one(NAMES.munk, "pymunk", () => runMunk(engines.munk, live, now));
-    if (engines.mujoco) one(NAMES.mujoco, "mujoco", () => runMujoco(engines.mujoco, live, now));
-    const spent = performance.now() - begin;
-    const pins = joints(live, now);
-    const t = times(live, now);
-    const lengths = pins.slice(0, 3).map((pin) => 2 * Math.abs(pin.secondPoint[0]));
-    frame.replaceChildren(stage(motions.length, [lengths[0], lengths[1], live.lengths.rocker]));
-    frame.querySelectorAll(".trace").forEach((path, index) => {
-      path.setAttribute("d", couplerPath(index < motions.length ? motions[index].pose : exact));
+    const exact = truth(now);
+    const found = runs(now, engines);
+    root.dataset.spent = (performance.now() - begin).toFixed(2);
+    const t = times(now);
+    const bodies = scene.bodies.length;
+    const drawing = drawingOf(now);
+    place(".frame").innerHTML = stage(drawing, found.map(({ mark }) => mark));
+    root.querySelectorAll(".frame .traces").forEach((group, index) => {
+      const pose = index < found.length ? found[index].pose : exact;
+      for (const { body, point } of scene.traces) {
+        group.append(svg("path", { class: "trace", d: pathOf(pose, bodies, body, point) }));
+      }
     });
+    const joints = jointsOf(now);
     const take = {
-      t: Array.from(t), bodies: live.bodies, joints: pins, size: 1,
+      t: Array.from(t), bodies: scene.bodies, joints, size: drawing.size, measure: scene.measure,
       truth: { pose: /** @type {any} */ (exact), twist: [] },
-      motions: motions.map(({ name, pose }) => ({ name, pose: /** @type {any} */ (pose) })),
-      lost: [], forces: [], centre: null, traces: [{ body: 1, point: [0, 0] }],
+      motions: found.map(({ name, pose, mark }) => ({ name: WORDS[name], pose: /** @type {any} */ (pose), mark })),
+      lost: [], forces: [], loose: [], centre: null, traces: scene.traces,
     };
     if (player) player.load(take);
     else player = new Player(figure, take);
-    const found = motions.map(({ name, pose, milliseconds, method }) => {
-      const { angle } = errors(exact, pose, 3, t.length);
-      const error = angle.reduce((a, b) => Math.max(a, b), 0);
-      return { name, method, error, gap: largestGap(pins, pose, 3, t.length), milliseconds };
+    const results = found.map(({ name, pose, milliseconds, mark }) => {
+      const error = errors(exact, pose, bodies, t.length)[scene.measure].reduce((a, b) => Math.max(a, b), 0);
+      return { name, mark, error, gap: largestGap(joints, pose, bodies, t.length), milliseconds };
     });
-    table.replaceChildren(...found.map(({ name, error, gap, milliseconds }) => {
-      const row = document.createElement("tr");
-      for (const text of [name, told(error), told(gap), milliseconds.toFixed(1)]) row.insertCell().textContent = text;
-      return row;
-    }));
-    root.dataset.errors = JSON.stringify(found.map(({ error }) => error));
-    root.dataset.gaps = JSON.stringify(found.map(({ gap }) => gap));
-    root.dataset.spent = spent.toFixed(2);
-    const scene = now.free ? "free_four_bar" : "driven_four_bar";
-    const own = found.map(({ error, name }, index) => ({ x: stepOf(live, now), y: error, mark: index + 1, name: `${name}, now` }));
-    scatter(place, rows.filter((row) => row.scene === scene), own);
-    const state = inputs.map((input) => `${input.name}=${input.value}`).join("&");
-    history.replaceState(null, "", `#live&${state}`);
+    show(now, results, joints.length > 0);
+    for (const mark of [1, 2]) place(`.legend .method-${mark}`)?.toggleAttribute("hidden", !found.some((each) => each.mark === mark));
+    scatter(
+      place(".stored"), rows.filter((row) => row.scene === scene.scene), scene.measure,
+      results.map(({ error, name, mark }) => ({ x: stepOf(now), y: error, mark, name: `${WORDS[name]}, now` })),
+    );
+    if (form.untouched) place(".apart").textContent = apart(scene, found, engines);
+    history.replaceState(null, "", form.link);
   };
-  form.addEventListener("input", run);
-  form.addEventListener("submit", (event) => event.preventDefault());
+  form.form.addEventListener("input", run);
   for (const button of root.querySelectorAll("button[data-preset]")) {
     if (!(button instanceof HTMLButtonElement)) continue;
     button.addEventListener("click", () => {
-      for (const [name, value] of Object.entries(JSON.parse(button.dataset.preset ?? "{}"))) {
-        const input = inputOf(name);
-        if (input) input.value = String(value);
-      }
-      const remark = root.querySelector(".expected");
-      if (remark) remark.textContent = button.dataset.expected ?? "";
+      form.move(JSON.parse(button.dataset.preset ?? "{}"), button.dataset.anew !== undefined);
+      place(".expected").textContent = button.dataset.expected ?? "";
       run();
     });
   }
+  form.choice.addEventListener("input", () => (place(".expected").textContent = ""));
   run();
-  Object.assign(window, { crosscheckLive: { live, engines, setting, truth, runMujoco, runMunk, ends } });
+  Object.assign(window, { crosscheckLive: { engines, form, truth, runMujoco, runMunk } });
 }
 
-/** The sliders as a link has them. */
-function restore() {
-  if (!location.hash.startsWith("#live&")) return;
-  for (const part of location.hash.slice(6).split("&")) {
-    const [name, value] = part.split("=");
-    const input = inputOf(name);
-    if (input && /^\d+$/.test(value) && Number(value) <= Number(input.max)) input.value = value;
-  }
-  root.scrollIntoView();
+/** The table of results, and why an engine is not in it.
+ * @param {Setting} now @param {{name: Name, error: number, gap: number, milliseconds: number}[]} results @param {boolean} gaps */
+function show(now, results, gaps) {
+  const unit = UNITS[now.scene.measure];
+  place("th.error").textContent = now.scene.measure === "angle" ? `angle error [${unit}]` : `place error [${unit}]`;
+  table.tBodies[0].replaceChildren(...results.map(({ name, error, gap, milliseconds }) => {
+    const row = document.createElement("tr");
+    for (const text of [WORDS[name], told(error), gaps ? told(gap) : "–", milliseconds.toFixed(1)]) row.insertCell().textContent = text;
+    return row;
+  }));
+  const why = /** @type {Name[]} */ (["munk", "mujoco"]).map((name) => [WORDS[name], whyNot(now, name)]);
+  place(".why").textContent = why.filter(([, reason]) => reason).map(([name, reason]) => `${name} can't run this: ${reason}.`).join(" ");
+  root.dataset.errors = JSON.stringify(Object.fromEntries(results.map(({ name, error }) => [name, error])));
 }
 
 async function begin() {
-  restore();
   const folder = root.dataset.folder ?? "";
   try {
-    const read = async (/** @type {string} */ name) => (await fetch(`${folder}live/${name}`)).json();
-    const [live, rows, engines] = await Promise.all([read("four_bar.json"), read("rows.json"), load(`${folder}packages/`)]);
-    start(live, engines, rows);
+    const read = async (/** @type {string} */ name) => (await fetch(`${folder}live/${name}.json`)).json();
+    const [rows, engines, ...scenes] = await Promise.all([
+      read("rows"), load(`${folder}packages/`), ...(root.dataset.scenes ?? "").split(" ").map(read),
+    ]);
+    const form = new Form(root, scenes);
+    const linked = form.restore(location.hash);
+    start(engines, rows, form);
     status.textContent = "";
     root.classList.add("ready");
+    if (linked) root.scrollIntoView();
   } catch (reason) {
     status.textContent = `The engines could not be loaded: ${reason instanceof Error ? reason.message : reason}`;
   }

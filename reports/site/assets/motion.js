@@ -2,14 +2,19 @@
 /** What can be said of a motion: where points are, how far joints are open, how far it is from the exact one. */
 
 /**
- * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[]}} Joint
- * @typedef {{name: string, pose: (number|null)[]}} Motion
- * @typedef {{name: string, at: number[], force: (number|null)[]}} Force
- * @typedef {{t: number[], bodies: string[], joints: Joint[], size: number,
- *   truth: {pose: number[], twist: number[]}, motions: Motion[], lost: {name: string, why: string}[],
+ * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[],
+ *   line: number|null}} Joint a pin, or a slot of the first body along `line` [rad]
+ * @typedef {{name: string, pose: (number|null)[], mark?: number}} Motion
+ * @typedef {{name: string, at: number[], force: (number|null)[], normal?: (number|null)[],
+ *   friction?: (number|null)[]}} Force
+ * @typedef {{name: string, unit: string, at: number[], motions: (number|null)[][]}} Loose a skate or a rolling contact
+ * @typedef {{t: number[], bodies: string[], joints: Joint[], size: number, measure: "angle"|"position",
+ *   truth: {pose: number[], twist: number[]}, motions: Motion[], lost: {name: string, why: string}[], loose: Loose[],
  *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[]}} Take
  * @typedef {[number, number]} Point
  */
+
+export const UNITS = { angle: "rad", position: "m" };
 
 /** A pose [x, y, angle] at an instant; NaN where there is none.
  * @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame @param {number} body
@@ -30,21 +35,26 @@ export function placed([x, y, angle], [a, b]) {
   return [x + cosine * a - sine * b, y + sine * a + cosine * b];
 }
 
-/** The two points of a pin at an instant; a body of -1 is the ground.
+/** The two points of a pin at an instant, or the point of a slot and the nearest one of its line; a body of -1 is the
+ * ground.
  * @param {Joint} joint @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame
  * @returns {[Point, Point]} */
 export function ends(joint, pose, bodies, frame) {
   const one = (/** @type {number} */ body, /** @type {number[]} */ point) =>
     body < 0 ? /** @type {Point} */ ([point[0], point[1]]) : placed(poseAt(pose, bodies, frame, body), point);
-  return [one(joint.first, joint.firstPoint), one(joint.second, joint.secondPoint)];
+  const [first, second] = [one(joint.first, joint.firstPoint), one(joint.second, joint.secondPoint)];
+  if (joint.line === null) return [first, second];
+  const angle = joint.line + (joint.first < 0 ? 0 : poseAt(pose, bodies, frame, joint.first)[2]);
+  const along = (second[0] - first[0]) * Math.cos(angle) + (second[1] - first[1]) * Math.sin(angle);
+  return [[first[0] + along * Math.cos(angle), first[1] + along * Math.sin(angle)], second];
 }
 
 /** The largest error of an angle [rad] and of a place [m] at every instant; NaN where the method gave up.
  * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
- * @param {number} frames @returns {{angle: Float64Array, place: Float64Array}} */
+ * @param {number} frames @returns {{angle: Float64Array, position: Float64Array}} */
 export function errors(truth, pose, bodies, frames) {
   const angle = new Float64Array(frames);
-  const place = new Float64Array(frames);
+  const position = new Float64Array(frames);
   for (let frame = 0; frame < frames; frame++) {
     for (let body = 0; body < bodies; body++) {
       const exact = poseAt(truth, bodies, frame, body);
@@ -53,13 +63,13 @@ export function errors(truth, pose, bodies, frames) {
       const moved = Math.hypot(own[0] - exact[0], own[1] - exact[1]);
       // NaN has to win: Math.max hands it on.
       angle[frame] = Math.max(angle[frame], turned);
-      place[frame] = Math.max(place[frame], moved);
+      position[frame] = Math.max(position[frame], moved);
     }
   }
-  return { angle, place };
+  return { angle, position };
 }
 
-/** The largest gap of any pin over all instants [m].
+/** The largest gap of any pin or slot over all instants [m].
  * @param {Joint[]} joints @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frames */
 export function largestGap(joints, pose, bodies, frames) {
   let largest = 0;

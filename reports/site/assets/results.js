@@ -13,7 +13,9 @@ const MOST = 400; // rows in the table at once
 /** @returns {Promise<Row[]>} */
 async function read() {
   const { columns, rows } = await (await fetch("rows.json")).json();
-  return rows.map((/** @type {(string|number|null)[]} */ row) => Object.fromEntries(columns.map((name, i) => [name, row[i]])));
+  return rows.map((/** @type {(string|number|null)[]} */ row) =>
+    Object.fromEntries(columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])),
+  );
 }
 
 /** @param {string} name */

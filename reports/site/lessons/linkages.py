@@ -10,6 +10,7 @@ from reference.pendulum.scenes import LinkPendulum, TenLinks
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
 from reports.site.lesson import Lesson, Step, Take
+from reports.site.live import linkages, pendulums
 
 SHIPPED = (("pymunk as shipped", pymunk.DEFAULT), ("MuJoCo as shipped", mujoco.DEFAULT))
 SET = (("pymunk, tuned", pymunk.TUNED), ("MuJoCo, tuned", mujoco.TUNED))
@@ -77,7 +78,7 @@ FOUR_BAR = Lesson(
             ),
         ),
     ),
-    live="four_bar",
+    live=linkages.FOUR_BAR,
 )
 
 SLIDER_CRANK = Lesson(
@@ -109,6 +110,7 @@ SLIDER_CRANK = Lesson(
             ),
         ),
     ),
+    live=linkages.SLIDER_CRANK,
 )
 
 TIP = ((0.5, 0.0), (-0.5, 0.0))
@@ -147,6 +149,7 @@ PENDULUM = Lesson(
             ),
         ),
     ),
+    live=pendulums.PENDULUM,
 )
 
 
@@ -186,4 +189,5 @@ CENTRODES = Lesson(
         Step("engines", frozenset({"centre"}), ("centrodes", "The centre as a measure of an engine")),
         Step("engines", frozenset({"gaps"}), ("centrodes", "Shapes of your own")),
     ),
+    live=linkages.FOUR_BAR[:1],
 )

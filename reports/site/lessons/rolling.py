@@ -7,6 +7,7 @@ from engines.pymunk.methods import ROLL_FACETED, ROLL_PIVOT
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.lesson import Lesson, Step, Take
+from reports.site.live import rolling
 
 CENTRE = (("roller", (0.0, 0.0)),)
 SHIPPED = (("pymunk, a polygon of 64 corners", pymunk.DEFAULT, 1), ("MuJoCo, contact as shipped", mujoco.DEFAULT, 1))
@@ -48,6 +49,7 @@ ROLLING = Lesson(
             ),
         ),
     ),
+    live=rolling.ROLLING,
 )
 
 GEARS = Lesson(
@@ -78,4 +80,5 @@ GEARS = Lesson(
             ),
         ),
     ),
+    live=rolling.GEARS,
 )

@@ -6,6 +6,7 @@ from engines import mujoco, pymunk
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reports.site.lesson import Lesson, Step, Take
+from reports.site.live import skates
 
 CENTRE = (("body", (0.0, 0.0)),)
 SLEIGH = ChaplyginSleigh()
@@ -51,6 +52,7 @@ SKATE = Lesson(
             ),
         ),
     ),
+    live=skates.SKATE,
 )
 
 CAR = CarAndTrailer()
@@ -91,4 +93,5 @@ WHEELS = Lesson(
             ),
         ),
     ),
+    live=skates.WHEELS,
 )

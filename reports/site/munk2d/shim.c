@@ -1,58 +1,165 @@
 // One call that builds a space from numbers, steps it and records poses: all that the page asks of Munk2D.
-// The numbers are those of reports/site/live.py: gravity (2), the number of bodies, the bodies, the pivots.
+// The numbers are those of reports/site/live/munk_plan.py: gravity (2), collision slop and bias, the number of bodies,
+// the bodies, and records of joints, shapes and of what is done by hand around each step.
 
 #include "chipmunk/chipmunk.h"
 #include <emscripten.h>
+#include <math.h>
 #include <stdlib.h>
 
-enum { BODY = 11, PIVOT = 6 };
+enum { HEAD = 5, BODY = 11 };
+enum { PIVOT = 1, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED };
 
-EMSCRIPTEN_KEEPALIVE
-void munk_run(const double *plan, int length, double dt, int iterations, double error_bias, int samples, int every,
-              double *out)
+typedef struct {
+    cpSpace *space;
+    cpBody **bodies;
+    cpConstraint **joints;
+    cpShape **shapes;
+    int body_count, joint_count, shape_count;
+} World;
+
+static cpBody *body_of(World *world, double index)
 {
-    cpSpace *space = cpSpaceNew();
-    cpSpaceSetGravity(space, cpv(plan[0], plan[1]));
-    cpSpaceSetIterations(space, iterations);
-    int count = (int)plan[2];
-    cpBody **bodies = calloc(count, sizeof(cpBody *));
-    const double *own = plan + 3;
-    for (int i = 0; i < count; i++, own += BODY) {
+    return index < 0 ? cpSpaceGetStaticBody(world->space) : world->bodies[(int)index];
+}
+
+static void add_joint(World *world, cpConstraint *joint, double error_bias)
+{
+    cpConstraintSetErrorBias(joint, error_bias);
+    world->joints[world->joint_count++] = cpSpaceAddConstraint(world->space, joint);
+}
+
+// Every shape sees only those of its own category: the two of one rolling contact.
+static void add_shape(World *world, cpShape *shape, const double *own)
+{
+    cpShapeSetFriction(shape, own[1]);
+    cpShapeSetFilter(shape, cpShapeFilterNew(CP_NO_GROUP, (cpBitmask)own[2], (cpBitmask)own[2]));
+    world->shapes[world->shape_count++] = cpSpaceAddShape(world->space, shape);
+}
+
+static void add_polygon(World *world, const double *own, int numbers)
+{
+    int corners = (numbers - 3) / 2;
+    cpVect *points = calloc(corners, sizeof(cpVect));
+    for (int i = 0; i < corners; i++) points[i] = cpv(own[3 + 2 * i], own[4 + 2 * i]);
+    add_shape(world, cpPolyShapeNewRaw(body_of(world, own[0]), corners, points, 0), own);
+    free(points);
+}
+
+static void add_record(World *world, int part, const double *own, int numbers, double error_bias)
+{
+    cpBody *first = body_of(world, own[0]);
+    cpBody *second = part <= GEAR ? body_of(world, own[1]) : NULL;
+    cpVect one = numbers > 3 ? cpv(own[2], own[3]) : cpvzero;
+    cpVect two = numbers > 5 ? cpv(own[4], own[5]) : cpvzero;
+    cpConstraint *joint;
+    switch (part) {
+    case PIVOT: add_joint(world, cpPivotJointNew2(first, second, one, two), error_bias); break;
+    case GROOVE: add_joint(world, cpGrooveJointNew(first, second, one, two, cpv(own[6], own[7])), error_bias); break;
+    case MOTOR: add_joint(world, cpSimpleMotorNew(first, second, own[2]), error_bias); break;
+    case PIN:
+        joint = cpPinJointNew(first, second, one, two);
+        cpPinJointSetDist(joint, own[6]);
+        add_joint(world, joint, error_bias);
+        break;
+    case GEAR: add_joint(world, cpGearJointNew(first, second, own[2], own[3]), error_bias); break;
+    case CIRCLE: add_shape(world, cpCircleShapeNew(first, own[3], two), own); break;
+    case SEGMENT: add_shape(world, cpSegmentShapeNew(first, two, cpv(own[6], own[7]), own[3]), own); break;
+    case POLYGON: add_polygon(world, own, numbers); break;
+    }
+}
+
+// A groove laid under the blade where it will stand after the drift; as AimedGroove in engines/pymunk/joints/skate.py.
+static void aim(World *world, const double *own, double dt)
+{
+    cpBody *body = world->bodies[(int)own[0]];
+    cpConstraint *groove = world->joints[(int)own[1]];
+    double ahead = own[5] ? dt : 0;
+    cpVect place = cpBodyGetPosition(body), velocity = cpBodyGetVelocity(body);
+    double x = place.x + velocity.x * ahead, y = place.y + velocity.y * ahead;
+    double angle = cpBodyGetAngle(body) + cpBodyGetAngularVelocity(body) * ahead + own[2];
+    cpGrooveJointSetGrooveA(groove, cpv(x + own[3] * cos(angle), y + own[3] * sin(angle)));
+    cpGrooveJointSetGrooveB(groove, cpv(x + own[4] * cos(angle), y + own[4] * sin(angle)));
+}
+
+// The velocity across the blade taken away; as Zeroed in engines/pymunk/joints/skate.py.
+static void zero(World *world, const double *own)
+{
+    cpBody *body = world->bodies[(int)own[0]];
+    double angle = cpBodyGetAngle(body) + own[1], rate = cpBodyGetAngularVelocity(body);
+    cpVect velocity = cpBodyGetVelocity(body);
+    double left_x = -sin(angle), left_y = cos(angle);
+    double across = velocity.x * left_x + velocity.y * left_y + own[2] * rate;
+    double push = own[3] * across;
+    cpBodySetVelocity(body, cpv(velocity.x - push * left_x, velocity.y - push * left_y));
+    if (own[4]) cpBodySetAngularVelocity(body, rate - own[4] * across);
+}
+
+static void step(World *world, const double *records, const double *end, double dt)
+{
+    for (const double *at = records; at < end; at += 2 + (int)at[1])
+        if (at[0] == AIMED) aim(world, at + 2, dt);
+    cpSpaceStep(world->space, dt);
+    for (const double *at = records; at < end; at += 2 + (int)at[1])
+        if (at[0] == ZEROED) zero(world, at + 2);
+}
+
+static void add_bodies(World *world, const double *own)
+{
+    for (int i = 0; i < world->body_count; i++, own += BODY) {
         cpBody *body = own[0] ? cpBodyNewKinematic() : cpBodyNew(own[1], own[2]);
         cpBodySetPosition(body, cpv(own[3], own[4]));
         cpBodySetAngle(body, own[5]);
         cpBodySetVelocity(body, cpv(own[6], own[7]));
         cpBodySetAngularVelocity(body, own[8]);
-        bodies[i] = cpSpaceAddBody(space, body);
+        world->bodies[i] = cpSpaceAddBody(world->space, body);
     }
-    int pivots = (int)(plan + length - own) / PIVOT;
-    cpConstraint **joints = calloc(pivots, sizeof(cpConstraint *));
-    cpBody *ground = cpSpaceGetStaticBody(space);
-    for (int i = 0; i < pivots; i++, own += PIVOT) {
-        cpBody *first = own[0] < 0 ? ground : bodies[(int)own[0]];
-        cpBody *second = own[1] < 0 ? ground : bodies[(int)own[1]];
-        joints[i] = cpPivotJointNew2(first, second, cpv(own[2], own[3]), cpv(own[4], own[5]));
-        cpConstraintSetErrorBias(joints[i], error_bias);
-        cpSpaceAddConstraint(space, joints[i]);
+}
+
+static void release(World *world)
+{
+    for (int i = 0; i < world->joint_count; i++) {
+        cpSpaceRemoveConstraint(world->space, world->joints[i]);
+        cpConstraintFree(world->joints[i]);
     }
+    for (int i = 0; i < world->shape_count; i++) {
+        cpSpaceRemoveShape(world->space, world->shapes[i]);
+        cpShapeFree(world->shapes[i]);
+    }
+    for (int i = 0; i < world->body_count; i++) {
+        cpSpaceRemoveBody(world->space, world->bodies[i]);
+        cpBodyFree(world->bodies[i]);
+    }
+    cpSpaceFree(world->space);
+    free(world->joints);
+    free(world->shapes);
+    free(world->bodies);
+}
+
+EMSCRIPTEN_KEEPALIVE
+void munk_run(const double *plan, int length, double dt, int iterations, double error_bias, int samples, int every,
+              double *out)
+{
+    World world = {.space = cpSpaceNew(), .body_count = (int)plan[4]};
+    cpSpaceSetGravity(world.space, cpv(plan[0], plan[1]));
+    cpSpaceSetCollisionSlop(world.space, plan[2]);
+    cpSpaceSetCollisionBias(world.space, plan[3]);
+    cpSpaceSetIterations(world.space, iterations);
+    world.bodies = calloc(world.body_count, sizeof(cpBody *));
+    world.joints = calloc(length, sizeof(cpConstraint *));
+    world.shapes = calloc(length, sizeof(cpShape *));
+    add_bodies(&world, plan + HEAD);
+    const double *records = plan + HEAD + BODY * world.body_count, *end = plan + length;
+    for (const double *at = records; at < end; at += 2 + (int)at[1])
+        add_record(&world, (int)at[0], at + 2, (int)at[1], error_bias);
     for (int sample = 0; sample <= samples; sample++) {
-        for (int step = 0; sample && step < every; step++) cpSpaceStep(space, dt);
-        for (int i = 0; i < count; i++) {
-            cpVect place = cpBodyGetPosition(bodies[i]);
+        for (int count = 0; sample && count < every; count++) step(&world, records, end, dt);
+        for (int i = 0; i < world.body_count; i++) {
+            cpVect place = cpBodyGetPosition(world.bodies[i]);
             *out++ = place.x;
             *out++ = place.y;
-            *out++ = cpBodyGetAngle(bodies[i]);
+            *out++ = cpBodyGetAngle(world.bodies[i]);
         }
     }
-    for (int i = 0; i < pivots; i++) {
-        cpSpaceRemoveConstraint(space, joints[i]);
-        cpConstraintFree(joints[i]);
-    }
-    for (int i = 0; i < count; i++) {
-        cpSpaceRemoveBody(space, bodies[i]);
-        cpBodyFree(bodies[i]);
-    }
-    cpSpaceFree(space);
-    free(joints);
-    free(bodies);
+    release(&world);
 }

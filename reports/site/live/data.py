@@ -1,0 +1,152 @@
+"""A live part as the data that a page loads: models, truth and drawings at every place of the sliders.
+
+What is the same at several places is there once: `pool` holds it, and places have its number. The numbers of truth
+and of Munk2D's plans are doubles as they are, in base64. Nothing is stepped here: what Python's engines gave comes as
+stored motions.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Unsupported
+from reference.scene import Scene
+from reports.grid.tasks import Answer, Motion
+from reports.site import drawn
+from reports.site.joints import joints_of, loose, measure_of
+from reports.site.lesson import Take
+from reports.site.live.mujoco_text import text_of
+from reports.site.live.munk_plan import plan_of
+from reports.site.live.sliders import Live
+
+NUMBER = re.compile(r"(?<=[\" ])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?=[\" ])")
+PACKAGES = {"munk": ("pymunk", "pymunk"), "mujoco": ("MuJoCo", "mujoco-core")}  # its name, and that of its package
+
+
+@dataclass
+class Pool:
+    """Values that a page needs, each once; `number` gives the place of one."""
+
+    values: list[Any] = field(default_factory=list)
+    known: dict[str, int] = field(default_factory=dict)
+
+    def number(self, value: Any) -> int:
+        """Where the value stands, put there if it is new."""
+        key = json.dumps(value)
+        if key not in self.known:
+            self.known[key] = len(self.values)
+            self.values.append(value)
+        return self.known[key]
+
+
+def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
+    """All that a page needs of a live scene, for JSON; lists of places are in the order of `Live.places`."""
+    pool = Pool()
+    places = list(live.places())
+    mechanism = live.scene.mechanism()
+    return {
+        "word": live.word,
+        "scene": live.scene.name,
+        "measure": measure_of(mechanism),
+        "frames": live.frames,
+        "steps": live.steps,
+        "duration": live.scene.duration,
+        "sliders": [{"name": slider.field, "size": len(slider.values)} for slider in live.sliders],
+        "bodies": [body.name for body in mechanism.bodies],
+        "truth": [pool.number(_truth(scene, live.frames)) for scene in places],
+        "drawings": [pool.number(_drawing(live, scene)) for scene in places],
+        "joints": [pool.number(joints_of(scene.mechanism())) for scene in places],
+        "mujoco": [_or_why(lambda engine=engine: _texts(engine, live, pool)) for _, engine in live.mujoco],
+        "munk": [_or_why(lambda engine=engine: _plans(engine, places, pool)) for _, engine in live.munk],
+        "traces": [{"body": mechanism.body_index(body), "point": point} for body, point in live.traces],
+        "native": {
+            name: {"version": native_version(name), "pose": _pose(answers.get(motion))}
+            for name, motion in live.shipped().items()
+        },
+        "pool": pool.values,
+    }
+
+
+def native_version(engine: str) -> str:
+    """Such as "MuJoCo 4.0.1": what Python runs."""
+    name, package = PACKAGES[engine]
+    return f"{name} {version(package)}"
+
+
+def _or_why(make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """What is made, or the sentence that says why it can't be."""
+    try:
+        return make()
+    except Unsupported as reason:
+        return {"why": str(reason)}
+
+
+def _truth(scene: Scene, frames: int) -> str:
+    return packed(scene.motion(np.arange(frames + 1) * (scene.duration / frames)).pose)
+
+
+def _pose(answer: Answer | None) -> str | None:
+    return packed(answer.array("pose")) if answer is not None and answer.finished else None
+
+
+def packed(values: NDArray[np.float64]) -> str:
+    """Doubles, the lowest byte first, in base64."""
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
+
+
+def _plans(engine: Any, places: Sequence[Scene], pool: Pool) -> dict[str, Any]:
+    return {"plans": [pool.number(packed(np.array(plan_of(engine, scene.mechanism())))) for scene in places]}
+
+
+def _texts(engine: Any, live: Live, pool: Pool) -> dict[str, Any]:
+    mechanisms = [scene.mechanism() for scene in live.places()]
+    steps = [live.scene.duration / steps for steps in live.steps]
+    # Where nothing stands on skates, a model for one step is that for all.
+    known = steps if loose(mechanisms[0]) else steps[:1]
+    by_step = [[text_of(engine, mechanism, step) for step in known] for mechanism in mechanisms]
+    texts = [each[0] for each in by_step]
+    first = texts[0]
+    if any(each.text != told[0].text for told in by_step for each in told):
+        raise ValueError("the text of a model depends on the step")
+    if any((each.bodies, each.turns, each.springs) != (first.bodies, first.turns, first.springs) for each in texts):
+        raise ValueError("the trees of a slider's places differ")
+    parts, numbers = template([each.text for each in texts])
+    return {
+        "parts": parts,
+        "numbers": [pool.number(each) for each in numbers],
+        "changes": [[pool.number(each.changes) for each in told] for told in by_step],
+        "velocity": [pool.number(each.velocity) for each in texts],
+        "bodies": first.bodies,
+        "turns": first.turns,
+        "springs": first.springs,
+    }
+
+
+def template(texts: Sequence[str]) -> tuple[list[str], list[str]]:
+    """What stands between the numbers of all texts, and the numbers of each, between commas. Raises ValueError."""
+    parts = [NUMBER.split(text) for text in texts]
+    if any(each != parts[0] for each in parts):
+        raise ValueError("the models of a slider's places differ in more than numbers")
+    return parts[0], [",".join(NUMBER.findall(text)) for text in texts]
+
+
+def _drawing(live: Live, scene: Scene) -> dict[str, Any]:
+    take = Take(scene, ends=live.ends, traces=live.traces)
+    mechanism = scene.mechanism()
+    pose = scene.motion(np.arange(live.frames + 1) * (scene.duration / live.frames)).pose
+    left, bottom, width, height = drawn.box(mechanism, take, pose)
+    return {
+        "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
+        "ground": drawn.ground(mechanism, take, pose),
+        "bodies": [drawn.body_shape(mechanism, take, body.name) for body in mechanism.bodies],
+        "size": mechanism.length_scale,
+    }

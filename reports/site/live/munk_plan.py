@@ -1,0 +1,116 @@
+"""What pymunk's space holds as a list of numbers, which shim.c turns back into a space in the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import IntEnum
+from itertools import chain
+from typing import Any
+
+import pymunk as pymunk_package
+from pymunk.constraints import GearJoint, GrooveJoint, PinJoint, PivotJoint, SimpleMotor
+
+from engines import Unsupported
+from engines.pymunk import Pymunk
+from engines.pymunk.joints.skate import AimedGroove, Zeroed
+from engines.pymunk.model import Model
+from reference.joints import Skate
+from reference.mechanism import Mechanism
+
+STEP = 1e-3  # s: nothing of these models depends on it
+
+
+class Part(IntEnum):
+    """What a record of the plan is, as shim.c has it."""
+
+    PIVOT, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 11)
+
+
+Indexed = Callable[[Any], int]
+
+
+def plan_of(engine: Pymunk, mechanism: Mechanism) -> tuple[float, ...]:
+    """Gravity; collision slop and bias; the number of bodies; bodies; records. Raises Unsupported.
+
+    A body: kind (0 dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin in our frame. A
+    record: what it is, how many numbers follow, and these. Bodies are counted from 0, -1 is the ground, and records
+    stand in the order in which the adapter added the constraints, since the solver sweeps in that order.
+    """
+    model = engine.model(mechanism, STEP)
+    space = model.space
+    places: dict[Any, int] = {body: index for index, body in enumerate(model.bodies)}
+
+    def index(body: Any) -> int:
+        return places.get(body, -1)
+
+    head = (*space.gravity, space.collision_slop, space.collision_bias, len(model.bodies))
+    records = [_constraint(each, index) for each in _in_order(space)]
+    records += [_shape(each, index) for each in space.shapes]
+    records += _by_hand(model, mechanism)
+    flat = [head, *_bodies(model), *((part, len(numbers), *numbers) for part, numbers in records)]
+    return tuple(map(float, chain(*flat)))
+
+
+def _in_order(space: Any) -> list[Any]:
+    return list(space._constraints)  # the public property is a set
+
+
+def _bodies(model: Model) -> list[tuple[float, ...]]:
+    told = []
+    for body, origin in zip(model.bodies, model.origins, strict=True):
+        kinematic = body.body_type == pymunk_package.Body.KINEMATIC
+        weight = (1.0, 1.0) if kinematic else (body.mass, body.moment)
+        placed = (*body.position, body.angle, *body.velocity, body.angular_velocity, *origin)
+        told.append((float(kinematic), *weight, *placed))
+    return told
+
+
+def _constraint(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
+    between = (index(each.a), index(each.b))
+    match each:
+        case PivotJoint():
+            return Part.PIVOT, (*between, *each.anchor_a, *each.anchor_b)
+        case GrooveJoint():
+            return Part.GROOVE, (*between, *each.groove_a, *each.groove_b, *each.anchor_b)
+        case SimpleMotor():
+            return Part.MOTOR, (*between, each.rate)
+        case PinJoint():
+            return Part.PIN, (*between, *each.anchor_a, *each.anchor_b, each.distance)
+        case GearJoint():
+            return Part.GEAR, (*between, each.phase, each.ratio)
+        case _:
+            raise Unsupported(f"the page knows no {type(each).__name__}")
+
+
+def _shape(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
+    common = (index(each.body), each.friction, each.filter.categories)
+    match each:
+        case pymunk_package.Circle():
+            return Part.CIRCLE, (*common, each.radius, *each.offset)
+        case pymunk_package.Segment():
+            return Part.SEGMENT, (*common, each.radius, *each.a, *each.b)
+        case pymunk_package.Poly():
+            return Part.POLYGON, (*common, *chain(*each.get_vertices()))
+        case _:
+            raise Unsupported(f"the page knows no {type(each).__name__}")
+
+
+def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float, ...]]]:
+    """What our adapter does before and after each step, of which the shim knows the two that hold skates."""
+    constraints = _in_order(model.space)
+    skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
+    records: list[tuple[Part, tuple[float, ...]]] = []
+    for hands in (model.repairs, model.aims):
+        if hands and len(hands) != len(skates):
+            raise Unsupported("this method aims rows by code of ours in Python, which the page has not")
+        for body, hand in zip(skates, hands, strict=False):
+            match hand:
+                case Zeroed():
+                    records.append((Part.ZEROED, (body, hand._angle, hand._arm, hand._push, hand._spin)))
+                case AimedGroove():
+                    row = constraints.index(hand.constraint)
+                    aim = (body, row, hand._angle, hand._back, hand._front, float(hand._predicted))
+                    records.append((Part.AIMED, aim))
+                case _:
+                    raise Unsupported("this method aims rows by code of ours in Python, which the page has not")
+    return records
