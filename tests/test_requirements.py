@@ -50,11 +50,13 @@ def test_pymunk_rows_depend_on_the_version_of_cffi_and_mujoco_rows_do_not(monkey
     before = fingerprint.fingerprint(PYMUNK), fingerprint.fingerprint(MUJOCO)
     true_version = metadata.version
     monkeypatch.setattr(fingerprint.metadata, "version", lambda name: "0" if name == "cffi" else true_version(name))
-    fingerprint.digest_of.cache_clear()
     try:
+        for cached in (fingerprint.digest_of, fingerprint._version):
+            cached.cache_clear()
         after = fingerprint.fingerprint(PYMUNK), fingerprint.fingerprint(MUJOCO)
     finally:
-        fingerprint.digest_of.cache_clear()
+        for cached in (fingerprint.digest_of, fingerprint._version):
+            cached.cache_clear()
     assert after[0] != before[0]
     assert after[1] == before[1]
 

@@ -91,10 +91,10 @@ def run_interruptible(
 
     by = crew or pool(None)
     with kept() as check:
-        waiting = len(items) if fresh else len(missing(items, store, limit))
+        waiting = items if fresh else missing(items, store, limit)
         try:
-            with progress(console, waiting, check) as (done, watch):
-                count = run_into(store, items, fresh, limit, by.threads, done, watch, supervised=by.supervise)
+            with progress(console, len(waiting), check) as (done, watch):
+                count = run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
             check()
         except KeyboardInterrupt:
             stored = len(items) - len(missing(items, store, limit))

@@ -133,18 +133,22 @@ def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
 def run_pieces(
     terminal: Terminal, store: Store, pieces: Sequence[Chunk], seconds: float | None, crew: Workforce
 ) -> None:
-    """Run what is not stored, in waves, until the time is over; a case that ends its process is found and kept."""
+    """Run what is not stored until the time is over; a case that ends its process is found and kept.
+
+    All at once where there is time for all: between two waves workers wait for the last of the first.
+    """
     from reports.cli.terminal import progress
     from reports.grid.running import missing, run_into
     from reports.search.chunk import lost
 
     begin = monotonic()
     waiting = list(missing(pieces, store, LIMIT))
+    size = len(waiting) if seconds is None else WAVE * crew.threads
     with kept() as check:
         try:
             with progress(terminal, len(waiting), check) as (done, watch):
                 while waiting and (seconds is None or monotonic() - begin < seconds):
-                    wave, waiting = waiting[: WAVE * crew.threads], waiting[WAVE * crew.threads :]
+                    wave, waiting = waiting[:size], waiting[size:]
                     run_into(store, wave, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
                     singles = missing(lost(stored(store, wave)), store, LIMIT)
                     run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)

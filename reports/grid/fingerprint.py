@@ -196,10 +196,21 @@ def digest_of(modules: frozenset[str]) -> str:
     digest = hashlib.sha256(f"Python=={platform.python_version()}\0".encode())
     # By name, not by place: a checkout in another folder has the same results.
     for name, path in sorted(files):
-        digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+        digest.update(name.encode() + b"\0" + _contents(path) + b"\0")
     for distribution in sorted(distributions):
-        digest.update(f"{distribution}=={metadata.version(distribution)}\0".encode())
+        digest.update(f"{distribution}=={_version(distribution)}\0".encode())
     return digest.hexdigest()
+
+
+@cache
+def _contents(path: Path) -> bytes:
+    """A digest of a file's bytes: most files are behind most cells."""
+    return hashlib.sha256(path.read_bytes()).digest()
+
+
+@cache
+def _version(distribution: str) -> str:
+    return metadata.version(distribution)
 
 
 def modules_of(*values: Any) -> frozenset[str]:
@@ -217,4 +228,4 @@ def versions_of(modules: frozenset[str]) -> dict[str, str]:
     files, distributions = _behind(modules)
     sources = hashlib.sha256(b"".join(name.encode() + b"\0" + path.read_bytes() for name, path in sorted(files)))
     own = {"Python": platform.python_version(), "our source files": sources.hexdigest()[:12]}
-    return {**{name: metadata.version(name) for name in sorted(distributions)}, **own}
+    return {**{name: _version(name) for name in sorted(distributions)}, **own}
