@@ -12,18 +12,25 @@ from reports.cli.site import SITE
 from reports.cli.terminal import Terminal, print_table
 
 SUITE = "suite"  # instead of scenes, or before them
+JUDGE = "judge"  # instead of scenes
 
 
 def bench(
     scene: Scenes = None,
-    full: Annotated[bool, typer.Option("--full/--quick", help="`bench suite`: of the full grid.")] = False,
+    full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid; `judge`: more.")] = False,
     workers: Workers = None,
     site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
 ) -> None:
     """Time `run` against bare loops, a search, the reference against another library, and the site; asserts nothing.
 
-    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into.
+    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
+    times exact multipliers: an evaluation, steps, chains, many mechanisms at once, and the truths.
     """
+    if scene == [JUDGE]:
+        from reports.cli.bench_judge import bench_judge
+
+        bench_judge(full)
+        return
     if scene and scene[0] == SUITE:
         from reports.cli.bench_suite import bench_suite
 
