@@ -44,7 +44,7 @@ def search(
     seed: Annotated[int, typer.Option(min=0, help="Another seed gives other mechanisms.")] = 1,
     kinds: Annotated[
         str | None,
-        typer.Option(help="Of joints and forces: pin,slot,rod,spring,...; of MuJoCo alone: connect,weld,gear,..."),
+        typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,..."),
     ] = None,
     decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
     oracles: Annotated[str, typer.Option(help=f"What is asked: {ALL_ORACLES}.")] = ALL_ORACLES,
