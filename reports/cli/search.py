@@ -43,7 +43,8 @@ def search(
     seconds: Annotated[float | None, typer.Option(help="Begin nothing after this time; what is done is kept.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Another seed gives other mechanisms.")] = 1,
     kinds: Annotated[
-        str | None, typer.Option(help="Of joints: pin,slot,skate,roll,drive; of MuJoCo alone: connect,weld,gear,...")
+        str | None,
+        typer.Option(help="Of joints and forces: pin,rod,spring,...; of MuJoCo alone: connect,gear,..."),
     ] = None,
     decades: Annotated[int, typer.Option(min=0, max=6, help="By how many more masses and lengths differ.")] = 0,
     oracles: Annotated[str, typer.Option(help=f"What is asked: {ALL_ORACLES}.")] = ALL_ORACLES,

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from matplotlib.figure import Figure
 
 from engines.registry import ENGINES, OTHERS
-from reports.charts.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
+from reports.charts.theme import svg
 from reports.grid.store import Store
 from reports.grid.tasks import Answer
 from reports.search.chunk import Asked, asked, from_words, lost
+from reports.search.picture import distribution
 from reports.search.recipe import LEAST_RANK
 from reports.search.release import release_of
 from reports.search.shrunk import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject
-from reports.search.summary import HEADER, label, refused, summary
-
-LAWS = ("acceleration", "velocity")
-LEAST = 1e-17  # what an error of exactly zero is drawn at
+from reports.search.summary import HEADER, refused, summary
 
 
 def known_subjects(words: Sequence[str]) -> list[Subject]:
@@ -117,43 +112,3 @@ def _finding(task: Shrink, answer: Answer) -> Mapping[str, Any]:
         told = json.loads(str(values["finding"]))
         script = f"{json.dumps(told['case'])}\n"
     return {"title": title, "text": text, "language": "python" if values["script"] else "json", "script": script}
-
-
-def distribution(told: Sequence[Asked], theme: Theme = LIGHT) -> Figure | None:
-    """Median to worst error of the law of one instant: a group of lines a subject, a line a kind; None without any."""
-    found: dict[str, dict[str, list[float]]] = {}
-    for one in told:
-        for check in LAWS:
-            if check in one.told.errors:
-                for kind in one.kinds:
-                    found.setdefault(label(one), {}).setdefault(kind, []).append(one.told.errors[check][0])
-    if not found:
-        return None
-    kinds = list(dict.fromkeys(kind for own in found.values() for kind in own))
-    marks = dict(zip(kinds, "os^Dv<>Pp*", strict=False))
-    rows = [(name, kind) for name, own in found.items() for kind in own]
-    with settings():
-        figure = new_figure(1.1 + 0.24 * len(rows), theme)
-        axes = figure.add_subplot()
-        style_axes(axes, theme)
-        axes.grid(False, axis="y")
-        for place, (name, kind) in enumerate(rows):
-            errors = np.sort(np.clip(np.nan_to_num(found[name][kind], posinf=1e2), LEAST, 1e2))
-            median, most = errors[len(errors) // 2], errors[math.ceil(0.99 * (len(errors) - 1))]
-            colour = getattr(theme, SERIES[kinds.index(kind) % len(SERIES)])
-            axes.plot([median, errors[-1]], [place, place], color=colour, linewidth=1.4)
-            axes.plot([median], [place], marks[kind], color=colour, markersize=5)
-            axes.plot([most], [place], "|", color=colour, markersize=9)
-            axes.plot([errors[-1]], [place], ".", color=colour, markersize=5)
-        first = [place for place in range(1, len(rows)) if rows[place][0] != rows[place - 1][0]]
-        for place in first:
-            axes.axhline(place - 0.5, color=theme.grid, linewidth=0.7)
-        axes.axvline(1e-9, color=theme.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
-        axes.set_yticks(
-            range(len(rows)), [f"{name.split(' (')[0]}: {kind} ({len(found[name][kind])})" for name, kind in rows]
-        )
-        axes.set_ylim(len(rows) - 0.4, -0.6)
-        axes.set_xscale("log")
-        axes.set_xlim(LEAST / 2, 2e2)
-        axes.set_xlabel("error, relative; mark: median, bar: 99 %, dot: worst (in brackets: cases); dashed: $10^{-9}$")
-    return figure
