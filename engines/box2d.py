@@ -51,6 +51,7 @@ from reference.validation import Count, Name, NonNegative, Positive, validated
 
 STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s
+SLOP = 0.005  # m: the shortest distance of a joint
 ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
 FASTEST = 1e6  # m/s, which the engine would cut to 400
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
@@ -74,6 +75,7 @@ class Box2D(Optional):
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Holder] = "ours"
+    precision: ClassVar[float] = 2.0**-23  # of its numbers
 
     variant: Name
     substeps: Count = 4
@@ -167,6 +169,10 @@ class _World:
             "local_anchor_b": joint.second_point,
         }
         if isinstance(joint, Rod):
+            if joint.length < SLOP:
+                raise Unsupported(
+                    f"joint {joint.name!r}: box2d takes a rod of {joint.length:g} m for one of {SLOP:g} m, its slop"
+                )
             spring = {"enable_spring": True, "hertz": self.hertz, "damping_ratio": 1.0} if self.hertz else {}
             return self.world.create_distance_joint(**ends, length=joint.length, **spring)
         if isinstance(joint, Weld):

@@ -13,7 +13,8 @@
    again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
 6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`), one that estimates an error
-   above what it claims says from when on (`unresolved_at`); all go on.
+   above what it claims says from when on (`unresolved_at`); all go on. A method without an estimate, such as a single
+   run of documented settings, claims an order and no accuracy at a step: how wrong it is there, the report measures.
 7. `order(mechanism)` is what theory promises of its errors, from its settings and the mechanism alone: a Promise, which
    the gate holds it to, or Unpromised with the reason why nothing can be promised.
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is

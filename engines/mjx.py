@@ -110,6 +110,9 @@ class Mjx(Optional):
             held = _programs()[0].put_model(model.compiled)
         except NotImplementedError as reason:
             raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
+        except (RuntimeError, AssertionError):
+            told = os.environ.get("JAX_PLATFORMS")
+            raise Unsupported(f"JAX finds no device to run on here: JAX_PLATFORMS is {told!r}") from None
         return SingleRun(mechanism, dt, size, lambda samples, every: _record(model, held, data, samples, every))
 
 

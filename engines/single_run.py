@@ -183,4 +183,6 @@ class SingleRun:
         pose[lost:], twist[lost:], acceleration[lost:] = np.nan, np.nan, np.nan
         reaction = reactions(self._mechanism, pose, twist, acceleration, found.inertias, found.gravity)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        return Trajectory(t, pose, twist, reaction, found.stepping, found.warnings)
+        silent = lost <= samples and not found.warnings
+        warnings = (f"ours: at {t[lost]:.4g} s the engine holds no numbers any more",) if silent else found.warnings
+        return Trajectory(t, pose, twist, reaction, found.stepping, warnings)

@@ -6,8 +6,12 @@ import json
 import re
 import subprocess
 import sys
+import types
 import xml.etree.ElementTree as xml
+from typing import ClassVar
 
+import mujoco
+import numpy as np
 import pytest
 
 from reports import __main__ as command_line
@@ -120,3 +124,40 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(folder, capfd, monke
     assert len(re.findall(r"@keyframes m0b\d", (folder / "pendulum_2.svg").read_text())) == 2  # of each body
     assert call("view", "pendulum_2") == 2
     assert "--force" in capfd.readouterr().err
+
+
+class Window:
+    """What stands for the viewer's window: it stays open for three looks."""
+
+    last: ClassVar[Window]
+
+    def __init__(self, model, data, **look):
+        self.model, self.data, self.look, self.seen = model, data, look, []
+        Window.last = self
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *reasons):
+        return None
+
+    def is_running(self):
+        return len(self.seen) < 3
+
+    def sync(self):
+        self.seen.append(float(self.data.time))
+
+
+def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(folder, monkeypatch):
+    """Tried by hand in Xvfb as well: the bars are seen from above, and move."""
+    viewer = types.ModuleType("mujoco.viewer")
+    viewer.launch_passive = Window  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "mujoco.viewer", viewer)
+    monkeypatch.setattr(mujoco, "viewer", viewer, raising=False)
+    monkeypatch.setenv("DISPLAY", ":7")
+    assert call("view", "driven_four_bar") == 0
+    window = Window.last
+    np.testing.assert_allclose(window.seen, [1e-3, 2e-3, 3e-3])
+    assert window.model.ngeom >= 5
+    assert window.look == {"show_left_ui": False, "show_right_ui": False}
+    assert not list(folder.iterdir())

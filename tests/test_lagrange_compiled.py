@@ -16,7 +16,7 @@ from engines import Softness, Unsupported
 from engines.lagrange import METHODS, VARIANTS, Lagrange, batch, loading, stacked
 from engines.lagrange.compiled_run import Machine
 from engines.lagrange.dynamics import Dynamics
-from engines.lagrange.flat import CHANGE, MATRIX, ROWS, flat
+from engines.lagrange.flat import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, flat
 from engines.lagrange.tableaus import RK4
 from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Roll, Skate, Slot
@@ -26,6 +26,7 @@ from reference.rolling.scenes import RollingEllipse
 from reference.validation import InvalidMechanism
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism
+from reports.search.parts import EVERY
 from tests.mechanisms import four_bar, pendulum
 from tests.present import present
 
@@ -60,6 +61,19 @@ def moves_as_in_numpy(number: int) -> None:
 @pytest.mark.parametrize("number", SOME)
 def test_random_mechanisms_of_all_joints_move_as_in_numpy(number):
     moves_as_in_numpy(number)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(number):
+    mechanism = random_mechanism(21, number, EVERY)
+    # The largest difference of the first 150 is 1.2e-14.
+    assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
+
+
+def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
+    drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
+    kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
+    assert kinds == {*KINDS, *FORCE_KINDS}
 
 
 @pytest.mark.slow

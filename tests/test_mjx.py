@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
-from engines import Promise, Unpromised, Unsupported
+from engines import Promise, Unpromised, Unsupported, registry
+from engines.conformance import cases
+from engines.lagrange import TRUTH
 from engines.mjx import DEFAULT, NO_VELOCITY_TERM, TUNED, VARIANTS
 from reports.pages.catalogue import SCENES
 from reports.pages.engines.velocity_term import VelocityTerm, reactions_with, started_anew
+from tests.all_elements import ALONE
 from tests.present import present
 
 BY_NAME = {scene.name: scene for scene in SCENES}
@@ -32,6 +39,73 @@ def test_an_order_is_promised_of_trees_alone():
     assert [order.order for order in orders if isinstance(order, Promise)] == [1, 4]
     for engine in VARIANTS:
         assert isinstance(engine.order(loop), Unpromised)
+
+
+NO_DEVICE = """
+from engines import Unsupported
+from engines.mjx import DEFAULT
+from reference.scenes import SCENES
+scene = next(each for each in SCENES if each.name == "pendulum_2")
+try:
+    DEFAULT.build(scene.mechanism(), 1e-2)
+except Unsupported as reason:
+    print(reason)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed")
+def test_a_device_that_is_not_there_is_a_refusal_in_one_line():
+    environment = {**os.environ, "JAX_PLATFORMS": "cuda"}
+    run = subprocess.run([sys.executable, "-c", NO_DEVICE], capture_output=True, text=True, env=environment, check=True)
+    assert run.stdout == "JAX finds no device to run on here: JAX_PLATFORMS is 'cuda'\n"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize("engine", VARIANTS, ids=registry.method)
+def test_it_keeps_the_contract(engine):
+    told = [(case, case.result()) for case in cases(engine)]
+    failed = [f"{case}: {result.sentence}" for case, result in told if result.status == "fails"]
+    assert not failed, failed
+
+
+# Of each kind of element that has a construction of its own in the model: tendons, actuators, equalities.
+COMPILED = ("spring", "torsion spring", "force", "gear", "rod", "weld")
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize("name", COMPILED)
+def test_elements_move_as_in_mujoco(name):
+    mechanism = ALONE[name]
+    here, there = (each.build(mechanism, 2e-3)(6, 25) for each in (DEFAULT, DEFAULT.settings))
+    np.testing.assert_allclose(here.pose, there.pose, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(here.reaction, there.reaction, rtol=0, atol=1e-8)
+    assert bool(here.warnings) == (name in ("rod", "gear"))  # the gear hangs on a rod
+    exact = TRUTH.build(mechanism, 0.05)(6, 1)
+    assert np.abs(here.pose - exact.pose).max() < 1e-2
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed")
+def test_programs_are_kept_in_the_users_cache_and_nothing_is_printed(tmp_path):
+    environment = {**os.environ, "PLANAR_CROSSCHECK_CACHE": str(tmp_path / "cache"), "TMPDIR": str(tmp_path)}
+    environment.pop("JAX_COMPILATION_CACHE_DIR", None)
+    run = subprocess.run(
+        [sys.executable, "-c", RUNNING], capture_output=True, text=True, env=environment, check=True, cwd=tmp_path
+    )
+    assert (run.stdout, run.stderr) == ("", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["cache"]
+    assert any(path.is_file() for path in (tmp_path / "cache").rglob("*"))
+
+
+RUNNING = """
+from engines.mjx import DEFAULT
+from reference.scenes import SCENES
+scene = next(each for each in SCENES if each.name == "pendulum_1")
+DEFAULT.build(scene.mechanism(), 1e-2)(2, 1)
+"""
 
 
 @pytest.mark.slow

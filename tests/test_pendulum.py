@@ -5,6 +5,7 @@ periods.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -41,7 +42,8 @@ def integrated(
     """
     with mpmath.workdps(25):
         square, step = mpmath.mpf(frequency) ** 2, mpmath.mpf(t) / steps
-        place, speed = mpmath.mpf(angle), mpmath.mpf(rate)
+        place: Any = mpmath.mpf(angle)
+        speed: Any = mpmath.mpf(rate)
         for _ in range(steps):
             series, sine, cosine = [place, speed], [mpmath.sin(place)], [mpmath.cos(place)]
             for k in range(1, order):

@@ -181,6 +181,19 @@ MOVED = {
 }
 
 
+def test_a_projection_has_no_length_of_its_own():
+    # In numbers that are rounded otherwise, rows that nearly depend on each other amplify that: powers of two alone.
+    own = mechanism(22, 263, HELD)
+    metre = EXTENDED.build(own, STEP)(4, 10)
+    for factor in (2.0**-10, 2.0**10):
+        other = EXTENDED.build(scaled(own, factor), STEP)(4, 10)
+        unit = np.array([factor, factor, 1.0])
+        assert np.abs(other.pose / unit - metre.pose).max() < 1e-9
+        assert np.abs(other.twist / unit - metre.twist).max() < 1e-9
+        arm = np.where(own.turning, factor**2, factor)
+        assert np.abs(other.reaction / arm - metre.reaction).max() < 1e-9 * np.abs(metre.reaction).max()
+
+
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
 @pytest.mark.parametrize("described", [pytest.param(each, id=name) for name, each in MOVED.items()])
 def test_a_millimetre_and_a_kilometre_move_alike(described, method):

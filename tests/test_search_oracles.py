@@ -14,7 +14,8 @@ import pytest
 
 from engines import Promise, Run
 from engines.lagrange import Lagrange
-from engines.mujoco import DEFAULT, EXTENDED, MuJoCo
+from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
+from engines.mujoco.joints import rod_gear_weld
 from engines.mujoco.joints import slot as mujoco_slot
 from engines.mujoco.running import MuJoCoRun
 from engines.pymunk import LEAPFROG, Pymunk
@@ -171,6 +172,115 @@ def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
     [one] = told(Careless(), ALL, 1, "motions")
     assert one.faults == ("raised",)
     assert "body 7" in one.words
+
+
+# ------------------------------------------------------------- mistakes put into rods, gears, welds and force elements
+
+LINKED = ("pin", "rod", "gear", "weld")
+SPRUNG = ("pin", "spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
+
+
+@pytest.mark.parametrize(
+    ("engine", "kinds"),
+    [(EXTENDED, LINKED), (EXTENDED, SPRUNG), (TUNED, SPRUNG), (LEAPFROG, LINKED), (LEAPFROG, SPRUNG)],
+    ids=lambda value: getattr(value, "variant", None),
+)
+def test_adapters_obey_the_law_with_rods_gears_welds_and_forces(engine: Any, kinds: tuple[str, ...]) -> None:
+    found = told(engine, kinds, 25)
+    assert sum(bool(one.errors) for one in found) >= 5, "nearly nothing was asked"
+    assert {check for one in found for check in one.faults} == set()
+
+
+def test_a_rods_velocity_term_that_is_left_out_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As MuJoCo's own equality of a tendon leaves it out; here with the damping of slip, which is rounding."""
+    right = rod_gear_weld.rod_rows
+
+    def without(*given: Any) -> Any:
+        rows = right(*given)
+
+        def still(t: float, first: Any, second: Any) -> Any:
+            resting = rows(t, (*first[:3], 0.0, 0.0, 0.0), (*second[:3], 0.0, 0.0, 0.0))
+            return [(*row[:6], rest[6]) for row, rest in zip(rows(t, first, second), resting, strict=True)]
+
+        return still
+
+    monkeypatch.setattr(rod_gear_weld, "rod_rows", without)
+    assert "acceleration" in faults(EXTENDED, ("pin", "rod"), 12)
+
+
+def test_a_gear_whose_ratio_is_that_of_its_other_wheel_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.gear
+    monkeypatch.setattr(
+        pymunk_model, "gear", lambda joint, *given: right(replace(joint, ratio=1 / joint.ratio), *given)
+    )
+    assert faults(LEAPFROG, ("pin", "gear"), 12)
+
+
+@dataclass(frozen=True)
+class Otherwise(MuJoCo):
+    """Builds force elements with one number changed."""
+
+    changed: tuple[str, ...] = ()
+    factor: float = 1.0001
+
+    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
+        run = super().build(_with_forces(mechanism, self.changed, self.factor), dt)
+        return replace(run, model=replace(run.model, mechanism=mechanism))
+
+
+@dataclass(frozen=True)
+class OtherwiseThere(Pymunk):
+    """The same in pymunk."""
+
+    changed: tuple[str, ...] = ()
+    factor: float = 1.0001
+
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
+        return super().swept_model(_with_forces(mechanism, self.changed, self.factor), dt, sweeping)
+
+
+def _with_forces(mechanism: Mechanism, names: tuple[str, ...], factor: float) -> Mechanism:
+    def changed(force: Any) -> Any:
+        for name in names:
+            if hasattr(force, name):
+                value = getattr(force, name)
+                several = isinstance(value, tuple)
+                return replace(force, **{name: tuple(factor * v for v in value) if several else factor * value})
+        return force
+
+    return replace(mechanism, forces=tuple(map(changed, mechanism.forces)))
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("stiffness", "spring"),
+        ("rest_length", "spring"),
+        ("stiffness", "torsion-spring"),
+        ("rest_angle", "torsion-spring"),
+        ("damping", "damper"),
+        ("damping", "torsion-damper"),
+        ("torque", "torque"),
+        ("force", "force"),
+        ("second_point", "force"),
+    ],
+)
+def test_a_force_element_off_by_one_in_ten_thousand_is_found(name: str, kind: str) -> None:
+    assert "acceleration" in faults(Otherwise("tuned", changed=(name,)), ("pin", kind), 12)
+    if "damp" not in kind:  # which pymunk takes among its sweeps, so that no law of a step is asked for
+        assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True, changed=(name,)), ("pin", kind), 12)
+
+
+def test_a_spring_that_pushes_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
+    """An engine that declares nothing at an instant is held to the judge's motion."""
+
+    @dataclass(frozen=True)
+    class Pushing(Lagrange):
+        def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+            return super().build(_with_forces(mechanism, ("stiffness",), 1.01), dt)
+
+    assert faults(Pushing("rk4", "projection"), ("pin", "spring"), 4, "motions") & {"motion", "reactions"}
+    assert faults(Lagrange("rk4", "projection"), ("pin", "spring"), 4, "motions") == set()
 
 
 # --------------------------------------------------------------------------------------------- faults of MuJoCo's own

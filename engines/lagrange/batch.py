@@ -59,15 +59,18 @@ def stacked(mechanisms: tuple[Mechanism, ...]) -> Stack:
     """
     if not mechanisms:
         raise InvalidMechanism("batch: there are no mechanisms; give at least one")
-    arrays = [flat(mechanism) for mechanism in mechanisms]
-    for number, one in enumerate(arrays):
-        if not np.array_equal(one.whole, arrays[0].whole):
+    first = flat(mechanisms[0])
+    if not np.all(np.isin(first.rolls[:, 0], (ON_LINE, ON_ROUND))):
+        raise Unsupported("batch: only discs and rings roll here; other curves have tables of their own")
+    numbers = np.empty((len(mechanisms), first.numbers.stop))
+    for number, mechanism in enumerate(mechanisms):
+        one = flat(mechanism)
+        if not np.array_equal(one.whole, first.whole):
             raise InvalidMechanism(
                 f"batch: mechanism {number} has other bodies or joints than the first; a batch is of one shape"
             )
-    if not np.all(np.isin(arrays[0].rolls[:, 0], (ON_LINE, ON_ROUND))):
-        raise Unsupported("batch: only discs and rings roll here; other curves have tables of their own")
-    return Stack(mechanisms[0], arrays[0], np.array([one.real[one.numbers] for one in arrays]))
+        numbers[number] = one.real[one.numbers]
+    return Stack(mechanisms[0], first, numbers)
 
 
 @validated

@@ -45,7 +45,8 @@ class Lagrange(Valid):
     integrator: "euler" (semi-implicit, order 1), "rk4" (order 4), "dop853" (order 8), all with the given fixed step;
     stabilisation: "none" (the joints drift apart), "baumgarte" (a spring and damper tied to the step) or "projection".
     tolerance: for "dop853" alone, relative and absolute: the steps are then adapted between samples and dt only says
-    where the samples stand.
+    where the samples stand. It is what one step may add: a run's error grows from it as any disturbance does, and shows
+    in what another tolerance changes.
     compiled: in machine code where numba is installed; False: in numpy, which gives the same numbers up to rounding.
     """
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,12 +111,8 @@ def flat(mechanism: Mechanism) -> Flat:
     ends = ends.reshape(-1, 2)
     forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
     size = np.array([joint.size for joint in joints], dtype=np.int64)
-    begin = _places(ends, size, bodies)
-    place = np.array([row for at, count in zip(begin, size, strict=True) for row in range(at, at + count)], dtype=int)
-    owner = np.empty(len(place), dtype=np.int64)
-    owner[place] = np.repeat(np.arange(len(joints)), size)
+    begin, place, owner, start, offset, terms = _ordered(ends.tobytes(), size.tobytes(), bodies)
     holonomic = np.array([joint.holonomic for joint in joints], dtype=np.int64)[owner]
-    start, offset, terms = _products(ends[owner], bodies)
     rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
     which = np.cumsum([isinstance(joint, Roll) for joint in joints]) - 1
     kind = np.array([KINDS[type(joint)] for joint in joints], dtype=np.int64)
@@ -179,6 +176,20 @@ def _dependent(mechanism: Mechanism) -> bool:
     if rows == 0 or rows > MOST_ROWS:
         return False
     return rank(mechanism.rows(mechanism.pose), mechanism.length_scale) < rows
+
+
+@lru_cache(maxsize=64)
+def _ordered(ends: bytes, size: bytes, bodies: int) -> tuple[Integers, ...]:
+    """What `flat` takes from who is joined with whom alone: all mechanisms of one shape have it from here.
+
+    Where the rows of joints begin; where each row stands, and its joint; and `_products`.
+    """
+    pairs, counts = np.frombuffer(ends, dtype=np.int64).reshape(-1, 2), np.frombuffer(size, dtype=np.int64)
+    begin = _places(pairs, counts, bodies)
+    place = np.array([row for at, count in zip(begin, counts, strict=True) for row in range(at, at + count)], dtype=int)
+    owner = np.empty(len(place), dtype=np.int64)
+    owner[place] = np.repeat(np.arange(len(pairs)), counts)
+    return begin, place, owner, *_products(pairs[owner], bodies)
 
 
 def _places(ends: Integers, size: Integers, bodies: int) -> Integers:

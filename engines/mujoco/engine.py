@@ -151,6 +151,8 @@ class MuJoCo(Valid):
         def plain(other: float) -> MuJoCoRun:
             return replace(self.build(mechanism, other), divided=None)
 
+        if all(isinstance(joint, Roll) for joint in mechanism.joints):
+            return MuJoCoRun(model, data, size, plain)  # how far a contact turns in a step is known, and told
         return MuJoCoRun(
             model, data, size, plain, lambda duration: steps_for_one(self, plain, mechanism, duration, 4.0, finest=64)
         )

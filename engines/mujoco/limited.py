@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import SKATES
+from engines.mujoco.model import Model
 from reference.mechanism import Mechanism
 from reference.validation import Positive, validated
 
@@ -19,8 +19,8 @@ class LimitedTendon(MuJoCo):
 
     limit: Positive = 1.0
 
-    def model(self, mechanism: Mechanism, dt: float) -> Any:
-        model = super().model(mechanism, dt)
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
+        model = super().model(mechanism, dt, as_text)
         model.compiled.tendon_frictionloss[:] = self.limit / model.unit
         return model
 

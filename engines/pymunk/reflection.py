@@ -37,6 +37,9 @@ from reference.validation import Count, Name, Positive, Valid, validated
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
 STEP_COST = 2e-6  # s, with three bodies
+# Looked up once: every step asks each of them.
+get_position, get_angle, set_velocity = lib.cpBodyGetPosition, lib.cpBodyGetAngle, lib.cpBodySetVelocity
+get_velocity, get_rate, set_rate = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity, lib.cpBodySetAngularVelocity
 # Kicks by half a step of gravity (dt [s]), reflects, kicks again: the body's C pointer -> velocities before and after.
 Reflector = Callable[[Any], tuple[Triple, Triple]]
 
@@ -190,8 +193,8 @@ class ReflectedRun:
 
 
 def _pose(body: Any) -> Triple:
-    place = lib.cpBodyGetPosition(body)
-    return place.x, place.y, lib.cpBodyGetAngle(body)
+    place = get_position(body)
+    return place.x, place.y, get_angle(body)
 
 
 def _reflector(joint: Any, description: Body, gravity: Vector, dt: float) -> Reflector:
@@ -207,10 +210,10 @@ def _reflector(joint: Any, description: Body, gravity: Vector, dt: float) -> Ref
 
 def _falling(kick: Vector) -> Reflector:
     def fall(body: Any) -> tuple[Triple, Triple]:
-        velocity, rate = lib.cpBodyGetVelocity(body), lib.cpBodyGetAngularVelocity(body)
+        velocity, rate = get_velocity(body), get_rate(body)
         old = (velocity.x, velocity.y, rate)
         new = (old[0] + 2 * kick[0], old[1] + 2 * kick[1], rate)
-        lib.cpBodySetVelocity(body, new[:2])
+        set_velocity(body, new[:2])
         return old, new
 
     return fall
@@ -223,15 +226,15 @@ def _skating(joint: Skate, mass: float, inertia: float, kick: Vector) -> Reflect
     kick_x, kick_y = kick
 
     def reflect(body: Any) -> tuple[Triple, Triple]:
-        velocity, rate = lib.cpBodyGetVelocity(body), lib.cpBodyGetAngularVelocity(body)
-        heading = lib.cpBodyGetAngle(body) + blade
+        velocity, rate = get_velocity(body), get_rate(body)
+        heading = get_angle(body) + blade
         left_x, left_y = -sin(heading), cos(heading)
         old_x, old_y = velocity.x, velocity.y
         x, y = old_x + kick_x, old_y + kick_y
         across = x * left_x + y * left_y + along * rate
         new = (x - push * across * left_x + kick_x, y - push * across * left_y + kick_y, rate - spin * across)
-        lib.cpBodySetVelocity(body, new[:2])
-        lib.cpBodySetAngularVelocity(body, new[2])
+        set_velocity(body, new[:2])
+        set_rate(body, new[2])
         return (old_x, old_y, rate), new
 
     return reflect
@@ -243,9 +246,9 @@ def _rolling(joint: Roll, mass: float, inertia: float, kick: Vector) -> Reflecto
 
     def reflect(body: Any) -> tuple[Triple, Triple]:
         velocity, rate, angle = (
-            lib.cpBodyGetVelocity(body),
-            lib.cpBodyGetAngularVelocity(body),
-            lib.cpBodyGetAngle(body),
+            get_velocity(body),
+            get_rate(body),
+            get_angle(body),
         )
         arm = arm_at(angle)
         arm_x, arm_y = arm.real, arm.imag  # from the contact to the centre
@@ -255,8 +258,8 @@ def _rolling(joint: Roll, mass: float, inertia: float, kick: Vector) -> Reflecto
         # is twice that, less what was.
         turning = 2 * (inertia * rate + mass * (arm_x * y - arm_y * x)) / (inertia + mass * (arm_x**2 + arm_y**2))
         new = (-turning * arm_y - x + kick_x, turning * arm_x - y + kick_y, turning - rate)
-        lib.cpBodySetVelocity(body, new[:2])
-        lib.cpBodySetAngularVelocity(body, new[2])
+        set_velocity(body, new[:2])
+        set_rate(body, new[2])
         return (old_x, old_y, rate), new
 
     return reflect

@@ -142,6 +142,8 @@ def _read(found: Checked) -> Section:
             f"From about {found.judge.horizon:.3g} s on, small errors grow exponentially ({growth:.1g} times at the "
             "end): no step makes an engine's motion right long after that."
         )
+    elif velocity == 0:
+        sentences.append("The whole motion is prescribed, so a small error of the start has nothing to grow in.")
     else:
         sentences.append(f"Small errors grow {growth:.2g} times in {found.duration:g} s, which is not exponential.")
     for note in reading.notes:

@@ -12,7 +12,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
-from engines.registry import ENGINES
+from engines.registry import ENGINES, OTHERS
 from reports.charts.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
 from reports.grid.store import Store
 from reports.grid.tasks import Answer
@@ -30,7 +30,8 @@ LEAST = 1e-17  # what an error of exactly zero is drawn at
 def known_subjects(words: Sequence[str]) -> list[Subject]:
     """Every engine that is registered, and MuJoCo alone in the releases that these words name."""
     releases = dict.fromkeys(release_of(json.loads(word)[0]) for word in words)
-    return [*(Adapted(engine) for engine in ENGINES), *(Alone(each) for each in releases if each is not None)]
+    engines = dict.fromkeys([*ENGINES, *OTHERS])
+    return [*(Adapted(engine) for engine in engines), *(Alone(each) for each in releases if each is not None)]
 
 
 def read(store: Store) -> tuple[list[Asked], list[tuple[Shrink, Answer]]]:

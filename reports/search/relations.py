@@ -24,6 +24,8 @@ STEPS = 5
 # Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
 # constraints gives away half of the digits.
 SAME = 1e-7
+# The same of an engine that computes with fewer digits, and says so as its `precision`: of what moves, places keep few.
+ROUGHLY = 1e4
 
 CHANGES: dict[str, Change] = {
     "turned": Isometry(turn=0.7),
@@ -35,6 +37,11 @@ CHANGES: dict[str, Change] = {
 # Decades of length and mass: in another unit the same mechanism has other numbers.
 UNITS = {"in other lengths": (-3, 0, 0), "in other masses": (0, 2, 0)}
 NAMES = (*CHANGES, *UNITS)
+
+
+def bound(engine: Engine) -> float:
+    """By how much descriptions may differ, relative to the motion."""
+    return max(SAME, ROUGHLY * getattr(engine, "precision", 0.0))
 
 
 def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:

@@ -65,7 +65,8 @@ class Adapted:
         asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
             "instant": lambda: _instant(_at_an_instant(self.engine, mechanism), mechanism),
             "relations": lambda: {
-                name: (error, relations.SAME) for name, error in relations.errors(self.engine, case, number).items()
+                name: (error, relations.bound(self.engine))
+                for name, error in relations.errors(self.engine, case, number).items()
             },
             "motions": lambda: motions.errors(self.engine, mechanism),
         }

@@ -22,7 +22,8 @@ from reports.site.lesson import Take
 Array = NDArray[np.float64]
 
 TRUTH_DIGITS = 13  # of poses, after the point: half of the last is below 1e-13, so that a page holds the truth to 1e-12
-METHOD_DIGITS = 11  # of a method's poses: far below the errors that are shown
+METHOD_DIGITS = 11  # of openings, after the point
+APART = 5  # significant digits of how far a method is from the truth
 DIGITS = 9  # of twists, which only place the instant centre
 
 
@@ -57,8 +58,13 @@ def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
 
 
 def data(shown: Shown) -> dict[str, Any]:
-    """What the page's script needs, in plain lists: poses one instant after another, body after body."""
+    """What the page's script needs, in plain lists: poses one instant after another, body after body.
+
+    A method's are told by how far they are from the truth; the truth's twists are those of the body `centre` alone.
+    """
     mechanism, truth = shown.mechanism, shown.truth
+    centre = None if shown.take.centre is None else mechanism.body_index(shown.take.centre)
+    turning = truth.twist[:, [] if centre is None else [centre]]
     return {
         "t": _listed(shown.t),
         "bodies": [body.name for body in mechanism.bodies],
@@ -66,11 +72,11 @@ def data(shown: Shown) -> dict[str, Any]:
         "loose": openings(shown),
         "measure": measure_of(mechanism),
         "size": mechanism.length_scale,
-        "truth": {"pose": _listed(truth.pose), "twist": _listed(truth.twist, DIGITS)},
-        "motions": [{"name": name, "pose": _listed(pose, METHOD_DIGITS)} for name, pose in shown.motions.items()],
+        "truth": {"pose": _listed(truth.pose), "twist": _listed(turning, DIGITS)},
+        "motions": [{"name": name, "apart": _apart(pose, truth.pose)} for name, pose in shown.motions.items()],
         "lost": [{"name": name, "why": why} for name, why in shown.lost.items()],
         "forces": forces(mechanism, truth),
-        "centre": None if shown.take.centre is None else mechanism.body_index(shown.take.centre),
+        "centre": centre,
         "traces": [{"body": mechanism.body_index(body), "point": list(point)} for body, point in shown.take.traces],
     }
 
@@ -116,6 +122,12 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
             told |= {"normal": _listed(normal, 6), "friction": _listed(demanded(own), 6)}
         found.append(told)
     return found
+
+
+def _apart(pose: Array, truth: Array) -> list[float | None]:
+    """How far poses are from the truth, which is less to read than the poses are; None where there is none."""
+    flat = (pose - truth).ravel().tolist()
+    return [float(f"{value:.{APART}g}") if np.isfinite(value) and abs(value) < 1e6 else None for value in flat]
 
 
 def _listed(values: Array, digits: int = TRUTH_DIGITS) -> list[float | None]:

@@ -15,7 +15,7 @@ from reports.site.live.sliders import Live
 
 Point = tuple[float, float]
 
-FRAMES = 150  # of a moving picture, at most: what an eye can tell in six seconds
+FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 FOLDER = Path(__file__).parent / "lessons"
 STEPS = 5
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,6 +14,7 @@ from reports.site.packages import NotFetched
 
 MODULES = ("reference", "engines")
 PATIENCE = 300  # s
+STYLE = re.compile(rb"<style>(.*?)</style>", re.DOTALL)
 # pdoc's names of colours, by ours.
 ROLES = {
     **{"text": "ink", "muted": "quiet", "link": "second", "link-hover": "first", "code": "grid", "active": "middling"},
@@ -37,7 +39,23 @@ def reference_pages() -> dict[str, bytes]:
         found = {path.relative_to(output).as_posix(): path for path in sorted(output.rglob("*")) if path.is_file()}
         # A browser asks for an icon unless the page has one.
         icon = (b"</head>", b'<link rel="icon" href="data:,"></head>')
-        return {f"reference/{name}": path.read_bytes().replace(*icon, 1) for name, path in found.items()}
+        pages = {f"reference/{name}": path.read_bytes().replace(*icon, 1) for name, path in found.items()}
+    return shared_styles(pages)
+
+
+def shared_styles(pages: dict[str, bytes]) -> dict[str, bytes]:
+    """The pages with the styles that stand in each of them, most of a small page, as files of their own."""
+    names: dict[bytes, str] = {}
+    out: dict[str, bytes] = {}
+    for page, text in pages.items():
+        up = "../" * (page.count("/") - 1)
+
+        def linked(found: re.Match[bytes], up: str = up) -> bytes:
+            name = names.setdefault(found[1], f"style-{len(names)}.css")
+            return f'<link rel="stylesheet" href="{up}{name}">'.encode()
+
+        out[page] = STYLE.sub(linked, text) if page.endswith(".html") else text
+    return out | {f"reference/{name}": text for text, name in names.items()}
 
 
 def _sheet() -> str:

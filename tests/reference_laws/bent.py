@@ -63,7 +63,7 @@ def catenary(scale: Any) -> Exact:
     return Exact(
         lambda s: s,
         lambda s: mp.atan(s / scale),
-        lambda s: mp.mpc(scale * mp.asinh(s / scale), mp.sqrt(scale**2 + s**2)),
+        lambda s: scale * mp.asinh(s / scale) + mp.j * mp.sqrt(scale**2 + s**2),
         lambda s: mp.mpf(1),
         lambda s: scale / (scale**2 + s**2),
     )

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import copy
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from engines.mujoco.reading.along_joints import beyond_springs
 from engines.mujoco.reading.declared import declared
 from engines.mujoco.reading.frame import angles_of, name_of
+from engines.mujoco.reading.hearing import heard
 from engines.mujoco.reading.joints import Scene
 from engines.mujoco.reading.other_settings import TIED_STEPS, changes, switch_off
 from engines.mujoco.reading.places import positions
@@ -234,18 +234,6 @@ class OwnMuJoCo:
             mujoco.mj_jac(model, data, jac[0], jac[1], centre, root)
             out[index, :2], out[index, 2] = frame.both @ jac[0], frame.normal @ jac[1]
         return out.reshape(-1, model.nv)
-
-
-@contextmanager
-def heard() -> Iterator[list[str]]:
-    """MuJoCo's warnings, which it would otherwise write into a file in the user's folder."""
-    said: list[str] = []
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda words: said.append(" ".join(str(words).split())))
-    try:
-        yield said
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 def _spelled(words: Mapping[str, str], value: Any) -> str:

@@ -86,7 +86,7 @@ function drawCentre({ take, frame, overlay, width }) {
   if (take.centre === null) return "";
   const bodies = take.bodies.length;
   const pose = poseAt(take.truth.pose, bodies, frame, take.centre);
-  const centre = instantCentre(pose, poseAt(take.truth.twist, bodies, frame, take.centre));
+  const centre = instantCentre(pose, poseAt(take.truth.twist, 1, frame, 0));
   if (!centre) return "At this instant the body does not turn: its instant centre is infinitely far away.";
   const size = 0.012 * width;
   const [x, y] = centre;

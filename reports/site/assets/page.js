@@ -11,7 +11,14 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
 function read(name) {
   const text = document.getElementById(`take-${name}`)?.textContent;
   if (!text) throw new Error(`no take is called ${name}`);
-  return JSON.parse(text);
+  const take = JSON.parse(text);
+  // The page tells of a method how far it is from the truth.
+  for (const motion of take.motions) {
+    motion.pose = motion.apart.map((/** @type {number|null} */ by, /** @type {number} */ index) =>
+      by === null ? null : take.truth.pose[index] + by,
+    );
+  }
+  return take;
 }
 
 /** Put another motion into a figure: its drawing, its legend, its data. @param {Player} player @param {string} name */

@@ -15,7 +15,7 @@ COUPLER = FreeFourBar().coupler
 CHAPTER = f"{COUPLER:.3f}, the chapter's"
 COUPLERS = (0.53, COUPLER, 0.65, 0.75, 0.9)  # m: every crank can turn fully with every one of them
 REVOLUTION = (15, 30, 60, 120, 300, 600, 1200)
-HUNDRED = (20, 50, 100, 200, 500, 1000, 2000)
+HUNDRED = (25, 50, 100, 200, 500, 1000, 2000)
 
 FOUR_BAR = (
     Live(
@@ -46,7 +46,7 @@ FOUR_BAR = (
         "let go",
         FreeFourBar(),
         HUNDRED,
-        100,
+        50,
         3,
         (
             Slider("crank", "crank [m]", (0.3, 0.4, 0.45)),

@@ -49,7 +49,7 @@ PENDULUM = (
         "ten links",
         TenLinks(),
         (75, 150, 300, 600, 1500, 3000),
-        150,
+        75,
         2,
         traps=(COARSE, replace(SWEPT, places={**SWEPT.places, "steps": 5})),
         ends={"link 10": TIP},

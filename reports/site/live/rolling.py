@@ -68,7 +68,7 @@ GEARS = (
         2,
         (Slider("eccentricity", "eccentricity [1]", (0.0, 0.2, 0.5, 0.7)),),
         tempo=True,
-        munk=CORNERS,
+        munk=CORNERS[:4],
         traps=(COARSE, replace(ROLLING[0].traps[1], words="Break it: gears of eight corners", places={"munk": 1})),
     ),
 )

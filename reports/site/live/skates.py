@@ -23,8 +23,8 @@ SKATE = (
     Live(
         "the sleigh",
         SLEIGH,
-        (30, 75, 150, 300, 750, 1500, 3000),
-        150,
+        (25, 75, 150, 300, 750, 1500, 3000),
+        75,
         3,
         (
             Slider("offset", "centre of mass ahead of the blade [m]", (-0.3, 0.1, 0.3, 0.5, 0.8)),
