@@ -293,6 +293,9 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch, tmp_pat
     assert "Not run yet: A four-bar driven fast;" in text()
     monkeypatch.setattr(page, "costs", lambda: Costs("here", 1.0, 2, math.nan, 1000.0, (Cost("a", "b", 10, 1.0),)))
     assert "was not measured with this run" in text()
+    assert "Run were" not in text()
+    monkeypatch.setattr(page, "lines", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
+    assert "Run were 2 of these 4 points" in text()
 
 
 def test_what_is_published_is_whole_and_small():

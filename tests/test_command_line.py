@@ -52,7 +52,7 @@ def test_results_go_below_the_current_folder_and_a_second_run_has_nothing_to_run
     assert "0 of 1 cells run" in capfd.readouterr().out
     assert call("show", ONE_CELL[0]) == FINE
     assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
-    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite", "truths"}
 
 
 @pytest.mark.parametrize("words", [("show", "driven_four_bar"), ("report",), ("report", "--publish")])
@@ -84,7 +84,7 @@ def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
     assert 0 < total - left <= 1
     assert said.endswith("crosscheck run --full\n")
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
-    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite", "truths"}
 
 
 def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
