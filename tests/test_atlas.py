@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -149,7 +150,8 @@ def test_a_column_tells_what_its_cells_do_and_an_abort_costs_one_cell():
 
 def found_of(told: str, stride: int) -> tuple[str, str]:
     """(letters as a column with these outcomes would keep them, the letters that are drawn)."""
-    rows = bisected(lambda place: SimpleNamespace(outcome=told[place]), len(told), stride)
+    by_letter: Any = {place: SimpleNamespace(outcome=letter) for place, letter in enumerate(told)}
+    rows = bisected(by_letter.__getitem__, len(told), stride)
     kept = "".join(told[place] if place in rows else LIKE_THE_LAST for place in range(len(told)))
     drawn = "".join(one.letter for one in line(1.0, kept).told)
     assert line(1.0, kept).run == len(rows)
