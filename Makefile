@@ -27,7 +27,8 @@ check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the reference beside its peers
+bench: .venv/installed-bench     ## what stepping costs beside the bare loops, the reference beside its peers, the site
+	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 
 mutants: .venv/installed         ## about 350 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some

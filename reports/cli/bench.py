@@ -1,26 +1,36 @@
-"""`crosscheck bench`: what stepping costs beside bare loops, a search, and the reference beside another library."""
+"""`crosscheck bench`: stepping beside bare loops, a search, the reference beside another library, and the site."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from reports.cli.options import Scenes, Workers
+from reports.cli.site import SITE
 from reports.cli.terminal import Terminal, print_table
 
 SUITE = "suite"  # instead of scenes, or before them
+JUDGE = "judge"  # instead of scenes
 
 
 def bench(
     scene: Scenes = None,
-    full: Annotated[bool, typer.Option("--full/--quick", help="`bench suite`: of the full grid.")] = False,
+    full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid; `judge`: more.")] = False,
     workers: Workers = None,
+    site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
 ) -> None:
-    """Time `run` against bare loops, a search, and the reference against another library; prints, asserts nothing.
+    """Time `run` against bare loops, a search, the reference against another library, and the site; asserts nothing.
 
-    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into.
+    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
+    times exact multipliers: an evaluation, steps, chains, many mechanisms at once, and the truths.
     """
+    if scene == [JUDGE]:
+        from reports.cli.bench_judge import bench_judge
+
+        bench_judge(full)
+        return
     if scene and scene[0] == SUITE:
         from reports.cli.bench_suite import bench_suite
 
@@ -64,4 +74,25 @@ def bench(
         console.print(f"  {reason}: pip install -e '.\\[bench]'")
     else:
         console.print(f"  pylinkage {other['pylinkage']:.3f} s, {other['ratio']:.1f} times ours")
+    _site(console, site)
     console.print(f"{versions()}; {machine()}")
+
+
+def _site(console: Terminal, folder: Path) -> None:
+    from reports.bench.site import FIRST, SECOND, SIZE, STEP, size_of, times_of
+
+    try:
+        size = size_of(folder)
+        console.print(f"site: {size.files} files, {size.megabytes:.2f} MB when compressed, of at most {SIZE:g}")
+        times = times_of(folder)
+    except ValueError as reason:
+        console.print(f"site: {reason}".replace("[", "\\["))
+        return
+    both = sum(times.stepped.values())
+    each = ", ".join(f"{name} {spent:.1f}" for name, spent in times.stepped.items())
+    console.print(
+        f"  first picture after {times.painted:.2f} s, of at most {FIRST:g}; engines after {times.ready:.1f} s"
+    )
+    console.print(
+        f"  a second of the four-bar in steps of {1e3 * STEP:g} ms: {each}, both {both:.1f} ms, of at most {SECOND:g}"
+    )

@@ -28,8 +28,8 @@ from reports.site.style import colours
 HERE = Path(__file__).parent
 ASSETS = HERE / "assets"
 MARKER = "site.json"
-LINE = re.compile(r' (?:d|x|y|transform)="[^"]*"')
-LONG = re.compile(r"-?\d+\.\d{3,}(?![\de])")
+LINE = re.compile(r' (?:d|x|y)="[^"]*"')
+LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
 CHART_TITLE = re.compile(r"<h1[^>]*>(.*?)</h1>", re.DOTALL)
 
 Files = dict[str, bytes]
@@ -104,8 +104,8 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
 
 
 def lighter(picture: str) -> str:
-    """An SVG whose lines are drawn to a hundredth of a point, which no screen shows, instead of a millionth."""
-    return LINE.sub(lambda found: LONG.sub(lambda number: f"{float(number[0]):.2f}", found[0]), picture)
+    """An SVG whose lines are drawn to a tenth of a point, a fraction of a pixel, instead of a millionth."""
+    return LINE.sub(lambda found: LONG.sub(lambda number: f"{float(number[0]):.1f}", found[0]), picture)
 
 
 def _packages(packages: Iterable[Package], source: Source) -> Files:

@@ -1,7 +1,8 @@
 // @ts-check
 /** Errors over time on a logarithmic scale, as an SVG that needs no library. */
 
-const WIDTH = 640;
+const WIDEST = 640;
+const NARROWEST = 280;
 const HEIGHT = 190;
 const LEFT = 62;
 const BOTTOM = 30;
@@ -9,6 +10,9 @@ const TOP = 20;
 const FLOOR = 1e-16; // below rounding nothing is drawn
 
 /** @typedef {{name: string, mark: number, values: ArrayLike<number>}} Line */
+
+/** How wide a chart is in its place: letters are as large on a phone as elsewhere. @param {Element} place */
+const widthIn = (place) => Math.min(WIDEST, Math.max(NARROWEST, place.clientWidth || WIDEST));
 
 /** @param {string} tag @param {Record<string, string|number>} attributes @param {string} [text] */
 export function svg(tag, attributes, text) {
@@ -26,6 +30,7 @@ const MEASURES = { angle: "largest error of an angle [rad]", position: "largest 
  * @returns {(time: number) => void} */
 export function errorChart(place, t, lines, measure) {
   place.replaceChildren();
+  const width = widthIn(place);
   const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
   if (!positive.length) return () => {};
   const high = Math.ceil(Math.log10(Math.max(...positive)));
@@ -34,14 +39,14 @@ export function errorChart(place, t, lines, measure) {
   const low = Math.min(high - 1, Math.max(Math.floor(Math.log10(tenth)), high - 9));
   const last = t[t.length - 1];
   const first = t[0];
-  const x = (/** @type {number} */ time) => LEFT + ((WIDTH - LEFT - 12) * (time - first)) / (last - first || 1);
+  const x = (/** @type {number} */ time) => LEFT + ((width - LEFT - 12) * (time - first)) / (last - first || 1);
   const y = (/** @type {number} */ power) => TOP + ((HEIGHT - TOP - BOTTOM) * (high - power)) / Math.max(1, high - low);
   const label = `Against time, logarithmic: ${MEASURES[measure]}`;
-  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label });
+  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${width} ${HEIGHT}`, role: "img", "aria-label": label });
   chart.append(svg("text", { x: LEFT, y: 13 }, MEASURES[measure]));
   const stride = Math.ceil((high - low) / 5);
   for (let power = high; power >= low; power -= stride) {
-    chart.append(svg("line", { class: "axis", x1: LEFT, x2: WIDTH - 12, y1: y(power), y2: y(power) }));
+    chart.append(svg("line", { class: "axis", x1: LEFT, x2: width - 12, y1: y(power), y2: y(power) }));
     chart.append(svg("text", { x: LEFT - 8, y: y(power) + 4, "text-anchor": "end" }, `1e${power}`));
   }
   for (let part = 0; part <= 4; part++) {
@@ -76,6 +81,7 @@ export function errorChart(place, t, lines, measure) {
  * @param {Measure} measure @param {{x: number, y: number, mark: number, name: string}[]} own */
 export function scatter(place, stored, measure, own) {
   const series = stored.map(({ method, mark, points }) => ({ method, mark, points: points[measure] }));
+  const width = widthIn(place);
   const height = 300;
   const bottom = 44;
   const seen = own.filter(({ y }) => Number.isFinite(y) && y > 0);
@@ -84,19 +90,19 @@ export function scatter(place, stored, measure, own) {
   if (!xs.length) return;
   const [left, right] = [Math.floor(Math.min(...xs)), Math.ceil(Math.max(...xs))];
   const [low, high] = [Math.floor(Math.min(...ys)), Math.ceil(Math.max(...ys))];
-  const x = (/** @type {number} */ value) => LEFT + ((WIDTH - LEFT - 12) * (Math.log10(value) - left)) / (right - left || 1);
+  const x = (/** @type {number} */ value) => LEFT + ((width - LEFT - 12) * (Math.log10(value) - left)) / (right - left || 1);
   const y = (/** @type {number} */ value) => TOP + ((height - TOP - bottom) * (high - Math.log10(value))) / (high - low || 1);
   const label = `Against the step, in stored rows and with the present sliders: ${MEASURES[measure]}`;
-  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": label });
+  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label });
   chart.append(svg("text", { x: LEFT, y: 13 }, `${MEASURES[measure]}; large marks: these sliders`));
   for (let power = low; power <= high; power += Math.ceil((high - low) / 6)) {
-    chart.append(svg("line", { class: "axis", x1: LEFT, x2: WIDTH - 12, y1: y(10 ** power), y2: y(10 ** power) }));
+    chart.append(svg("line", { class: "axis", x1: LEFT, x2: width - 12, y1: y(10 ** power), y2: y(10 ** power) }));
     chart.append(svg("text", { x: LEFT - 8, y: y(10 ** power) + 4, "text-anchor": "end" }, `1e${power}`));
   }
   for (let power = left; power <= right; power++) {
     chart.append(svg("text", { x: x(10 ** power), y: height - 26, "text-anchor": power === right ? "end" : "middle" }, `1e${power}`));
   }
-  chart.append(svg("text", { x: WIDTH - 12, y: height - 8, "text-anchor": "end" }, "step [s]"));
+  chart.append(svg("text", { x: width - 12, y: height - 8, "text-anchor": "end" }, "step [s]"));
   for (const { method, mark, points } of series) {
     const group = svg("g", { class: `method-${mark}` });
     const sorted = [...points].sort((a, b) => a[0] - b[0]);

@@ -8,6 +8,12 @@ const body = /** @type {HTMLTableSectionElement} */ (document.querySelector("#ro
 const count = /** @type {HTMLElement} */ (document.getElementById("count"));
 const MOST = 400; // rows in the table at once
 
+/** What is measured, with its unit. @type {Record<string, string>} */
+const UNITS = {
+  position: "error of a place [m]", angle: "error of an angle [rad]", velocity: "error of a velocity [m/s]",
+  gap: "gap [m] or slip [m/s]", energy: "drift of energy, relative [1]", reaction: "error of a reaction, relative [1]",
+};
+
 /** @typedef {Record<string, string|number|null>} Row */
 
 /** @returns {Promise<Row[]>} */
@@ -45,7 +51,7 @@ function draw(rows) {
           width: Math.min(960, chart.clientWidth), height: 460, marginLeft: 60, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: unit, tickFormat: ".0e", ticks: 5 },
-          y: { type: "log", label: `error: ${y}`, tickFormat: ".0e" },
+          y: { type: "log", label: UNITS[y] ?? y, tickFormat: ".0e" },
           color: { legend: true, scheme: "Tableau10" }, symbol: { legend: false },
           marks: [
             Plot.line(points, { x, y, z: "method", stroke: "method", sort: x, strokeOpacity: 0.6 }),
