@@ -5,8 +5,10 @@ from __future__ import annotations
 import dataclasses
 import faulthandler
 import math
+import os
 import pickle
 import random
+import signal
 from collections import Counter
 from typing import Any
 
@@ -60,11 +62,24 @@ NOT_MADE_BY_USERS = {
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 
 
+LONGEST = 300.0  # s of the processor's time, since a loaded machine may take any time
+
+
 @pytest.fixture(autouse=True)
-def _nothing_hangs():
-    faulthandler.dump_traceback_later(300, exit=True)  # a check that lets a number through may step for ever
+def _nothing_hangs(request: pytest.FixtureRequest):
+    """A check that lets a number through may step for ever: then the process says where, and ends."""
+    if not hasattr(signal, "setitimer"):  # Windows
+        yield
+        return
+    # What pytest captures would be lost with the process.
+    with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+        plain = os.dup(2)
+    faulthandler.register(signal.SIGPROF, file=plain, chain=True)  # and then the signal does what it always does
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
     yield
-    faulthandler.cancel_dump_traceback_later()
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
+    faulthandler.unregister(signal.SIGPROF)
+    os.close(plain)
 
 
 def outcome(trial: Trial) -> str:
