@@ -50,7 +50,9 @@ def step(space, dt):
 
 own, pymunk.Space.step = pymunk.Space.step, step
 pymunk.Space.debug_draw = lambda space, options: None
-signal.alarm(20)
+# Of the processor's time, since a loaded machine may take any time; the other ends what waits for ever.
+signal.setitimer(signal.ITIMER_PROF, 20)
+signal.alarm(900)
 try:
     runpy.run_path(sys.argv[1], run_name="__main__")
     print(json.dumps(None))

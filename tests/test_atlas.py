@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,15 +22,17 @@ from reports.grid.ending import FINE, REFUSED
 from reports.grid.measure import TORN, measure
 from reports.grid.outcomes import Outcome
 from reports.grid.store import Store
+from reports.grid.tasks import Answer
 from reports.pages.atlas import page
 from reports.pages.atlas.chart import atlas_map, edges
-from reports.pages.atlas.column import Column, gives_from, left_by_sweeps
+from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps
 from reports.pages.atlas.reading import line_of
 from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
 from reports.pages.atlas.table import (
     BY_LETTER,
     CELLS,
     COSTS,
+    LIKE_THE_LAST,
     Cost,
     Costs,
     Line,
@@ -142,6 +145,41 @@ def test_a_column_tells_what_its_cells_do_and_an_abort_costs_one_cell():
     np.testing.assert_array_equal(np.ravel(answer["errors"]), [row.angle for row in rows])
     assert [len(single.cells(single.engines[0])) for single in column.singles] == [1] * 4
     assert [single.engines for single in column.singles] == [(Toy(),)] * 2 + [(column.engines[1],)] * 2
+
+
+def found_of(told: str, stride: int) -> tuple[str, str]:
+    """(letters as a column with these outcomes would keep them, the letters that are drawn)."""
+    rows = bisected(lambda place: SimpleNamespace(outcome=told[place]), len(told), stride)
+    kept = "".join(told[place] if place in rows else LIKE_THE_LAST for place in range(len(told)))
+    drawn = "".join(one.letter for one in line(1.0, kept).told)
+    assert line(1.0, kept).run == len(rows)
+    return kept, drawn
+
+
+@pytest.mark.parametrize("border", range(1, 21))
+def test_borders_are_as_sharp_as_if_every_point_had_been_run(border):
+    told = "T" * border + "S" * 7 + "·" * (27 - border)
+    kept, drawn = found_of(told, 4)
+    assert drawn == told
+    assert LIKE_THE_LAST in kept
+    assert found_of(told, 1) == (told, told)
+
+
+def test_what_is_narrower_than_the_stride_may_be_missed_and_nothing_else():
+    assert found_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
+    assert found_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
+    assert found_of("SS", 4) == ("SS", "SS")
+    assert found_of("S", 4) == ("S", "S")
+
+
+def test_a_column_leaves_out_what_lies_between_points_that_end_alike():
+    steps = tuple((10, every) for every in range(1, 10))
+    column = Column(Disc(), (Toy(), FailingToy("refuse")), steps, 4)
+    answer = Answer(Outcome.FINISHED, values=column.run())
+    lines = [line_of(TOYS, 2.0, column, engine, {column: answer})[0] for engine in column.engines]
+    assert [one.outcomes for one in lines] == ["·===·===·", "r===r===r"]
+    assert [math.isnan(error) for error in lines[0].errors] == [letter == LIKE_THE_LAST for letter in lines[0].outcomes]
+    assert {single.stride for single in column.singles} == {1}
 
 
 def test_a_column_whose_process_ends_is_asked_cell_by_cell(tmp_path):

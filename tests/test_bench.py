@@ -1,12 +1,20 @@
 """`crosscheck bench`: what it compares is the same motion, and what is missing is told."""
 
 import sys
+from functools import partial
 
 import pytest
 
 from engines import mujoco, pymunk
+from engines.lagrange import Lagrange, loading
+from reference.pendulum.link import BarPendulum
+from reference.pendulum.scenes import LinkPendulum
+from reference.rolling.singular_cases import SquareOnCatenaries
+from reports.bench import judge
 from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 from reports.bench.loops import loop_costs
+from reports.cli.bench import bench
+from reports.grid.cells import Cell
 from tests.toys import Disc, Toy
 
 
@@ -30,3 +38,63 @@ def test_an_engine_is_compared_with_the_loop_that_is_declared_for_its_name():
     found = loop_costs([Toy(), pymunk.TUNED, mujoco.TUNED], scene.mechanism(), 1e-3, 2, 2)
     assert [cost.engine for cost in found] == [pymunk.TUNED, mujoco.TUNED]  # nobody declares one for the toy
     assert all(cost.steps == 4 and cost.bare > 0 for cost in found)
+
+
+@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+def test_the_judges_figures_are_of_runs_that_are_right(monkeypatch):
+    monkeypatch.setattr(judge, "REPEATS", 1)
+    found = {figure.what: figure for figure in judge.figures(links=(3,))}
+    assert all(figure.measured > 0 for figure in found.values())
+    errors = [figure.measured for what, figure in found.items() if what.endswith("its error")]
+    assert len(errors) == 3
+    # Of order 4 at 1e-3 s, and of order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding.
+    assert errors[0] < 1e-6
+    assert errors[1] < 1e-9
+    assert errors[2] < errors[1] / 20
+    chain = next(figure for what, figure in found.items() if what.startswith("chain of 3 links"))
+    assert chain.asked == 3e-3
+
+
+@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+def test_the_batch_that_is_timed_holds_the_error_that_is_asked_for():
+    *parts, error = judge.batch_figures(3)
+    assert error.measured < error.asked == 1e-6
+    assert all(part.measured >= 0 for part in parts)
+
+
+def test_the_judges_figures_say_that_they_need_numba(monkeypatch):
+    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+    with pytest.raises(RuntimeError, match="the extra 'fast'"):
+        judge.figures()
+
+
+def test_the_judge_stands_beside_the_fastest_engine_that_reaches_an_error():
+    scene = BarPendulum(duration=0.1, horizon=0.1)
+    near, far = judge.beside_others(scene, [Lagrange("rk4"), pymunk.EXTENDED, pymunk.DEFAULT], (1e-4, 1e-30))
+    assert near.factor == near.other / near.own > 0
+    assert near.method.startswith("pymunk")
+    assert far.own != far.own  # NaN: nobody reaches it
+    assert far.method == ""
+
+
+def test_truths_stand_by_their_cost_and_a_scene_without_one_is_left_out():
+    short, chain, none = BarPendulum(duration=0.1), LinkPendulum(links=7, duration=0.51), SquareOnCatenaries()
+    found = judge.truth_costs([short, chain, none])
+    assert {scene for scene, _ in found} == {short, chain}  # beyond the corner the square has no motion
+    assert [seconds for _, seconds in found] == sorted((seconds for _, seconds in found), reverse=True)
+
+
+@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+def test_crosscheck_bench_judge_prints_truths_figures_and_factors(monkeypatch, capsys):
+    monkeypatch.setattr("reports.cli.bench_judge.FEW", 3)
+    monkeypatch.setattr(judge, "REPEATS", 1)
+    monkeypatch.setattr(judge, "COST_LIMIT", 0.01)
+    monkeypatch.setattr(judge, "figures", partial(judge.figures, (3,)))
+    monkeypatch.setattr("reports.cli.selection.choose_cells", lambda *_: [Cell(BarPendulum(), pymunk.DEFAULT, 1)])
+    monkeypatch.setattr("engines.registry.ENGINES", (pymunk.DEFAULT, Lagrange("rk4")))
+    bench(["judge"])
+    told = capsys.readouterr().out
+    assert "the dearest truths" in told
+    assert "four-bar: one evaluation" in told
+    assert "3 four-bars: stacking them" in told
+    assert "factor [1]" in told

@@ -34,7 +34,10 @@ from reports.pages.person import page as person
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
 from reports.text.rendering import render_page
+from tests import test_any_rows as rendering
 from tests.present import present
+
+undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 PAGES = (pendulum.PAGE, slider_crank.PAGE, n_four_bar.PAGE, person.PAGE)
 LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, branch=-1), SliderAtDeadCentre(angle=1e-2))
@@ -186,7 +189,7 @@ def test_a_stroboscope_fades_the_past_draws_a_film_side_by_side_and_is_the_same_
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_a_page_can_be_written_from_nothing_and_from_a_few_rows(page):
+def test_a_page_can_be_written_from_nothing_and_from_a_few_rows(page, undrawn):
     empty = render_page(page, Material({}), "the command")
     assert "Nothing was run yet" in empty[f"{page.name}.md"]
     few = [

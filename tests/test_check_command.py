@@ -8,6 +8,7 @@ import subprocess
 import sys
 import types
 import xml.etree.ElementTree as xml
+from typing import ClassVar
 
 import mujoco
 import numpy as np
@@ -128,9 +129,11 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(folder, capfd, monke
 class Window:
     """What stands for the viewer's window: it stays open for three looks."""
 
+    last: ClassVar[Window]
+
     def __init__(self, model, data, **look):
         self.model, self.data, self.look, self.seen = model, data, look, []
-        type(self).last = self
+        Window.last = self
 
     def __enter__(self):
         return self
@@ -153,7 +156,7 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(folder, monkeyp
     monkeypatch.setattr(mujoco, "viewer", viewer, raising=False)
     monkeypatch.setenv("DISPLAY", ":7")
     assert call("view", "driven_four_bar") == 0
-    window = Window.last  # type: ignore[attr-defined]
+    window = Window.last
     np.testing.assert_allclose(window.seen, [1e-3, 2e-3, 3e-3])
     assert window.model.ngeom >= 5
     assert window.look == {"show_left_ui": False, "show_right_ui": False}

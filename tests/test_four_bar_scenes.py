@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -43,10 +44,15 @@ def accelerations(each, times):
     return each._bodies(each._angles(times))[2]
 
 
+@cache
+def moving(each):
+    """Its motion and accelerations at `sampled`, integrated once for all tests; they may not be written into."""
+    return each.motion(sampled(each)), accelerations(each, sampled(each))
+
+
 @pytest.mark.parametrize("each", [*FREE, *DRIVEN])
 def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint(each):
-    mechanism, times = each.mechanism(), sampled(each)
-    motion = each.motion(times)
+    mechanism, (motion, _) = each.mechanism(), moving(each)
     assert np.array_equal(motion.pose[0], mechanism.pose)
     assert np.array_equal(motion.twist[0], mechanism.twist)
     # Rounding of angles up to 20 rad and of speeds up to 20 m/s.
@@ -59,9 +65,8 @@ def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint(each):
 
 @pytest.mark.parametrize("each", [*FREE, *DRIVEN])
 def test_accelerations_satisfy_the_rows_differentiated(each):
-    mechanism, times = each.mechanism(), sampled(each)
-    motion, bend = each.motion(times), accelerations(each, times)
-    left = (mechanism.rows(motion.pose) @ bend.reshape(len(times), 9, 1))[..., 0]
+    mechanism, (motion, bend) = each.mechanism(), moving(each)
+    left = (mechanism.rows(motion.pose) @ bend.reshape(-1, 9, 1))[..., 0]
     scale = 1 + np.max(np.abs(bend))
     assert np.max(np.abs(left - mechanism.bias(motion.pose, motion.twist))) < 1e-13 * scale
     assert np.max(np.abs(left + mechanism.bias(motion.pose, motion.twist))) > 0.1
@@ -69,13 +74,12 @@ def test_accelerations_satisfy_the_rows_differentiated(each):
 
 @pytest.mark.parametrize("each", [*FREE, *DRIVEN])
 def test_reactions_are_what_newton_needs(each):
-    mechanism, times = each.mechanism(), sampled(each)
-    motion = each.motion(times)
+    mechanism, (motion, bend) = each.mechanism(), moving(each)
     force = (np.swapaxes(mechanism.rows(motion.pose), -1, -2) @ motion.reaction[..., None])[..., 0]
-    needed = mechanism.inertias * (accelerations(each, times) - mechanism.free_fall)
+    needed = mechanism.inertias * (bend - mechanism.free_fall)
     size = np.max(np.abs(motion.reaction))
-    assert np.max(np.abs(force - needed.reshape(len(times), 9))) < 1e-12 * size
-    assert np.max(np.abs(force + needed.reshape(len(times), 9))) > 0.1 * size
+    assert np.max(np.abs(force - needed.reshape(-1, 9))) < 1e-12 * size
+    assert np.max(np.abs(force + needed.reshape(-1, 9))) > 0.1 * size
     assert motion.reaction.shape == (51, mechanism.row_count)
 
 
@@ -117,7 +121,7 @@ def test_a_scene_is_sampled_every_hundredth_of_a_second():
 @pytest.mark.parametrize("each", FREE)
 def test_free_motion_keeps_its_energy_and_its_truth_error_is_rounding(each):
     mechanism, times = each.mechanism(), sampled(each)
-    total = energy(mechanism, each.motion(times))
+    total = energy(mechanism, moving(each)[0])
     assert np.ptp(total) < 3e-14 * (1 + np.max(np.abs(total)) + 9.81 * sum(each.masses))
     # Rounding to double of angles of 10 rad and speeds of 20 m/s. Where longdouble is no longer than double, some
     # hundred steps' rounding, amplified by the motion, is added.

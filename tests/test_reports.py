@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import math
+import platform
 import re
 import xml.etree.ElementTree as xml
 from dataclasses import replace
+from importlib import metadata
 
 import numpy as np
 import pytest
@@ -108,8 +110,12 @@ def test_errors_have_no_timing_in_them_and_timings_say_where_they_were_taken(fil
 def test_every_digest_in_the_errors_is_described(files):
     errors = list(csv.DictReader(io.StringIO(files["errors.csv"])))
     described = {row["digest"]: row["description"] for row in csv.DictReader(io.StringIO(files["descriptions.csv"]))}
-    used = {row[name] for row in errors for name in ("parameters", "settings")}
+    used = {row[name] for row in errors for name in ("parameters", "settings", "versions")}
     assert used == set(described)
+    for row in errors:  # every row says what it was made with
+        told = described[row["versions"]]
+        assert told.startswith(f"Python {platform.python_version()}, numpy ")
+        assert all(f"{name} {metadata.version(name)}" in told for name in ("scipy", *Toy().packages))
     assert any("(" in text for text in described.values())
 
 

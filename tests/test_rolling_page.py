@@ -26,6 +26,9 @@ from reports.pages.rolling import page as rolling_page
 from reports.pages.rolling.experiments import FAILURES
 from reports.pages.rolling.parting import absent_contact, parting
 from reports.text.rendering import render_page
+from tests import test_any_rows as rendering
+
+undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 
 def row(scene, engine, every, samples=None):
@@ -194,7 +197,7 @@ def test_the_centre_tells_engines_apart_by_their_velocities():
     assert centre["extended"] < 1e-2 * centre["default"]
 
 
-def test_both_pages_are_written_even_when_nothing_was_run_and_every_picture_has_its_file():
+def test_both_pages_are_written_even_when_nothing_was_run_and_every_picture_has_its_file(undrawn):
     for page in (rolling_page.PAGE, centrodes_page.PAGE):
         files = render_page(page, Material({}), "the command")
         shown = set(re.findall(r"\]\((\w+\.svg)\)", files[f"{page.name}.md"]))

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from reports.pages.atlas.table import Cost, Line
 
 LIMIT = 600.0  # CPU seconds of one column, far above any that is known
+STRIDE = 4  # of so many steps one is run, and those between only where a border is; in small maps all
+SMALL = 16  # points along a side
 VARIANTS_SHOWN = ("default", "tuned")
 ATLAS = "atlas"  # the folder with what is stored of it
 
@@ -29,6 +31,9 @@ ATLAS = "atlas"  # the folder with what is stored of it
 def atlas(
     scenes: Annotated[str | None, typer.Option(help="Maps by name, with commas between; all if none is named.")] = None,
     points: Annotated[int, typer.Option(min=2, max=200, help="Of a map, along each side.")] = 40,
+    every_point: Annotated[
+        bool, typer.Option("--every-point", help="Run also the points between two of one outcome, 4 steps apart.")
+    ] = False,
     workers: Workers = None,
     scheduler: Scheduler = None,
     results: Folder = FOLDER,
@@ -51,7 +56,9 @@ def atlas(
         refuse_outside_a_checkout()
     engines = tuple(engine for engine in VARIANTS if engine.variant in VARIANTS_SHOWN)
     columns = {
-        (subject, value): Column(subject.make(value), engines, subject.steps(points))
+        (subject, value): Column(
+            subject.make(value), engines, subject.steps(points), 1 if every_point or points < SMALL else STRIDE
+        )
         for subject in subjects
         for value in subject.at(points)
     }
@@ -75,7 +82,7 @@ def atlas(
         also = [line for line in (earlier.lines if earlier else ()) if line.subject not in names]
         every = Costs(**{**vars(made), "lines": (*made.lines, *also), "wall": 0.0 if also else made.wall})
         texts = {place / CELLS: as_csv([*lines, *others]), place / COSTS: costs_as_csv(every)}
-        write_files(texts, f"{sum(len(line.outcomes) for line in lines)} cells written to {place / CELLS}")
+        write_files(texts, f"{sum(line.run for line in lines)} cells written to {place / CELLS}")
     terminal.say(f"{run} of {len(columns)} columns run in {wall or monotonic() - begin:.0f} s, the others were stored")
 
 
@@ -139,7 +146,7 @@ def told(
             line, seconds = line_of(subject, value, column, engine, answers[column])
             lines.append(line)
             cells, before = spent.get((subject.name, line.method), (0, 0.0))
-            spent[subject.name, line.method] = cells + len(line.outcomes), before + seconds
+            spent[subject.name, line.method] = cells + line.run, before + seconds
     return lines, [Cost(*key, *numbers) for key, numbers in spent.items()]
 
 

@@ -1,4 +1,4 @@
-"""`crosscheck bench`: what stepping costs beside bare loops, the reference beside another library, and the site."""
+"""`crosscheck bench`: stepping beside bare loops, a search, the reference beside another library, and the site."""
 
 from __future__ import annotations
 
@@ -12,25 +12,33 @@ from reports.cli.site import SITE
 from reports.cli.terminal import Terminal, print_table
 
 SUITE = "suite"  # instead of scenes, or before them
+JUDGE = "judge"  # instead of scenes
 
 
 def bench(
     scene: Scenes = None,
-    full: Annotated[bool, typer.Option("--full/--quick", help="`bench suite`: of the full grid.")] = False,
+    full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid; `judge`: more.")] = False,
     workers: Workers = None,
     site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
 ) -> None:
-    """Time `run` against bare stepping loops, the reference against another library, and the site; asserts nothing.
+    """Time `run` against bare loops, a search, the reference against another library, and the site; asserts nothing.
 
-    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into.
+    `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
+    times exact multipliers: an evaluation, steps, chains, many mechanisms at once, and the truths.
     """
+    if scene == [JUDGE]:
+        from reports.cli.bench_judge import bench_judge
+
+        bench_judge(full)
+        return
     if scene and scene[0] == SUITE:
         from reports.cli.bench_suite import bench_suite
 
         bench_suite(scene[1:], full, workers)
         return
-    from engines.registry import ENGINES
+    from engines.registry import ENGINES, VARIANTS
     from reports.bench import four_bar
+    from reports.bench.instants import instant_costs
     from reports.bench.loops import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
@@ -49,6 +57,14 @@ def bench(
             header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
             print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
             console.print()
+    instants = [
+        (each.name, number(1e3 * each.drawing), number(1e3 * each.asking), f"{each.asked:.0%}", f"{each.rate:.0f}")
+        for each in instant_costs(VARIANTS)
+        if each.asked
+    ]
+    header = ["method", "drawing [ms]", "asking [ms]", "have a law", "mechanisms a second"]
+    print_table(console, "search: random mechanisms of every kind, asked one instant", header, instants, 1)
+    console.print()
     floor = four_bar.floor_ratio()
     console.print(f"four-bar kinematics, {floor['count']} crank angles, all six outputs: {floor['ours']:.3f} s,")
     console.print(f"  {floor['ratio']:.2f} times one tan and two arctan2 an angle")

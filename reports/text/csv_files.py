@@ -5,17 +5,20 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
 from reports.grid.measure import TIMINGS, Measurement
 
 
-def as_csv(rows: Iterable[Measurement], timings: bool, header: str = "") -> str:
+def as_csv(
+    rows: Iterable[Measurement], timings: bool, header: str = "", made_with: Mapping[str, str] | None = None
+) -> str:
     """Rows as CSV, sorted: the errors without any timing, or the timings alone; `header` lines become comments.
 
     Parameters and settings stand as digests, see `descriptions_csv`. Numbers have four digits: what remains after that
-    differs with the machine's rounding.
+    differs with the machine's rounding. `made_with`: by a row's key the versions of all that its numbers depend on,
+    which become a last column of digests.
     """
     identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
     rest = [f.name for f in fields(Measurement) if f.name not in (*identity, *TIMINGS, "key", "limit")]
@@ -23,11 +26,13 @@ def as_csv(rows: Iterable[Measurement], timings: bool, header: str = "") -> str:
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in header.splitlines())
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(names)
+    last = [] if made_with is None else ["versions"]
+    writer.writerow([*names, *last])
     ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in identity))
     for row in ordered:
         values = (digest(getattr(row, name)) if name in DESCRIPTIONS else getattr(row, name) for name in names)
-        writer.writerow([f"{v:.4g}" if isinstance(v, float) else str(v) for v in values])
+        told = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in values]
+        writer.writerow([*told, *([] if made_with is None else [digest(made_with[row.key])])])
     return out.getvalue()
 
 
@@ -36,15 +41,16 @@ DESCRIPTIONS = ("parameters", "settings")
 
 
 def digest(description: str) -> str:
-    """The short name of a scene's parameters or an engine's settings in the CSV files."""
+    """The short name of a scene's parameters, an engine's settings or a row's versions in the CSV files."""
     return hashlib.sha256(description.encode()).hexdigest()[:8]
 
 
-def descriptions_csv(rows: Iterable[Measurement]) -> str:
+def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
     """What the digests stand for, each once."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["digest", "of", "description"])
     found = {(name, getattr(row, name)) for row in rows for name in DESCRIPTIONS}
+    found |= {("versions", told) for told in (made_with or {}).values()}
     writer.writerows([digest(text), name, text] for name, text in sorted(found))
     return out.getvalue()

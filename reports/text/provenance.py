@@ -26,6 +26,12 @@ def versions(engines: Iterable[Engine] = ()) -> str:
     return ", ".join([f"Python {platform.python_version()}", *map(_version, packages(engines))])
 
 
+def row_versions(engine: Engine) -> str:
+    """'Python 3.11.7, numpy 2.4.0, ...' of what a row of this engine depends on."""
+    packages_of = dict.fromkeys([*MEASURED_WITH, *engine.packages])
+    return ", ".join([f"Python {platform.python_version()}", *map(_version, packages_of)])
+
+
 def told_versions(engines: Iterable[Engine]) -> str:
     """'exudyn 1.13.6, pin 4.1.0, ...' of these engines alone."""
     return ", ".join(dict.fromkeys(_version(package) for engine in engines for package in engine.packages))

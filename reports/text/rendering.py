@@ -25,7 +25,7 @@ from reports.text.holders import holders
 from reports.text.links import link
 from reports.text.overview import overviews
 from reports.text.parts import with_part
-from reports.text.provenance import machine, today, versions
+from reports.text.provenance import machine, row_versions, today, versions
 from reports.text.templates import environment, template_of
 from reports.text.told_scene import told_scene
 
@@ -152,14 +152,19 @@ def render_all(
     """
     files: dict[str, str] = dict(further)
     rows: dict[str, Measurement] = {}
+    made_by: dict[str, Engine] = {}
     for page, material in pages.items():
         files.update(render_page(page, material, command))
         rows.update({row.key: row for row in material.rows.values()})
+        made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
     files["index.md"] = render_index(pages, command, files)
-    files["errors.csv"] = as_csv(rows.values(), timings=False)
+    # A stored row counts only where the versions are those that it was made with, so these are its own.
+    of_engine = {engine: row_versions(engine) for engine in dict.fromkeys(made_by.values())}
+    own_versions = {key: of_engine[engine] for key, engine in made_by.items()}
+    files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=own_versions)
     made_with = versions(engines_of(pages))
     header = f"{today()}\n{machine()}\n{made_with}\n{command}\nCPU seconds: cpu per simulated second; build once"
-    files["descriptions.csv"] = descriptions_csv(rows.values())
+    files["descriptions.csv"] = descriptions_csv(rows.values(), own_versions)
     files["timings.csv"] = as_csv(rows.values(), timings=True, header=header)
     return files

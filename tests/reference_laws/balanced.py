@@ -179,7 +179,10 @@ def car(mass: Any, other: Any, inertia: Any, own: Any, ahead: Any, before: Any, 
 def our_car(
     mass: float, other: float, inertia: float, own: float, ahead: float, before: float, *rest: Any
 ) -> list[Any]:
-    scene = CarAndTrailer((mass, other), (inertia, own), (ahead, before), *rest)
+    wheelbase, steering, hitch, length, speed, bend = rest
+    scene = CarAndTrailer(
+        (mass, other), (inertia, own), (ahead, before), wheelbase, steering, hitch, length, speed, bend
+    )
     return list(scene.motion([0.0]).reaction[0])
 
 

@@ -189,7 +189,7 @@ def solved(whole, real, small, kept):
     """Fill the change with the least one, by mass, along which J changes by the right side, and its reactions.
 
     `small`: of a change that is itself a correction, so that a long chain's digits need none. `kept`: with the factor
-    of the call before, for rows that have hardly turned since.
+    of the call before, for rows that have hardly turned since: one correction makes up for it.
     """
     rows, reaction, left, told = whole[ROWS], whole[REACTION], whole[LEFT], whole[TOLD]
     right, pivots, some = whole[RIGHT], whole[PIVOT], whole[WHICH] != ALL
@@ -207,7 +207,7 @@ def solved(whole, real, small, kept):
         real[reaction + row] = 0.0 if some and left_out(whole, real, row) else real[right + row]
     substituted(whole, real, reaction)
     pushed(whole, real)
-    if (pivot > EASY and (small or rows <= FEW_ROWS)) or soft_rows:
+    if (pivot > EASY and not kept and (small or rows <= FEW_ROWS)) or soft_rows:
         return  # reactions of soft rows miss the right side on purpose
     before = math.inf
     for _ in range(MOST_CORRECTIONS if pivot < EASY else 1):

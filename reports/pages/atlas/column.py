@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,23 +16,27 @@ from engines.pymunk.contraction import contraction
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.grid.cells import Cell, estimated_cost
-from reports.grid.measure import TORN, measure
+from reports.grid.measure import TORN, Measurement, measure
 from reports.grid.tasks import Task, Values
 
 LOOKS = 20  # instants of the truth at which the forces are taken
+NOT_RUN = ""  # instead of an outcome: the point lies between two of one outcome, and is drawn like them
 
 
 @dataclass(frozen=True)
 class Column(Task):
     """`steps` are (samples, steps a sample); every cell of a column is measured as any other cell of the grid is.
 
-    All engines of a value are one task, since they share its truth. A column whose process ends is asked again cell by
-    cell (`singles`), so that an abort costs one cell.
+    Of `stride` steps one is run first, and others only where two that were run have different outcomes, until those are
+    neighbours: a border is as sharp as if all had been run, and what is narrower than the stride may be missed. All
+    engines of a value are one task, since they share its truth. A column whose process ends is asked again cell by cell
+    (`singles`), so that an abort costs one cell.
     """
 
     scene: Scene
     engines: tuple[Engine, ...]
     steps: tuple[tuple[int, int], ...]
+    stride: int = 1
 
     @property
     def cost(self) -> float:
@@ -47,10 +52,13 @@ class Column(Task):
     @property
     def singles(self) -> tuple[Column, ...]:
         """Its cells, each a column of its own."""
-        return tuple(replace(self, engines=(engine,), steps=(one,)) for engine in self.engines for one in self.steps)
+        return tuple(
+            replace(self, engines=(engine,), steps=(one,), stride=1) for engine in self.engines for one in self.steps
+        )
 
     def run(self) -> Values:
-        """outcomes: words of all steps, engine by engine, with commas between; errors (engines, steps) [rad].
+        """outcomes: words of all steps, engine by engine, with commas between, NOT_RUN of those that were not run;
+        errors (engines, steps) [rad].
 
         seconds (engines,): CPU time of the cells, the first engine's with that of the truth. gives (engines,) [s] and
         left (engines,): see `gives_from` and `left_by_sweeps`.
@@ -59,10 +67,11 @@ class Column(Task):
         errors, seconds = [], []
         for engine in self.engines:
             begin = time.process_time()
-            rows = [measure(cell, repeat=False) for cell in self.cells(engine)]
+            cells = self.cells(engine)
+            rows = bisected(lambda place, cells=cells: measure(cells[place], repeat=False), len(cells), self.stride)
             seconds.append(time.process_time() - begin)
-            outcomes += [str(row.outcome) for row in rows]
-            errors.append([row.angle for row in rows])
+            outcomes += [str(rows[place].outcome) if place in rows else NOT_RUN for place in range(len(cells))]
+            errors.append([rows[place].angle if place in rows else math.nan for place in range(len(cells))])
         mechanism = self.scene.mechanism()
         times = sorted(cell.step for cell in self.cells(self.engines[0]))
         return {
@@ -72,6 +81,20 @@ class Column(Task):
             "gives": np.array(gives_from(self.scene, mechanism, self.engines, times[0], times[-1])),
             "left": np.array([left_by_sweeps(mechanism, engine) for engine in self.engines]),
         }
+
+
+def bisected(row_at: Callable[[int], Measurement], count: int, stride: int) -> dict[int, Measurement]:
+    """The rows of some of `count` places: one of `stride`, the first and the last, and more between unlike outcomes."""
+    places = sorted({*range(0, count, stride), count - 1})
+    rows = {place: row_at(place) for place in places}
+    unlike = list(pairwise(places))
+    while unlike:
+        low, high = unlike.pop()
+        if high - low > 1 and rows[low].outcome != rows[high].outcome:
+            middle = (low + high) // 2
+            rows[middle] = row_at(middle)
+            unlike += [(low, middle), (middle, high)]
+    return rows
 
 
 def gives_from(

@@ -135,6 +135,8 @@ def words(material: Material) -> Mapping[str, Any]:
                     "tearing": count,
                     "columns": len({line.value for line in own}),
                     "steps": len(own[0].counts),
+                    "run": sum(line.run for line in own),
+                    "points": sum(len(line.counts) for line in own),
                 }
             )
     found = costs()

@@ -14,7 +14,7 @@ from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Answer, Task, Values
 from reports.pages.atlas.column import Column
 from reports.pages.atlas.subjects import Subject
-from reports.pages.atlas.table import Line, power
+from reports.pages.atlas.table import LIKE_THE_LAST, Line, power
 
 SAMPLE = 300  # chunks and answers of nothing, by which the rates of a client are measured
 
@@ -56,7 +56,7 @@ def line_of(
             errors.append(float(answer.array("errors")[0, 0]) if answer.finished else math.nan)
             seconds += float(answer.array("seconds")[0]) if answer.finished else 0.0
             left = float(answer.array("left")[0]) if answer.finished else left
-    told = [Outcome(word) for word in outcomes]
+    told = [Outcome(word) if word else None for word in outcomes]
     counts = tuple(samples * every for samples, every in column.steps)
     line = Line(
         subject.name,
@@ -65,8 +65,8 @@ def line_of(
         value,
         column.scene.duration / counts[0],
         counts,
-        "".join(outcome.letter for outcome in told),
-        tuple(power(error) if one.comparable else math.nan for one, error in zip(told, errors, strict=True)),
+        "".join(outcome.letter if outcome else LIKE_THE_LAST for outcome in told),
+        tuple(power(error) if one and one.comparable else math.nan for one, error in zip(told, errors, strict=True)),
         gives,
         left,
     )

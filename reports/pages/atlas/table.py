@@ -13,6 +13,7 @@ from pathlib import Path
 from reports.grid.outcomes import Outcome
 
 CELLS, COSTS = "atlas.csv", "atlas_timings.csv"
+LIKE_THE_LAST = "="  # instead of a letter: it was not run, and lies between two that ended alike
 BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}  # of two that share one, finished
 
 
@@ -20,8 +21,9 @@ BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}  # of two
 class Line:
     """A column of a map: one value of a subject's parameter in one method, the largest step first.
 
-    outcomes: a letter a step (`Outcome.letter`). errors: the power of ten of the angle's error [rad], of a cell that
-    finished; NaN else. longest [s]: the largest step; counts: steps of each run. gives [s], left: see `column`.
+    outcomes: a letter a step (`Outcome.letter`, or LIKE_THE_LAST). errors: the power of ten of the angle's error [rad],
+    of a cell that was run and finished; NaN else. longest [s]: the largest step; counts: steps of each run. gives [s],
+    left: see `column`.
     """
 
     subject: str
@@ -46,7 +48,15 @@ class Line:
 
     @property
     def told(self) -> tuple[Outcome, ...]:
-        return tuple(BY_LETTER[letter] for letter in self.outcomes)
+        found: list[Outcome] = []
+        for letter in self.outcomes:
+            found.append(found[-1] if letter == LIKE_THE_LAST and found else BY_LETTER[letter])
+        return tuple(found)
+
+    @property
+    def run(self) -> int:
+        """How many of its steps were run."""
+        return len(self.outcomes) - self.outcomes.count(LIKE_THE_LAST)
 
 
 @dataclass(frozen=True)

@@ -130,6 +130,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "bounds": bounds(material),
         "limits": BOUNDS,
         "drifts": drifts(material),
+        "by_hand": material.finished(BY_HAND) is not None,
         "published_drift": PUBLISHED,
         "acrobot": {"start": START, "steps": ACROBOT_STEPS},
         "time": SCENES[0].mechanism().time_scale,

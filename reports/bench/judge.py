@@ -1,0 +1,151 @@
+"""What the judge costs: an evaluation, steps, long chains, many mechanisms at once, and truths, in CPU time.
+
+Each is the least of several runs, the first discarded. What is asked for stands beside it, from the goals that were set
+for an ordinary core of 2025; nothing is asserted.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engines import Engine
+from engines.lagrange import Lagrange, batch, stacked
+from engines.lagrange.compiled_run import Machine
+from reference.four_bar.scenes import FreeFourBar
+from reference.mechanism import Mechanism
+from reference.pendulum.many_links import LongPendulum
+from reference.scene import Scene
+from reports.grid.cells import FULL, Cell, estimated_cost
+from reports.grid.measure import measure
+
+REPEATS = 7
+LEVELS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # rad
+COST_LIMIT = 0.3  # s that a cell may take: all levels are reached before
+CHECKED = 40  # mechanisms of a batch that are compared with the judge's own run of them
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number measured, and the one asked for; NaN where none is."""
+
+    what: str
+    measured: float
+    unit: str
+    asked: float = np.nan
+
+
+def figures(links: Iterable[int] = (100, 300, 1000)) -> list[Figure]:
+    """An evaluation and a simulated second of the free four-bar, and steps of chains.
+
+    Raises RuntimeError without numba.
+    """
+    scene = FreeFourBar(duration=1.0)
+    mechanism = scene.mechanism()
+    machine = Machine.of(mechanism) if Lagrange().in_machine_code else None
+    if machine is None:
+        raise RuntimeError("the figures are of compiled code: install numba, the extra 'fast'")
+    out = [Figure("four-bar: one evaluation", 1e6 * _least(lambda: _evaluation(machine)), "us", 1.0)]
+    for engine, every, asked in ((Lagrange("rk4"), 10, 8.0), (Lagrange(), 1, 3.0), (Lagrange(), 2, np.nan)):
+        name = f"four-bar: a second by {engine.variant}, step {1e-2 / every:g} s"
+        out.append(Figure(name, 1e3 * _least(_stepping(engine, mechanism, 1e-2, 100, every)), "ms", asked))
+        run = engine.build(mechanism, 1e-2 / every)(100, every)
+        error = np.abs(run.pose - scene.motion(run.t).pose)[..., 2].max()
+        out.append(Figure(f"{name}: its error", float(error), "rad", 1e-12 if engine == Lagrange() else np.nan))
+    for count in links:
+        chain = LongPendulum(links=count, duration=0.2).mechanism()
+        seconds = _least(_stepping(Lagrange("rk4"), chain, 5e-3, 1, 50)) / 50
+        out.append(Figure(f"chain of {count} links: a step by rk4 projection", 1e3 * seconds, "ms", count / 1000))
+    return out
+
+
+def batch_figures(count: int) -> list[Figure]:
+    """A second of `count` four-bars of different lengths to 1e-6 rad: CPU of making, stacking and stepping them."""
+    random = np.random.default_rng(0)
+    scale = 1 + 0.05 * random.uniform(-1, 1, (count, 2))
+    usual, marks = FreeFourBar(duration=1.0), [time.process_time()]
+    made = tuple(
+        replace(usual, crank=usual.crank * float(a), rocker=usual.rocker * float(b)).mechanism() for a, b in scale
+    )
+    marks.append(time.process_time())
+    stack = stacked(made)
+    marks.append(time.process_time())
+    found = batch(stack, 0.1, 10, 1e-7)
+    marks.append(time.process_time())
+    worst = 0.0
+    for number in random.integers(0, count, CHECKED):
+        single = Lagrange(tolerance=1e-12).build(made[number], 0.1)(10, 1)
+        worst = max(worst, float(np.abs(found.pose[number] - single.pose)[..., 2].max()))
+    parts = np.diff(marks)
+    names = ("making the mechanisms", "stacking them", "stepping them for a second")
+    out = [Figure(f"{count} four-bars: {name}", float(part), "s") for name, part in zip(names, parts, strict=True)]
+    out.append(
+        Figure(f"100000 four-bars on two cores, stepping alone, from {count}", parts[2] * 5e4 / count, "s", 60.0)
+    )
+    return [*out, Figure(f"{count} four-bars: largest error of {CHECKED}", worst, "rad", 1e-6)]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """The least CPU time [s] a simulated second with which an error is reached, NaN where it isn't: ours, another's."""
+
+    error: float
+    own: float
+    other: float
+    method: str
+
+    @property
+    def factor(self) -> float:
+        return self.other / self.own
+
+
+def beside_others(scene: Scene, engines: Iterable[Engine], levels: Iterable[float] = LEVELS) -> list[Beside]:
+    """The judge beside the fastest of the other engines, at each error [rad], all measured in this process."""
+    cells = [Cell(scene, engine, every) for engine in engines for every in FULL]
+    rows = [measure(cell) for cell in cells if estimated_cost(cell) <= COST_LIMIT]
+    out = []
+    for level in levels:
+        reached = [row for row in rows if row.angle <= level]
+        own = min((row.cpu for row in reached if row.engine == "lagrange"), default=np.nan)
+        others = ((row.cpu, f"{row.engine} {row.variant}") for row in reached if row.engine != "lagrange")
+        other, method = min(others, default=(np.nan, ""))
+        out.append(Beside(level, own, other, method))
+    return out
+
+
+def truth_costs(scenes: Iterable[Scene]) -> list[tuple[Scene, float]]:
+    """CPU seconds of the motions of scenes at all their samples, the dearest first; a scene without one is left out.
+
+    To be asked first in a process: some motions are kept.
+    """
+    out = []
+    for scene in scenes:
+        begin = time.process_time()
+        try:
+            scene.motion(np.linspace(0, scene.duration, scene.samples + 1))
+        except ValueError:
+            continue
+        out.append((scene, time.process_time() - begin))
+    return sorted(out, key=lambda pair: -pair[1])
+
+
+def _evaluation(machine: Machine, count: int = 2000) -> float:
+    """CPU seconds of rows, bias, J M^-1 J^T, its factor, reactions and accelerations at the start."""
+    poses, twists = machine.empty(count)
+    poses[:], twists[:] = poses[0], twists[0]
+    begin = time.process_time()
+    machine.reactions(1e-3, poses, twists)
+    return (time.process_time() - begin) / (count + 1)
+
+
+def _stepping(engine: Engine, mechanism: Mechanism, spacing: float, samples: int, every: int) -> Callable[[], float]:
+    """A function that gives the CPU seconds of a run."""
+    return lambda: engine.build(mechanism, spacing / every)(samples, every).stepping
+
+
+def _least(seconds: Callable[[], float]) -> float:
+    seconds()
+    return min(seconds() for _ in range(REPEATS))
