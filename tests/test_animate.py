@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,7 +18,7 @@ from reports.grid.ending import BadInput, FileTrouble
 from reports.grid.tasks import answered
 from reports.site.animated import PAUSE, animation, decades
 from reports.site.embed import Shown, shown
-from reports.site.film import film
+from reports.site.film import ffmpeg, film
 from reports.site.lessons import LESSONS, take_like
 
 ROOT = Path(__file__).parents[1]
@@ -80,6 +82,7 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
     with Image.open(tmp_path / "one.gif") as image:
         assert getattr(image, "n_frames", 1) == 4
     monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)  # as if it were not installed
     with pytest.raises(BadInput, match="needs the program ffmpeg"):
         film(falling, "A title", tmp_path / "one.mp4")
 
@@ -124,3 +127,19 @@ def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch):
     with pytest.raises(FileTrouble, match="is there already"):
         invoke(["animate", "free_four_bar"])
     assert (tmp_path / "free_four_bar.svg").read_text() == "mine"
+
+
+def test_a_folder_that_can_not_be_is_told_before_anything_is_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileTrouble, match="give another --output"):
+        invoke(["animate", "free_four_bar", "--output", "file/x.svg"])
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_mp4_is_written_by_the_program_of_a_package_where_none_is_installed(monkeypatch, tmp_path):
+    program = ModuleType("imageio_ffmpeg")
+    program.get_ffmpeg_exe = lambda: "/some/ffmpeg"  # pyright: ignore[reportAttributeAccessIssue]
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", program)
+    assert ffmpeg() == "/some/ffmpeg"

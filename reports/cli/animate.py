@@ -40,6 +40,7 @@ def animate(
         raise BadInput(f"--every is {every}; give a whole number from 1 on")
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
+    from reports.grid.files import folder_for
 
     known, names, _ = with_words(registered(), [scene], None, settings or ())
     chosen = choose_scenes(names, known.scenes, known.pages)
@@ -50,6 +51,7 @@ def animate(
     path = output or Path(f"{chosen[0].name}.{to}")
     if not force and (path.is_symlink() or path.exists()):
         raise FileTrouble(f"{path} is there already: give another --output, or --force to replace it")
+    folder_for(path.absolute().parent, "give another --output")  # before anything is run
     shown = _shown(chosen[0], methods, every, results)
     for word, why in shown.lost.items():
         Terminal(140).say(f"{word}: {why}")

@@ -33,8 +33,11 @@ def site(
     results: Folder = FOLDER,
 ) -> None:
     """Write the results as a static site: lessons with moving pictures, tables, charts, engines in the page."""
-    from reports.site.build import Source, build
-    from reports.site.writing import refuse_strangers, write_site
+    from reports.grid.files import folder_for
+    from reports.site.build import build
+    from reports.site.serving import serve_folder, server
+    from reports.site.source import Source
+    from reports.site.writing import REMEDY, refuse_strangers, write_site
 
     if not 0 < port < 65536:
         raise BadInput(f"--port is {port}; give a number from 1 to 65535")
@@ -43,6 +46,9 @@ def site(
         command = with_folder("crosscheck report", results)
         raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
     refuse_strangers(output)
+    folder_for(output.absolute().parent, REMEDY)  # before anything is run
+    if serve:
+        server(Path(), port).server_close()
     console = Terminal(140)
     source = Source(
         pages=_texts(folder, "*.md"),
@@ -61,8 +67,6 @@ def site(
         print(f"crosscheck: {trouble}", file=sys.stderr)
     console.say(f"{len(files)} files written to {output}, {size / 1e6:.2f} MB when compressed; index.html is the first")
     if serve:
-        from reports.site.serving import serve_folder
-
         console.say(f"http://localhost:{port} shows it; Ctrl-C ends")
         serve_folder(output, port)
 

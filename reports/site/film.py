@@ -1,11 +1,13 @@
-"""A motion as a film: frames drawn by matplotlib, written as GIF by pillow, or as MP4 where ffmpeg is installed."""
+"""A motion as a film: frames drawn by matplotlib, written as GIF by pillow, or as MP4 by ffmpeg where that is found."""
 
 from __future__ import annotations
 
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -28,8 +30,7 @@ DOTS = 90  # an inch
 
 def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
     """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and not there."""
-    if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
-        raise BadInput("--to mp4 needs the program ffmpeg, which is not installed; gif and svg need nothing")
+    program = ffmpeg() if path.suffix == ".mp4" else None
     frames = np.unique(np.linspace(0, len(shown.t) - 1, FRAMES).round().astype(int))
     rate = max(1, round(len(frames) / SECONDS))  # a whole number of frames a second, as films have
     with settings():
@@ -49,8 +50,24 @@ def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
             return [line for line, *_ in (*moving, *growing)]
 
         made = FuncAnimation(figure, lambda index: draw(int(frames[index])), frames=len(frames), blit=False)
-        writer = PillowWriter(fps=rate) if path.suffix == ".gif" else FFMpegWriter(fps=rate)
-        made.save(str(path), writer=writer, dpi=DOTS)
+        if program is None:
+            made.save(str(path), writer=PillowWriter(fps=rate), dpi=DOTS)
+        else:
+            with rc_context({"animation.ffmpeg_path": program}):
+                made.save(str(path), writer=FFMpegWriter(fps=rate), dpi=DOTS)
+
+
+def ffmpeg() -> str:
+    """The program that writes MP4: as installed, or that of the package imageio-ffmpeg. Raises BadInput."""
+    found = shutil.which("ffmpeg")
+    if found is not None:
+        return found
+    try:
+        return str(import_module("imageio_ffmpeg").get_ffmpeg_exe())
+    except (ImportError, RuntimeError):
+        raise BadInput(
+            "--to mp4 needs the program ffmpeg: install it, or `pip install imageio-ffmpeg`; gif and svg need nothing"
+        ) from None
 
 
 def _stage(panel: Axes, shown: Shown, theme: Theme) -> list[tuple[Line2D, Array, Array]]:

@@ -88,7 +88,7 @@ SLIDER_CRANK = (
         "let go",
         FreeSliderCrank(),
         (50, 100, 200, 400, 1000, 2000, 4000),
-        100,
+        50,
         3,
         (
             Slider("crank", "crank [m]", (0.15, 0.3, 0.45, 0.6)),
