@@ -72,7 +72,8 @@ def _nothing_hangs(request: pytest.FixtureRequest):
         yield
         return
     # What pytest captures would be lost with the process.
-    with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+    capture: Any = request.config.pluginmanager.getplugin("capturemanager")
+    with capture.global_and_fixture_disabled():
         plain = os.dup(2)
     faulthandler.register(signal.SIGPROF, file=plain, chain=True)  # and then the signal does what it always does
     signal.setitimer(signal.ITIMER_PROF, LONGEST)

@@ -10,12 +10,13 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
+from reference import outlines
 from reference.centrodes import Centrodes
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingOnCircle
-from reports.charts import drawings, outlines
+from reports.charts import drawings
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 from reports.charts.stroboscope import PALEST, Strip, outline, path, stroboscope
 from reports.charts.theme import LIGHT

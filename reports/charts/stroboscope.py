@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
+from reference.outlines import body_points
 from reference.scene import Scene
 from reports.charts.drawings import draw_ground
-from reports.charts.outlines import body_points
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 Array = NDArray[np.float64]

@@ -134,7 +134,7 @@ def _quoted(source: Source, part: str) -> str:
     """A part of CONTRIBUTING.md; where that is not there, a sentence that says so."""
     if not source.contributing:
         return "The steps stand in CONTRIBUTING.md of the checkout."
-    return markdown.section(source.contributing, part)
+    return markdown.section(source.contributing, part) or f"CONTRIBUTING.md has no part {part!r}."
 
 
 def _assets() -> list[Path]:

@@ -37,8 +37,10 @@ def lesson_page(
         more = None
         if step.section is not None and f"{step.section[0]}.md" in source.pages:
             page, part = step.section
-            body = quoted(markdown.section(source.pages[f"{page}.md"], part))
-            more = {"heading": part, "href": f"../results/{page}.html#{markdown.slug(part)}", "body": body}
+            text_there = markdown.section(source.pages[f"{page}.md"], part)
+            if text_there is not None:  # a page made of few rows lacks some parts
+                href = f"../results/{page}.html#{markdown.slug(part)}"
+                more = {"heading": part, "href": href, "body": quoted(text_there)}
         steps.append(
             {
                 "number": index + 1,

@@ -72,8 +72,8 @@ def title(text: str) -> str:
     return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
 
 
-def section(text: str, heading: str) -> str:
-    """The part of a Markdown page below a heading, up to the next of its rank. Raises ValueError if there is none."""
+def section(text: str, heading: str) -> str | None:
+    """The part of a Markdown page below a heading, up to the next of its rank; None on a page without that heading."""
     lines = text.splitlines()
     fenced = False
     start = rank = None
@@ -86,7 +86,7 @@ def section(text: str, heading: str) -> str:
         elif found and start is not None and rank is not None and len(found[1]) <= rank:
             return "\n".join(lines[start:index]).strip()
     if start is None:
-        raise ValueError(f"no heading {heading!r} in this page")
+        return None
     return "\n".join(lines[start:]).strip()
 
 
