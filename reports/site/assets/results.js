@@ -52,7 +52,7 @@ function draw(rows) {
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: unit, tickFormat: ".0e", ticks: 5 },
           y: { type: "log", label: UNITS[y] ?? y, tickFormat: ".0e" },
-          color: { legend: true, scheme: "Tableau10" }, symbol: { legend: false },
+          color: { legend: true, scheme: "Tableau10" }, symbol: { legend: true },
           marks: [
             Plot.line(points, { x, y, z: "method", stroke: "method", sort: x, strokeOpacity: 0.6 }),
             Plot.dot(points, {
