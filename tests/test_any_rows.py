@@ -37,6 +37,7 @@ from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
 from reports.pages.page import Material, Page, no_words
 from reports.pages.pendulum.neighbours import Neighbours
+from reports.pages.published import acrobot, newton
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
@@ -298,6 +299,10 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
+        case newton.Newton():
+            values = {name: np.full(len(newton.STEPS), bound / 2) for name, bound in newton.BOUNDS.items()}
+        case acrobot.Acrobot():
+            values = dict.fromkeys(("drift", "rounded"), np.full(len(acrobot.STEPS), 1e-3))
         case Walk():
             values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
         case OpenWork():

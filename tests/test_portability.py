@@ -66,7 +66,7 @@ def test_without_fork_server_timers_and_most_signals_cells_end_in_the_same_outco
         "exit: aborted, the process ended by itself with exit status 3",
         "spin: timed out, did not end within 2 s of CPU time",
     ]
-    assert sorted(path.name for path in folder.iterdir()) == ["cells.sqlite", "script.py"]
+    assert sorted(path.name for path in folder.iterdir()) == ["cells.sqlite", "script.py", "truths"]
 
 
 def test_text_files_are_opened_with_their_encoding():

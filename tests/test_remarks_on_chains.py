@@ -105,8 +105,9 @@ def test_sweeps_on_a_heavy_tip() -> None:
     assert all(outcome in BROKEN for outcome in outcomes(found["mujoco extended, free, PGS"]))
     if rows := found.get(f"mujoco {pendulum_failures.PATIENT.variant}"):  # the newest of these cells
         assert comparable(rows) == [True]
-    for name in ("mujoco tuned", "mujoco extended, free, sparse Newton"):
-        assert comparable(found[name]) == [False, True, True]
+    assert comparable(found["mujoco tuned"]) == [False, True, True]
+    for name in ("mujoco extended", "mujoco extended, free, sparse Newton"):  # they divide a step that is too long
+        assert comparable(found[name]) == [True, True, True]
 
 
 def test_beyond_the_horizon_only_methods_of_higher_order_are_right_and_only_at_the_small_step() -> None:

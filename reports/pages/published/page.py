@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 from engines import Engine
@@ -59,7 +60,8 @@ def scored(rows: Iterable[Measurement], scene: Scene, engines: Iterable[Engine])
     found = []
     for engine in engines:
         mine = [row for row in own if (row.engine, row.variant) == (engine.name, engine.variant)]
-        within = [[row for row in mine if row.angle < tolerance and not _wrong(row)] for tolerance in TOLERANCES]
+        timed = [row for row in mine if isfinite(row.cpu) and not _wrong(row)]
+        within = [[row for row in timed if row.angle < tolerance] for tolerance in TOLERANCES]
         cheapest = tuple(min(rows, key=lambda row: row.cpu, default=None) for rows in within)
         found.append(Scored(cheapest, scene.duration, bool(mine)))
     return found
