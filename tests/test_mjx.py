@@ -27,6 +27,14 @@ def installed() -> None:
         pytest.skip(DEFAULT.missing)
 
 
+@pytest.fixture(autouse=True)
+def _programs_forgotten():
+    """After each test: JAX ends a process that has compiled some hundreds of programs by a segmentation fault."""
+    yield
+    if "jax" in sys.modules:
+        sys.modules["jax"].clear_caches()
+
+
 def test_what_c_code_would_have_to_run_is_refused():
     for name in ("sleigh", "rolling_disc"):
         with pytest.raises(Unsupported, match="MJX does not run"):
