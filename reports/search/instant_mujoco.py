@@ -165,7 +165,7 @@ def _declared(
 
 
 def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
-    """By what angles [rad] and rates [rad/s] clocks are ahead of a drive; they begin at zero, and others are no matter."""
+    """By what angles [rad] and rates [rad/s] clocks are ahead of a drive; they begin at zero."""
     rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
     return data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
 
