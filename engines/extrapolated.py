@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Holder, Promise, Run, Size, Unpromised
-from engines.finer import Division, division, tells_itself
+from engines.finer import Division, Lasting, division, tells_itself
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -120,6 +120,14 @@ class Extrapolated(Valid):
     def step_cost(self, mechanism: Mechanism) -> float:
         """All steps of all levels [s]."""
         return sum(self.levels) * self.engine.step_cost(mechanism)
+
+    @validated
+    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
+        """The same in a motion of `duration` [s]: see `engines.finer.Lasting`."""
+        inner = self.engine
+        lasting = isinstance(inner, Lasting)
+        each = inner.step_cost_within(mechanism, duration) if lasting else inner.step_cost(mechanism)
+        return sum(self.levels) * each
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
