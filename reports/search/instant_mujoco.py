@@ -138,7 +138,8 @@ def _declared(
             # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
             give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
             continue
-        found = [number for number in waiting if _within(lines[number][seen], in_tree[own][:, seen])][: joint.size]
+        within = _within(lines[waiting][:, seen], in_tree[own][:, seen])
+        found = [number for number, inside in zip(waiting, within, strict=True) if inside][: joint.size]
         if len(found) < joint.size:
             raise Fault(f"MuJoCo has {len(found)} constraints for {joint.name!r}, not {joint.size}")
         waiting = [number for number in waiting if number not in found]
@@ -177,10 +178,10 @@ def _is_written(compiled: Any, equality: int) -> bool:
     return bool(compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT)
 
 
-def _within(line: Array, rows: Array) -> bool:
-    """Whether a row is a sum of these."""
-    left = line - rows.T @ np.linalg.lstsq(rows.T, line, rcond=None)[0]
-    return float(np.linalg.norm(left)) <= SAME_ROW * float(np.linalg.norm(line))
+def _within(lines: Array, rows: Array) -> NDArray[np.bool_]:
+    """Which of these lines (lines,) are sums of the rows."""
+    left = lines.T - rows.T @ np.linalg.lstsq(rows.T, lines.T, rcond=None)[0]
+    return np.linalg.norm(left, axis=0) <= SAME_ROW * np.linalg.norm(lines, axis=1)
 
 
 def _directions(model: Model, data: Any) -> Array:
