@@ -5,7 +5,10 @@ what differs from `mujoco` is the other implementation. What MuJoCo's adapter do
 contacts among it, has no place in a compiled program and is refused; so is what MJX itself does not run, in its words.
 
 MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. A loop is then pulled off its
-path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force.
+path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force. How far
+it is pulled is J-dot v over the row's stiffness, the inverse square of its time constant. So where that is tied to the
+step, the error falls with its square, though none is MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad
+off with two steps, as MuJoCo before 3.7 is, and 4.58e-3 rad with the five of our tuned variant.
 
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
 of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
