@@ -81,7 +81,7 @@ def _part(part: Part, whole: Whole, moving: bool) -> Part:
 
 
 def _link(link: Link, whole: Whole) -> Link:
-    """What is zero stays so: a drive at rest is held otherwise than one that turns. A gear's ratio belongs to a shape."""
+    """What is zero stays so: a drive at rest is held otherwise than one that turns. A ratio of gears is compiled in."""
     changed = replace(link, at=(whole(-6, 6), whole(-6, 6)))
     if link.turn:
         changed = replace(changed, turn=whole(-10, 10) or 1)

@@ -14,7 +14,17 @@ from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
-from reports.search import instant_mjx, instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_draw, relations
+from reports.search import (
+    instant_mjx,
+    instant_mujoco,
+    instant_pymunk,
+    mechanisms,
+    motions,
+    raw,
+    raw_draw,
+    raw_law,
+    relations,
+)
 from reports.search.law import Fault, NotAsked
 from reports.search.parts import EVERY, Recipe, as_text, from_text
 from reports.search.recipe import build
@@ -105,12 +115,12 @@ class Alone:
 
     def ask(self, case: raw.Model, number: int, oracles: Sequence[str]) -> Told:
         def instant() -> dict[str, tuple[float, float]]:
-            told = {"errors": raw.errors(case)} if not self.release else release(self.release).asked(case)
+            told = {"errors": raw_law.errors(case)} if not self.release else release(self.release).asked(case)
             if "raised" in told:
                 raise Fault(told["raised"])
             return {name: (error, LAW) for name, error in told["errors"].items()}
 
-        raw.judged(case)  # a case that is none is no fault
+        raw_law.judged(case)  # a case that is none is no fault
         return _asked({"instant": instant} if "instant" in oracles else {})
 
     def text(self, case: raw.Model) -> str:
