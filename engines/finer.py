@@ -96,10 +96,7 @@ def division(
         if same is mechanism and lasting == duration and known == method:
             return found
     begin = time.process_time()
-    if isinstance(method, Lasting):
-        cost = method.step_cost_within(mechanism, duration)
-    else:
-        cost = method.step_cost(mechanism)
+    cost = method.step_cost_within(mechanism, duration) if isinstance(method, Lasting) else method.step_cost(mechanism)
     steps = _found(build, mechanism, duration, order, finest, cost)
     found = Division(steps, time.process_time() - begin)
     _known.append((method, mechanism, duration, found))
