@@ -35,7 +35,7 @@ class Part:
     def of(cls, owner: str, usual: Any, given: Mapping[str, Any]) -> Part:
         """With arrays as they are given; raises InvalidMechanism for what is no number of its, or can't be one."""
         hints = typing.get_type_hints(type(usual), include_extras=True)
-        known = [] if isinstance(usual, Roll) else [name for name, value in usual.__dict__.items() if _is_number(value)]
+        known = [] if isinstance(usual, Roll) else [name for name, value in usual.__dict__.items() if is_number(value)]
         found: dict[str, Array] = {}
         for name, values in given.items():
             if name not in known:
@@ -72,7 +72,8 @@ class Part:
         return [_with(self.usual, dict(zip(self.differing, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a field of a joint or force is a number, or a vector of them."""
     return isinstance(value, float) or (isinstance(value, tuple) and all(isinstance(each, float) for each in value))
 
 
@@ -132,7 +133,7 @@ class Differing:
     def _wide(self, part: Part) -> Any:
         if isinstance(part.usual, Roll):
             return part.usual
-        numbers = {name: value for name, value in part.usual.__dict__.items() if _is_number(value)}
+        numbers = {name: value for name, value in part.usual.__dict__.items() if is_number(value)}
         count = len(self.gravity)
         return _with(
             part.usual,
