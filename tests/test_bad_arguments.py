@@ -44,6 +44,7 @@ NOT_MADE_BY_USERS = {
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
     *("engines.loading.Kind", "engines.entry_points.Registered", "engines.lagrange.batch.Batch"),
     *("engines.lagrange.compiled_run.Machine", "engines.lagrange.flat.Flat"),
+    *("engines.lagrange.differing.Differing", "engines.lagrange.differing.Part"),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),

@@ -129,5 +129,5 @@ def test_crosscheck_bench_judge_prints_truths_figures_and_factors(monkeypatch, c
     told = capsys.readouterr().out
     assert "the dearest truths" in told
     assert "four-bar: one evaluation" in told
-    assert "3 four-bars: stacking them" in told
+    assert "3 four-bars: making them" in told
     assert "factor [1]" in told

@@ -65,9 +65,9 @@ class Part:
         """That of every mechanism, unchecked."""
         if not self.differing:
             return [self.usual] * count
-        kinds = [tuple if values.ndim > 1 else float for values in self.differing.values()]
         columns = [
-            list(map(kind, values.tolist())) for kind, values in zip(kinds, self.differing.values(), strict=True)
+            [tuple(value) for value in values.tolist()] if values.ndim > 1 else values.tolist()
+            for values in self.differing.values()
         ]
         return [_with(self.usual, dict(zip(self.differing, row, strict=True))) for row in zip(*columns, strict=True)]
 
@@ -97,8 +97,11 @@ class Differing:
 
     def some(self, which: slice) -> Differing:
         """Some of the mechanisms."""
-        groups = ([part.some(which) for part in group] for group in (self.bodies, self.joints, self.forces))
-        return Differing(self.mechanism, *groups, self.gravity[which], self.pose[which], self.twist[which])
+        bodies, joints, forces = (
+            [part.some(which) for part in group] for group in (self.bodies, self.joints, self.forces)
+        )
+        rest = self.gravity[which], self.pose[which], self.twist[which]
+        return Differing(self.mechanism, bodies, joints, forces, *rest)
 
     def rates(self) -> list[Array | float]:
         """The right side of every row, as in `Mechanism.rate`: a number, or one of each mechanism."""
