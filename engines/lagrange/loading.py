@@ -24,7 +24,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from engines.lagrange import flat, rolls
+from engines.lagrange import flat, ordering, rolls
 
 SOURCES = Path(__file__).parent
 ENTRY = "engines.lagrange.compiled.entry"
@@ -57,7 +57,8 @@ def _digest(entry: str = ENTRY) -> str:
         each for folder in dict.fromkeys((SOURCES / "compiled", own)) for each in sorted(folder.glob("*.py"))
     ):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    constants = {(name, value) for part in (flat, rolls) for name, value in vars(part).items() if type(value) is int}
+    sources = flat, ordering, rolls
+    constants = {(name, value) for part in sources for name, value in vars(part).items() if type(value) is int}
     digest.update(repr(sorted(constants)).encode())
     return digest.hexdigest()[:16]
 
