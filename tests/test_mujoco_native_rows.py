@@ -84,7 +84,7 @@ def test_rows_that_are_not_known_are_left_to_python(monkeypatch: pytest.MonkeyPa
     sleigh = ChaplyginSleigh().mechanism()
     assert isinstance(callback(sleigh), Native)
     assert not isinstance(callback(RollingEllipse().mechanism()), Native)
-    monkeypatch.setattr(row_callback, "_numba", lambda: False)
+    monkeypatch.setattr(row_callback, "machine_code", lambda: False)
     assert not isinstance(callback(sleigh), Native)
 
 

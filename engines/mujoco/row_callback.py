@@ -47,7 +47,7 @@ class Native:
 
 def reserve_plan(spec: Any, tree: Tree, joints: Sequence[WrittenJoint]) -> None:
     """Room in the model for what the machine code has to know of it, where there may be such code."""
-    if _numba() and hasattr(spec, "add_numeric") and all(isinstance(joint.rows, Law) for joint in joints):
+    if machine_code() and hasattr(spec, "add_numeric") and all(isinstance(joint.rows, Law) for joint in joints):
         from engines.mujoco.native_rows import HEADER, JOINT, LINK
 
         room = HEADER + LINK * len(tree.links) + JOINT * len(joints)
@@ -99,5 +99,6 @@ def _agree(compiled: Any, native: Any, rows: Rows, first_row: int) -> bool:
 
 
 @cache
-def _numba() -> bool:
+def machine_code() -> bool:
+    """Whether there is numba, which makes it; it is not imported."""
     return find_spec("numba") is not None
