@@ -7,7 +7,8 @@ Jacobian, no islands, and a primal solver (Newton or CG): the dual one has built
 then.
 
 A row is written for the poses and twists of two bodies, J a = right, and is taken to the tree's coordinates here. Plain
-floats throughout: on rows this small, arrays cost more than the arithmetic.
+floats throughout: on rows this small, arrays cost more than the arithmetic. Where numba is there, machine code does the
+same (`engines.mujoco.row_callback`).
 """
 
 # pyright: reportAttributeAccessIssue=false
