@@ -81,9 +81,11 @@ def add_placeholders(spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impe
         )
 
 
-def scale_placeholders(compiled: Any, rows: Rows, softening: float) -> None:
-    """Make each row as soft as its own inverse inertia at the start says; the placeholder's knows nothing of it."""
-    data = mujoco.MjData(compiled)
+def scale_placeholders(compiled: Any, data: Any, rows: Rows, softening: float) -> None:
+    """Make each row as soft as its own inverse inertia at the start says; the placeholder's knows nothing of it.
+
+    `data`: a mujoco.MjData at the start, to work in.
+    """
     mujoco.mj_fwdPosition(compiled, data)
     flat, reference = rows(0.0, data.qpos.tolist(), data.qvel.tolist())
     jacobian = np.array(flat).reshape(len(reference), compiled.nv)
