@@ -42,7 +42,12 @@ NOT_MADE_BY_USERS = {
     *("engines.altered.Altered", "engines.contract.Size"),
     "engines.pymunk.contraction.Sweeping",
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
-    *("engines.loading.Kind", "engines.entry_points.Registered", "engines.lagrange.batch.Batch"),
+    *(
+        "engines.loading.Kind",
+        "engines.finer.Division",
+        "engines.entry_points.Registered",
+        "engines.lagrange.batch.Batch",
+    ),
     *("engines.lagrange.compiled_run.Machine", "engines.lagrange.flat.Flat"),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
