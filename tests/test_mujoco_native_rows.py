@@ -80,11 +80,20 @@ def test_a_motion_that_blows_up_is_told_alike() -> None:
     assert native.warnings == python.warnings
 
 
+def test_a_row_that_is_no_number_makes_the_reference_none() -> None:
+    model = ENGINE.model(ChaplyginSleigh().mechanism(), 1e-3)
+    data = mujoco.MjData(model.compiled)
+    data.qvel[:] = 1e200  # its square is beyond all numbers
+    with model.hooked():
+        mujoco.mj_forward(model.compiled, data)
+    assert np.isnan(data.efc_aref).all()
+
+
 def test_rows_that_are_not_known_are_left_to_python(monkeypatch: pytest.MonkeyPatch) -> None:
     sleigh = ChaplyginSleigh().mechanism()
     assert isinstance(callback(sleigh), Native)
     assert not isinstance(callback(RollingEllipse().mechanism()), Native)
-    monkeypatch.setattr(row_callback, "_numba", lambda: False)
+    monkeypatch.setattr(row_callback, "machine_code", lambda: False)
     assert not isinstance(callback(sleigh), Native)
 
 
