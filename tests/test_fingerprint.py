@@ -25,8 +25,8 @@ DISTRIBUTIONS = importlib.metadata.packages_distributions()
 
 def forget() -> None:
     """Files and versions are read once a process; here they change. What a text says of imports does not."""
-    for name, member in vars(fingerprint_module).items():
-        if hasattr(member, "cache_clear") and name != "_named_in":
+    for member in vars(fingerprint_module).values():
+        if hasattr(member, "cache_clear"):
             member.cache_clear()
 
 
