@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from engines import Softness
 from engines.mujoco import MuJoCo
-from engines.mujoco.joints.skate import STEPWISE
+from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
-from reference.joints import Drive, Skate
+from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
 from reports.search.law import Answer, Fault, NotAsked, constrained, difference, driving_force, force_difference
 
@@ -62,6 +62,7 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     with model.hooked():
         for sample, data in enumerate((start, run.data)):
             mujoco.mj_forward(model.compiled, data)
+            refine(model, data, engine.tolerance)
             here = Instant.of(mechanism, model, data, softness)
             found = {
                 "acceleration": here.missed(data.qacc),
@@ -80,6 +81,22 @@ def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> Non
     softness = engine.softness(mechanism, dt)
     if softness is not None and not softness.complete:
         raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
+
+
+def refine(model: Model, data: Any, tolerance: float) -> None:
+    """Let the solver go on, where what it left is within the tolerance that the engine declares: that is no fault.
+
+    The tolerance is told of the inertia without what only keeps a drive's rate.
+    """
+    compiled = model.compiled
+    left = np.empty(compiled.nv)
+    mujoco.mj_mulM(compiled, data, left, data.qacc)
+    left -= data.qfrc_smooth + data.qfrc_constraint
+    inertia = float((compiled.dof_M0 - compiled.dof_armature)[model.address].sum())
+    if np.linalg.norm(left) <= tolerance * inertia:
+        kept, compiled.opt.tolerance = compiled.opt.tolerance, min(compiled.opt.tolerance, ROUNDED**2)
+        mujoco.mj_forward(compiled, data)
+        compiled.opt.tolerance = kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,16 +195,26 @@ def _declared(
         clock = np.sum(lines[found][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
         give[own, own] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[found] + clock) / model.unit)))
         if softness is not None and _is_written(compiled, data.efc_id[found[0]]):
-            aimed[own] = -softness.stiffness * gap[own] - softness.damping * slip[own]  # a row that callbacks write
+            # A row that callbacks write; a skate's brings a damping of its own.
+            damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
+            aimed[own] = -softness.stiffness * gap[own] - damping * slip[own]
             stiffest = max(stiffest, softness.stiffness)
         else:  # each of MuJoCo's rows has a stiffness of its own
             stiffness, damping, impedance, _ = data.efc_KBIP[found].T
-            asked = -stiffness * impedance * (factors @ gap[own]) - damping * (factors @ slip[own])
+            # A clock is not quite where the rate would have it: forces accelerate even so large an inertia a little.
+            ahead, faster = (lines[found][:, beside] @ late for late in _clocks_ahead(joint, data, beside))
+            asked = -stiffness * impedance * (factors @ gap[own] + ahead) - damping * (factors @ slip[own] + faster)
             aimed[own] = np.linalg.solve(factors, asked)
             stiffest = max(stiffest, float(np.max(stiffness * impedance)))
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
     return give, aimed, solved, stiffest
+
+
+def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
+    """By what angles [rad] and rates [rad/s] clocks are ahead of a drive; they begin at zero."""
+    rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
+    return data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
 
 
 def _is_written(compiled: Any, equality: int) -> bool:
