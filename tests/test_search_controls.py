@@ -122,7 +122,8 @@ def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> No
     if registry.missing(engine):
         pytest.skip(registry.missing(engine))
     kinds = ("pin",) if kind in ("pin", "inertia") else ("pin", kind)
-    assert is_found(Altered(engine, planted(kind, SMALL)), kinds, 40, "motions")
+    # The first that shows it ends this; gears of Bullet are between bodies on the ground alone, so most are refused.
+    assert is_found(Altered(engine, planted(kind, SMALL)), kinds, 60, "motions")
     right = list(islice(asked(engine, kinds, 40, "motions"), 2))
     assert right
     assert not [told for told in right if told.faults]

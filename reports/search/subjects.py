@@ -71,7 +71,7 @@ class Adapted:
         return EVERY
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
-        if getattr(self.engine, "building", 0.0):  # seconds for a shape
+        if is_shaped(self):
             return of_a_shape(self.engine, seed, number, kinds, decades)
         return mechanisms.recipe(seed, number, kinds, decades)
 
@@ -79,7 +79,7 @@ class Adapted:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
         mechanism = build(case)
         asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
-            "instant": lambda: _instant(_at_an_instant(self.engine, mechanism), mechanism),
+            "instant": lambda: _instant(at_an_instant(self.engine, mechanism), mechanism),
             "relations": lambda: {
                 name: (error, relations.bound(self.engine))
                 for name, error in relations.errors(self.engine, case, number).items()
@@ -135,6 +135,11 @@ class Alone:
 Subject = Adapted | Alone
 
 
+def is_shaped(subject: Subject) -> bool:
+    """Whether its cases are of few shapes, since a model takes seconds to build."""
+    return isinstance(subject, Adapted) and getattr(subject.engine, "building", 0.0) > 0
+
+
 def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> Told:
     errors: dict[str, tuple[float, float]] = {}
     left, words = [], []
@@ -155,7 +160,7 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> 
     return Told(errors, tuple(left), "; ".join(words))
 
 
-def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:
+def at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:
     """The engine that is stepped in the end: inside of those that choose and combine. Raises NotAsked."""
     while not isinstance(engine, MuJoCo | Pymunk | Mjx | Box2D):
         if hasattr(engine, "chosen"):
