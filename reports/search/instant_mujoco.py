@@ -140,7 +140,8 @@ class Instant:
         """The accelerations (tree coordinates,) of the law."""
         _, _, coasting = _motion(self.model, self.data, np.zeros(self.model.compiled.nv))
         own = _directions(self.model, self.data)[:, self.model.address]
-        return np.linalg.lstsq(own, (self.law().motion - coasting).reshape(-1), rcond=None)[0]
+        told = np.linalg.lstsq(own, (self.law().motion - coasting).reshape(-1), rcond=None)[0]
+        return np.asarray(told, dtype=np.float64)
 
     def missed(self, accelerations: Array, law: Answer | None = None) -> float:
         """By what accelerations (nv,) miss the law, relative to the largest."""
