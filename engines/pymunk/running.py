@@ -251,7 +251,7 @@ class PymunkRun:
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        warnings = tuple(filter(None, (_unconverged(sweeping), recording.stopped)))
+        warnings = tuple(filter(None, (self._unconverged(sweeping), recording.stopped)))
         return Trajectory(t, pose, twist, reaction, stepping=planning + recording.stepping, warnings=warnings)
 
     def _start_reaction(self, sweeping: Sweeping) -> Array:
@@ -271,12 +271,15 @@ class PymunkRun:
             third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
 
-
-def _unconverged(sweeping: Sweeping) -> str:
-    if sweeping.gain < 1:
-        return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
-    if sweeping.unsettled > UNSETTLED:
-        return (
-            f"ours: the reactions at the start are not converged, {sweeping.unsettled:.0e} of the slowest mode is left"
-        )
-    return ""
+    def _unconverged(self, sweeping: Sweeping) -> str:
+        """What is to be said of the sweeps; nothing of a projection that `Pymunk.holder` tells, by the start alone."""
+        if sweeping.gain < 1:
+            return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
+        if sweeping.unsettled > UNSETTLED:
+            return (
+                "ours: the reactions at the start are not converged, "
+                f"{sweeping.unsettled:.0e} of the slowest mode is left"
+            )
+        if sweeping.projected and not self._swept(0.0).projected:
+            return "ours: velocities are projected after every step, as sweeps don't converge on a part of the way"
+        return ""

@@ -62,7 +62,7 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     with model.hooked():
         for sample, data in enumerate((start, run.data)):
             mujoco.mj_forward(model.compiled, data)
-            refine(model, data, engine.tolerance)
+            _refine(model, data, engine.tolerance)
             here = Instant.of(mechanism, model, data, softness)
             found = {
                 "acceleration": here.missed(data.qacc),
@@ -83,7 +83,7 @@ def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> Non
         raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
 
 
-def refine(model: Model, data: Any, tolerance: float) -> None:
+def _refine(model: Model, data: Any, tolerance: float) -> None:
     """Let the solver go on, where what it left is within the tolerance that the engine declares: that is no fault.
 
     The tolerance is told of the inertia without what only keeps a drive's rate.
@@ -192,7 +192,8 @@ def _declared(
             # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
             give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
             continue
-        found = [number for number in waiting if _within(lines[number][seen], in_tree[own][:, seen])][: joint.size]
+        within = _within(lines[waiting][:, seen], in_tree[own][:, seen])
+        found = [number for number, inside in zip(waiting, within, strict=True) if inside][: joint.size]
         if len(found) < joint.size:
             raise Fault(f"MuJoCo has {len(found)} constraints for {joint.name!r}, not {joint.size}")
         waiting, solved[own] = [number for number in waiting if number not in found], True
@@ -231,10 +232,10 @@ def _is_written(compiled: Any, equality: int) -> bool:
     return bool(compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT)
 
 
-def _within(line: Array, rows: Array) -> bool:
-    """Whether a row is a sum of these."""
-    left = line - rows.T @ np.linalg.lstsq(rows.T, line, rcond=None)[0]
-    return float(np.linalg.norm(left)) <= SAME_ROW * float(np.linalg.norm(line))
+def _within(lines: Array, rows: Array) -> NDArray[np.bool_]:
+    """Which of these lines (lines,) are sums of the rows."""
+    left = lines.T - rows.T @ np.linalg.lstsq(rows.T, lines.T, rcond=None)[0]
+    return np.linalg.norm(left, axis=0) <= SAME_ROW * np.linalg.norm(lines, axis=1)
 
 
 def _directions(model: Model, data: Any) -> Array:
