@@ -92,6 +92,7 @@ def division(
     run's own estimate tells the rest. So it is where a motion that a rough run seemed to follow is lost by a finer one:
     then it is no series in the step, at a singular position say, and still shorter steps are not tried.
     """
+    duration = float(f"{duration:.12g}")  # which runs at different steps round differently
     for known, same, lasting, found in _known:
         if same is mechanism and lasting == duration and known == method:
             return found

@@ -144,3 +144,12 @@ def test_pymunks_steps_cost_more_in_a_motion_that_meets_a_singular_position():
     assert engine.step_cost_within(own, scene.duration) > 20 * engine.step_cost(own)
     levels = sum(engine.levels)
     assert engine.step_cost_within(own, 0.1) == pytest.approx(levels * SETTLED.step_cost_within(own, 0.1))
+
+
+def test_durations_that_differ_by_rounding_are_one(monkeypatch):
+    own, duration = FreeFourBar().mechanism(), 0.3
+    assert duration != 3 * 0.1
+    asked: list[int] = []
+    monkeypatch.setattr("engines.pymunk.expected._poses", lambda *_: asked.append(1) or [])
+    assert SETTLED.sweeping(own, 3 * 0.1) == SETTLED.sweeping(own, duration)
+    assert asked == [1]
