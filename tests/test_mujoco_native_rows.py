@@ -36,7 +36,7 @@ def both(own: Mechanism, samples: int, every: int, dt: float = 1e-3) -> tuple[Tr
     """The same motion, its rows written by machine code and by Python."""
     native, python = ENGINE.build(own, dt), ENGINE.build(own, dt)
     hooks = python.model.hooks
-    plain = replace(hooks, control=tuple(each.python for each in hooks.control))
+    plain = replace(hooks, control=tuple(each.python for each in hooks.control if isinstance(each, Native)))
     return native(samples, every), replace(python, model=replace(python.model, hooks=plain))(samples, every)
 
 
