@@ -12,6 +12,7 @@
 4. `run(samples, every)` steps `samples * every` times and gives samples + 1 states, the first at t = 0. One shot: build
    again to repeat. Pose and twist belong to the same instant; reactions too, NaN where the engine can't tell.
 5. `Trajectory.stepping` is the CPU time of the stepping loop, recording included; reading it out afterwards is not.
+   Rough runs that plan it, by which a method chooses its steps or sweeps, are part of it.
 6. An engine that resets itself says when (`reset_at`), one that warns says so (`warnings`), one that estimates an error
    above what it claims says from when on (`unresolved_at`); all go on. A method without an estimate, such as a single
    run of documented settings, claims an order and no accuracy at a step: how wrong it is there, the report measures.

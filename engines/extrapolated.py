@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Holder, Promise, Run, Size, Unpromised
-from engines.finer import steps_for_one
+from engines.finer import Division, division, tells_itself
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -52,6 +53,7 @@ class Extrapolated(Valid):
     tells it. Two runs can't show it.
 
     `divides`: where a motion becomes faster than its start lets expect, all levels take more steps (`engines.finer`).
+    A run whose own estimate does not rule that out makes rough runs to find out; their time is part of its `stepping`.
 
     Raises ValueError for levels that are not rising whole numbers or powers that do not fit them.
     """
@@ -137,8 +139,15 @@ class Extrapolated(Valid):
             self,
             mechanism,
             dt,
-            lambda lasts: steps_for_one(plain, lambda own: plain.build(mechanism, own), mechanism, lasts, order),
+            lambda lasts: division(plain, lambda own: plain.build(mechanism, own), mechanism, lasts, order),
         )
+
+
+@runtime_checkable
+class Following(Protocol):
+    """A run that can make use of how the coarsest run of the same samples went, which is called before it."""
+
+    def follow(self, coarser: Trajectory) -> None: ...
 
 
 class ExtrapolatedRun:
@@ -149,7 +158,7 @@ class ExtrapolatedRun:
         method: Extrapolated,
         mechanism: Mechanism,
         dt: float,
-        divided: Callable[[float], int] | None = None,
+        divided: Callable[[float], Division] | None = None,
     ) -> None:
         """`divided` tells into how many steps each has to be divided in a motion of so many seconds."""
         self._method, self._mechanism, self._dt, self._divided = method, mechanism, dt, divided
@@ -164,14 +173,28 @@ class ExtrapolatedRun:
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        levels, powers = self._method.levels, self._method.powers
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True
-        finer = self._divided(samples * every * self._dt) if self._divided else 1
-        runs = self._runs if finer == 1 else self._built(finer)
-        every *= finer
-        parts = [run(samples, every * level) for run, level in zip(runs, levels, strict=True)]
+        found = self._combined(self._runs, samples, every)
+        order = self._method.powers[-1] + 1.0
+        if self._divided is None or tells_itself(found, self._mechanism, self._dt, order):
+            return found
+        needed = self._divided(samples * every * self._dt)
+        spent = found.stepping + needed.seconds
+        if needed.steps > 1:
+            found = self._combined(self._built(needed.steps), samples, every * needed.steps)
+            spent += found.stepping
+        return replace(found, stepping=spent)
+
+    def _combined(self, runs: Sequence[Run], samples: int, every: int) -> Trajectory:
+        """What the runs of all levels say, with `every` steps of the method between samples."""
+        levels, powers = self._method.levels, self._method.powers
+        parts: list[Trajectory] = []
+        for run, level in zip(runs, levels, strict=True):
+            if parts and isinstance(run, Following):
+                run.follow(parts[0])
+            parts.append(run(samples, every * level))
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")

@@ -3,13 +3,16 @@
 Near a singular position rates rise tenfold within a few steps, and no order of a method helps where its step is longer
 than what happens. A method that estimates its own error can know that before it runs: it makes a rough run, with steps
 of a fixed share of the mechanism's time scale, and asks it for its estimate. The answer is a number of the mechanism
-and the duration, not of the step that was asked for: so the method keeps its order, with a smaller factor.
+and the duration, not of the step that was asked for: so the method keeps its order, with a smaller factor. A run that
+is there already may tell as much by its own estimate and its order; then there is no rough run.
 """
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import ceil, isfinite
 from typing import Any
 
@@ -29,7 +32,27 @@ DEAREST = 1.0  # s, by the method's own `step_cost`: a rough run of long chains 
 USUAL, FAST, RESOLVED = 1e-6, 1e-5, 1e-3
 ROUGHER = 4  # times as many rough steps, until they are short enough
 
-_known: deque[tuple[Any, Mechanism, float, int]] = deque(maxlen=64)
+_known: deque[tuple[Any, Mechanism, float, Division]] = deque(maxlen=64)
+
+
+@dataclass(frozen=True)
+class Division:
+    """Into how many a step is to be divided, and the CPU time of the rough runs that told it [s], whenever they ran."""
+
+    steps: int
+    seconds: float
+
+
+@validated
+def tells_itself(run: Trajectory, mechanism: Mechanism, dt: Positive, order: Positive) -> bool:
+    """Whether a run with steps of dt [s] shows that its steps need no division, so that no rough run has to.
+
+    Its estimate, raised by the order to the rough steps where these are longer, is as small as that of usual motions.
+    """
+    duration = float(run.t[-1])
+    rough = duration / _rough_steps(mechanism, duration)
+    lost = _lost_in(run, mechanism) * mechanism.time_scale / duration
+    return lost * max(1.0, rough / dt) ** order <= USUAL
 
 
 @validated
@@ -41,17 +64,33 @@ def steps_for_one(
     order: Positive,
     finest: Count = 16,
 ) -> int:
+    """`division` without what it took."""
+    return division(method, build, mechanism, duration, order, finest).steps
+
+
+@validated
+def division(
+    method: Engine,
+    build: Callable[[float], Run],
+    mechanism: Mechanism,
+    duration: Positive,
+    order: Positive,
+    finest: Count = 16,
+) -> Division:
     """Into how many a step has to be divided in a motion of `duration` [s]; 1 for nearly all mechanisms.
 
     `build(dt)` makes a run of the method as it is, whose estimate falls with this order of its step. `method` is what
     the answer is kept by, together with the mechanism. Where even `finest` times as many rough steps resolve nothing,
     or a motion is so long, or a step so dear, that a rough run would take as long as a fine one, the answer is 1: the
-    run's own estimate tells the rest.
+    run's own estimate tells the rest. So it is where a motion that a rough run seemed to follow is lost by a finer one:
+    then it is no series in the step, at a singular position say, and still shorter steps are not tried.
     """
     for known, same, lasting, found in _known:
         if same is mechanism and lasting == duration and known == method:
             return found
-    found = _found(build, mechanism, duration, order, finest, method.step_cost(mechanism))
+    begin = time.process_time()
+    steps = _found(build, mechanism, duration, order, finest, method.step_cost(mechanism))
+    found = Division(steps, time.process_time() - begin)
     _known.append((method, mechanism, duration, found))
     return found
 
@@ -59,29 +98,39 @@ def steps_for_one(
 def _found(
     build: Callable[[float], Run], mechanism: Mechanism, duration: float, order: float, finest: int, cost: float
 ) -> int:
-    steps = max(FEWEST, ceil(SHARE * duration / mechanism.time_scale))
+    steps = _rough_steps(mechanism, duration)
     if steps > MOST:
         return 1
-    every, finer = ceil(steps / SAMPLES), 1
+    every, finer, before = ceil(steps / SAMPLES), 1, np.inf
     while finer <= finest and finer * steps * cost <= DEAREST:
         lost = _lost(build, mechanism, duration, every * finer) * mechanism.time_scale / duration
         if finer == 1 and lost <= USUAL:
             return 1
         if finer > 1 and lost <= RESOLVED:
             return ceil(finer * (lost / USUAL) ** (1 / order)) if lost * finer**order > FAST else 1
-        finer *= ROUGHER
+        if before < 1 < lost:
+            return 1
+        finer, before = ROUGHER * finer, lost
     return 1
+
+
+def _rough_steps(mechanism: Mechanism, duration: float) -> int:
+    return max(FEWEST, ceil(SHARE * duration / mechanism.time_scale))
 
 
 def _lost(build: Callable[[float], Run], mechanism: Mechanism, duration: float, every: Count) -> float:
     """The largest estimate of a run with so many steps between samples, in radians or lengths; infinite if lost."""
     try:
         with np.errstate(all="ignore"):
-            run: Trajectory = build(duration / SAMPLES / every)(SAMPLES, every)
+            return _lost_in(build(duration / SAMPLES / every)(SAMPLES, every), mechanism)
     except (Unsupported, ValueError, ArithmeticError):
         return np.inf
+
+
+def _lost_in(run: Trajectory, mechanism: Mechanism) -> float:
     if run.estimate is None or run.reset_at is not None:
         return np.inf
     size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-    lost = float((run.estimate / size).max())
+    with np.errstate(all="ignore"):
+        lost = float((run.estimate / size).max())
     return lost if isfinite(lost) else np.inf

@@ -30,6 +30,9 @@ COARSEST = 2 * math.pi / 256
 FINEST = 2 * math.pi / 2**17  # beyond, a table would be larger than the number of its uses
 BLOCK = 16  # cells that are laid together
 EXAMINED = np.arange(-32, 32, 4)  # cells that tell how wide a cell may be, from that of the start
+# Where contacts are taken, in halves of a cell from its middle: there and at the nodes; and where they are compared.
+SAMPLED = np.append(0.0, np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES))
+BETWEEN = np.cos(math.pi * np.arange(NODES + 1) / NODES)
 # Of the largest P'' nearby: a few roundings of a contact.
 ROUNDING = 1e-14
 # A table that misses more than this falls back on exact contacts, which cost about a hundred times as much.
@@ -264,16 +267,21 @@ class Table:
 
     def _fitted(self, index: NDArray[np.int_]) -> NDArray[np.complex128]:
         """(cells, 20): the middle of each cell, P and P' there, and the coefficients of P'', P' and P."""
-        middle, half = np.asarray((index + 0.5) * self._width, dtype=float), 0.5 * self._width
-        node = np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES)
-        place, first, second = _contacts(self._rolling, np.append(middle, middle[:, None] + half * node))
-        count, power = len(middle), np.arange(NODES)
-        powers = np.linalg.inv(np.vander(node, increasing=True)) / half ** power[:, None]
-        bend = second[count:].reshape(count, NODES) @ powers.T
+        return self._through(index, _contacts(self._rolling, self._at(index, SAMPLED)))
+
+    def _at(self, index: NDArray[np.int_], part: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(cells, parts): rotations at these parts of half a cell's width from the middles of the cells."""
+        return np.asarray((index[:, None] + 0.5) * self._width + 0.5 * self._width * part, dtype=float)
+
+    def _through(self, index: NDArray[np.int_], contacts: tuple[NDArray[np.complex128], ...]) -> NDArray[np.complex128]:
+        """`_fitted` through contacts (cells, 1 + NODES or more) at the parts SAMPLED of each cell."""
+        place, first, second = contacts
+        power = np.arange(NODES)
+        powers = np.linalg.inv(np.vander(SAMPLED[1:], increasing=True)) / (0.5 * self._width) ** power[:, None]
+        bend = second[:, 1 : 1 + NODES] @ powers.T
         once = bend / (power + 1)
-        return np.column_stack(
-            [middle.astype(complex), place[:count], first[:count], bend, once[:, 1:], once / (power + 2)]
-        )
+        middle = ((index + 0.5) * self._width).astype(complex)
+        return np.column_stack([middle, place[:, 0], first[:, 0], bend, once[:, 1:], once / (power + 2)])
 
     def _error(self) -> float:
         """How far cells about the start miss P'' half way between their nodes, in parts of the largest P''."""
@@ -281,10 +289,9 @@ class Table:
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):
             return math.inf
-        cells = self._fitted(around[inside])
-        node = np.cos(math.pi * np.arange(NODES + 1) / NODES)
-        theta = cells[:, :1].real + 0.5 * self._width * node
-        exact = _contacts(self._rolling, theta)[2]
-        u = theta - cells[:, :1].real
+        # One search for all contacts: its rounds cost nearly the same for many as for few.
+        contacts = _contacts(self._rolling, self._at(around[inside], np.append(SAMPLED, BETWEEN)))
+        cells, exact = self._through(around[inside], contacts), contacts[2][:, 1 + NODES :]
+        u = 0.5 * self._width * BETWEEN
         fitted = sum(cells[:, 3 + k, None] * u**k for k in range(NODES))
         return float(np.abs(fitted - exact).max() / np.abs(exact).max())

@@ -236,9 +236,16 @@ class Mechanism(Valid):
         A skate takes a freedom of velocity and none of configuration; a drive takes one of both. Dense linear algebra,
         O(bodies^3): raises InvalidMechanism where the rows take more than LARGEST_RANK.
         """
+        return self._freedoms_at_start if pose is None else self._freedoms(pose)
+
+    @cached_property
+    def _freedoms_at_start(self) -> tuple[int, int]:
+        return self._freedoms(self.pose)
+
+    def _freedoms(self, pose: Floats) -> tuple[int, int]:
         shape = (self.row_count, 3 * len(self.bodies))
         require_room("mechanism: the rank of rows", shape, largest=LARGEST_RANK)
-        rows = self.rows(self.pose if pose is None else pose)
+        rows = self.rows(pose)
         coordinates = rows.shape[-1]
         length = self.length_scale
         return coordinates - rank(rows[self.holonomic], length), coordinates - rank(rows, length)

@@ -20,10 +20,15 @@ RANK_TOLERANCE = 1e-9
 
 def rank(rows: Array, length: float) -> int:
     """How many rows (rows, 3 bodies) are independent, whatever the unit: angles are counted as arcs of `length` [m]."""
+    return int(ranks(rows, np.asarray(length)))
+
+
+def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
+    """`rank` of many (...) at once, of rows (..., rows, 3 bodies) and lengths (...) [m]."""
     if rows.size == 0:
-        return 0
+        return np.zeros(rows.shape[:-2], dtype=int)
     singular = np.linalg.svd(_unitless(rows, length), compute_uv=False)
-    return int(np.sum(singular > RANK_TOLERANCE * max(singular[0], np.finfo(float).tiny)))
+    return np.sum(singular > RANK_TOLERANCE * np.maximum(singular[..., :1], np.finfo(float).tiny), axis=-1)
 
 
 def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
@@ -39,8 +44,9 @@ def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
     return np.sqrt(np.sum(np.where(idle[..., None], right**2, 0.0), axis=-2)) > RANK_TOLERANCE
 
 
-def _unitless(rows: Array, length: float) -> Array:
-    scaled = rows / np.tile([1.0, 1.0, length], rows.shape[-1] // 3)
+def _unitless(rows: Array, length: float | Array) -> Array:
+    arc = np.asarray(length)[..., None, None]
+    scaled = rows / np.where(np.arange(rows.shape[-1]) % 3 == 2, arc, 1.0)
     norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
     return scaled / np.where(norm > 0, norm, 1.0)
 

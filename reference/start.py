@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reference.validation import InvalidMechanism
 
 if TYPE_CHECKING:
     from reference.mechanism import Mechanism
 
+Array = NDArray[np.float64]
 # A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
 # rounding, far below a mistake.
 START_TOLERANCE = 1e-9
@@ -35,21 +37,36 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
 def _refuse_open_joints(mechanism: Mechanism) -> None:
     if not mechanism.joints:
         return
-    gap = np.nan_to_num(np.abs(mechanism.gap(mechanism.pose, 0.0)))
-    slip = np.abs(mechanism.slip(mechanism.pose, mechanism.twist))
-    size = mechanism.length_scale
-    place, turn = (float(np.abs(part).max()) for part in (mechanism.pose[:, :2], mechanism.pose[:, 2]))
-    speed = float(np.abs(mechanism.twist[:, :2]).max()) + size * float(np.abs(mechanism.twist[:, 2]).max())
+    gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(mechanism.pose, mechanism.twist)
+    size = np.asarray(mechanism.length_scale)
+    sentence = open_joint(mechanism, gap, slip, mechanism.pose, mechanism.twist, size)
+    if sentence is not None:
+        raise InvalidMechanism(f"mechanism: {sentence}")
+
+
+def open_joint(
+    mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: Array, begin: int = 0
+) -> str | None:
+    """What is wrong with the start of one mechanism, or of the worst of many of its shape; None if nothing is.
+
+    gap, slip (..., rows); pose, twist (..., bodies, 3); size (...) [m], of many in one line; `begin`: the number of the
+    first of many.
+    """
+    place, turn = np.abs(pose[..., :2]).max(axis=(-2, -1)), np.abs(pose[..., 2]).max(axis=-1)
+    speed = np.abs(twist[..., :2]).max(axis=(-2, -1)) + size * np.abs(twist[..., 2]).max(axis=-1)
     # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
     far = ROUNDINGS * np.finfo(float).eps
-    for value, (length, angle), (unit, angular), what in (
+    for missed, (length, angle), (unit, angular), what in (
         (gap, (START_TOLERANCE * size + far * place, START_TOLERANCE + far * turn), ("m", "rad"), "open by"),
         (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
     ):
-        allowed = np.where(mechanism.turning, angle, length)
-        worst = int(np.argmax(value - allowed))
+        value = np.nan_to_num(np.abs(missed))
+        allowed = np.where(mechanism.turning, angle[..., None], length[..., None])
+        worst = np.unravel_index(np.argmax(value - allowed), value.shape)
         if value[worst] > allowed[worst]:
-            raise InvalidMechanism(
-                f"mechanism: at t = 0 row {mechanism.row_names[worst]!r} is {what} {value[worst]:.3g} "
-                f"{angular if mechanism.turning[worst] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
+            row, which = worst[-1], "".join(f" of mechanism {begin + number}" for number in worst[:-1])
+            return (
+                f"at t = 0 row {mechanism.row_names[row]!r}{which} is {what} {value[worst]:.3g} "
+                f"{angular if mechanism.turning[row] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
             )
+    return None

@@ -45,7 +45,7 @@ def test_it_is_the_frequency_of_box2ds_pins_and_not_its_sweeps():
 
 
 def test_gains_explain_other_numbers_that_are_told_of_pinocchio():
-    """Gains of 100 and 20, and none: the numbers in engines/pinocchio.py."""
+    """Gains of 100 and 20, and none: the numbers in engines/pinocchio."""
     told = {("rk4", 0.0): 5.6e-9, ("rk4", 10.0): 1.55e-9, ("euler", 0.0): 0.0703, ("euler", 10.0): 0.0515}
     for key, error in told.items():
         assert miss(CORRECTED[key]) == pytest.approx(error, rel=0.02)

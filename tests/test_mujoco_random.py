@@ -19,10 +19,10 @@ from engines.mujoco.stiffness import Hardened
 from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reports.search.mechanisms import mechanism
+from reports.search.parts import EVERY
 from tests.present import present
 
 DURATION, STEP, SAMPLES = 0.2, 1e-3, 2
-EVERY = round(DURATION / SAMPLES / STEP)
 # Contacts of curves that are not round cost the judge a hundred times as much as the other rows: they are the fewest.
 HELD = ("pin", "slot", "skate", "drive")
 ALL = (*HELD, "roll")
@@ -40,6 +40,7 @@ class Miss:
     estimate: float
     reaction: float
     warnings: tuple[str, ...]
+    unresolved: bool
 
 
 def miss(own: Mechanism, engine: MuJoCo = EXTENDED, step: float = STEP, divided: bool = True) -> Miss | None:
@@ -57,6 +58,7 @@ def miss(own: Mechanism, engine: MuJoCo = EXTENDED, step: float = STEP, divided:
         float(motion.estimate[..., 2].max()),
         float(np.abs(motion.reaction - truth.reaction).max() / max(np.abs(truth.reaction).max(), usual)),
         motion.warnings,
+        motion.unresolved_at is not None,
     )
 
 
@@ -81,6 +83,23 @@ def test_forty_random_mechanisms_move_as_they_should_to_1e_7() -> None:
 def test_two_thousand_random_mechanisms_move_as_they_should_to_1e_7() -> None:
     found = [miss(mechanism(12, number, HELD)) for number in range(1850)]
     assert_right(found + [miss(mechanism(13, number, ALL)) for number in range(150)])
+
+
+def test_twenty_mechanisms_of_all_kinds_are_right_or_say_that_they_are_not() -> None:
+    found = [one for one in (miss(mechanism(3, number, EVERY)) for number in range(120, 140)) if one is not None]
+    assert [one for one in found if not one.unresolved and one.angle > GOAL] == []
+    assert sum(not one.unresolved for one in found) > 15
+
+
+def test_an_error_above_the_claim_says_so_until_the_step_is_short() -> None:
+    own = mechanism(3, 134, EVERY)  # a torsion spring with a time scale of 16 ms
+    long, short = present(miss(own)), present(miss(own, step=2.5e-4))
+    assert GOAL < long.angle < long.estimate
+    assert long.unresolved
+    assert any("unresolved from 0.1 s on" in warning for warning in long.warnings)
+    assert short.angle < short.estimate < GOAL
+    assert not short.unresolved
+    assert short.warnings == ()
 
 
 def test_a_motion_that_becomes_fast_takes_more_steps() -> None:

@@ -7,6 +7,7 @@ import os
 import platform
 from importlib import metadata
 
+import pytest
 from rich.console import Console
 
 from reports.cli.terminal import print_table
@@ -16,7 +17,15 @@ from reports.text.rendering import foot
 from tests.toys import Toy
 
 
-def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
+@pytest.fixture
+def other_versions(monkeypatch):
+    """Versions are looked up once in a process: here they change, and are those of this installation afterwards."""
+    provenance._version.cache_clear()
+    yield monkeypatch
+    provenance._version.cache_clear()
+
+
+def test_the_versions_are_those_of_the_packages_they_stand_beside(other_versions):
     numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
 
     def version(name):
@@ -24,8 +33,8 @@ def test_the_versions_are_those_of_the_packages_they_stand_beside(monkeypatch):
             raise metadata.PackageNotFoundError(name)
         return numbers[name]
 
-    monkeypatch.setattr(metadata, "version", version)
-    monkeypatch.setattr(platform, "python_version", lambda: "3.99")
+    other_versions.setattr(metadata, "version", version)
+    other_versions.setattr(platform, "python_version", lambda: "3.99")
     assert versions() == (
         "Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed, numba not installed"
     )

@@ -23,7 +23,7 @@ from engines.pymunk import model as pymunk_model
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import raw, raw_draw
+from reports.search import raw, raw_draw, raw_law
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
@@ -59,7 +59,7 @@ def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, 
 
 def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
     for number in range(25):
-        assert raw.errors(raw_draw.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
+        assert raw_law.errors(raw_draw.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
 
 
 # ------------------------------------------------------------------------------------- mistakes put into adapters

@@ -153,13 +153,13 @@ def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
     return (
         np.append(1 / mechanism.inertias, ground),
         np.array(mechanism.gravity, dtype=float),
-        np.array([_parameters(joint) for joint in mechanism.joints], dtype=float).reshape(-1),
+        np.array([parameters(joint) for joint in mechanism.joints], dtype=float).reshape(-1),
         rate,
         unit,
         unit / time,
         np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
         *(np.zeros_like(rate),) * 4,
-        np.array([_force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
+        np.array([force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
         np.append(mechanism.pose, ground),
         np.append(mechanism.twist, ground),
     )
@@ -227,7 +227,7 @@ def _products(bodies: Integers, count: int) -> tuple[Integers, Integers, Integer
     return start, offset, np.array(terms, dtype=np.int64).reshape(-1, TERM)
 
 
-def _parameters(joint: Joint) -> tuple[float, ...]:
+def parameters(joint: Joint) -> tuple[float, ...]:
     match joint:
         case Pin():
             return (*joint.first_point, *joint.second_point, 0.0, 0.0, 0.0)
@@ -246,7 +246,7 @@ def _parameters(joint: Joint) -> tuple[float, ...]:
     return (0.0,) * PARAMETERS
 
 
-def _force_parameters(force: ForceElement) -> tuple[float, ...]:
+def force_parameters(force: ForceElement) -> tuple[float, ...]:
     match force:
         case Spring():
             return (*force.first_point, *force.second_point, force.stiffness, force.rest_length)

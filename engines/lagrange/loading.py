@@ -27,6 +27,7 @@ from typing import Any
 from engines.lagrange import flat, rolls
 
 SOURCES = Path(__file__).parent
+ENTRY = "engines.lagrange.compiled.entry"
 READY = "ready"  # a file that says that all is compiled
 
 
@@ -37,21 +38,24 @@ def installed() -> bool:
 
 
 @cache
-def compiled() -> Callable[..., int]:
-    """`compiled.entry.run`. Raises ImportError without numba."""
-    folder = _folder()
+def compiled(entry: str = ENTRY) -> Callable[..., int]:
+    """`run` of `compiled.entry`, or of another engine's that uses the same code. Raises ImportError without numba."""
+    folder = _folder(entry)
     with _alone(folder), _kept_in(folder):
-        run = import_module("engines.lagrange.compiled.entry").run
+        run = import_module(entry).run
         if folder is not None:
             with contextlib.suppress(OSError):  # a full disk: the next process compiles again
                 (folder / READY).touch()
     return run
 
 
-def _digest() -> str:
+def _digest(entry: str = ENTRY) -> str:
     """Of the sources of the compiled code, and of the constants that it takes from elsewhere."""
     digest = hashlib.sha256()
-    for source in sorted((SOURCES / "compiled").glob("*.py")):
+    own = SOURCES.parent.joinpath(*entry.split(".")[1:-1])
+    for source in (
+        each for folder in dict.fromkeys((SOURCES / "compiled", own)) for each in sorted(folder.glob("*.py"))
+    ):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     constants = {(name, value) for part in (flat, rolls) for name, value in vars(part).items() if type(value) is int}
     digest.update(repr(sorted(constants)).encode())
@@ -62,13 +66,13 @@ def _beside() -> Path:
     return SOURCES / "__pycache__"
 
 
-def _folder() -> Path | None:
+def _folder(entry: str = ENTRY) -> Path | None:
     """Where compiled code is kept, made if need be; None if nowhere can be written to."""
     named = os.environ.get("NUMBA_CACHE_DIR")
     users = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     places = [Path(named)] if named else [_beside(), Path(users) / "planar-crosscheck"]
     for place in places:
-        folder = place / f"lagrange-{_digest()}"
+        folder = place / f"{entry.split('.')[1]}-{_digest(entry)}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()

@@ -62,8 +62,8 @@ class Windows:
         first, count = int(self._records[which, 1]), int(self._records[which, 2])
         if first <= wanted < first + count:  # it was there, so it is a cell without numbers
             return False
-        about = max(BLOCK, math.ceil(math.pi / table.width / BLOCK) * BLOCK) if count == 0 else count
-        about = min(about, MOST_CELLS // 2)
+        # A block on either side at first, then twice as far each time: cells take longer to make than short motions do.
+        about = min(max(BLOCK, count), MOST_CELLS // 2)
         low, high = wanted - about, wanted + about
         if count and high - low + count <= MOST_CELLS:
             low, high = min(low, first), max(high, first + count)

@@ -43,15 +43,16 @@ class MuJoCo(Valid):
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
     coordinates and makes every pin a constraint. `drive`: a driven joint turns steadily because nothing can accelerate
-    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature, and
-    beyond 1e8 the Newton solver needs a tolerance near 1e-15 or it stops too early); or by a velocity servo of
-    `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver is not told
-    ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this order, and
-    the first that solves it is taken. `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see
-    `engines.mujoco.joints.skate`; `euler_for_skates`: rows that change once a step are stepped by Euler, whatever
-    the integrator otherwise, since four stages of the same stale row cost more and gain nothing. `estimates`: a
-    second run with half as many steps tells the error of the first, if that falls with the fourth power of the
-    step, and a motion that becomes faster than its start lets expect takes more steps (`engines.finer`).
+    it, with `armature` times the mechanism's own inertia ("inertia"; the rate is missed by about 0.1 / armature); or by
+    a velocity servo of `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver
+    is not told ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this
+    order, and the first that solves it is taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
+    `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see `engines.mujoco.joints.skate`;
+    `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the integrator otherwise, since four
+    stages of the same stale row cost more and gain nothing. `estimates`: a second run with half as many steps tells
+    the error of the first, if that falls with the fourth power of the step; where it is above what is claimed
+    (`engines.mujoco.theory.claimed`), the run says so; and a motion that becomes faster than its start lets expect
+    takes more steps (`engines.finer`).
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 

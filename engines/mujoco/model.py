@@ -25,17 +25,10 @@ from engines.mujoco.joints.roll import RollBy
 from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
+from engines.mujoco.row_callback import reserve_plan, row_callback
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.written_model import Written, new_specification
-from engines.mujoco.written_rows import (
-    add_placeholders,
-    equality_rows,
-    installed,
-    row_writer,
-    scale_placeholders,
-    writing,
-    writing_free,
-)
+from engines.mujoco.written_rows import add_placeholders, installed
 from engines.tree import Tree, spanning_tree
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -152,20 +145,18 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         settings.rolls.add(building, rolling)
     # The placeholders come last: what stands before them in the solver is then known.
     add_placeholders(spec, tree, building.written, settings.stiffness.impedance)
+    if building.written:
+        reserve_plan(spec, tree, building.written)
     compiled = _compiled(building)
     places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
     steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]
-    _scale_tolerance_by_true_inertia(compiled, steady)
+    _scale_tolerance_by_free_inertia(compiled, steady)
     for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
         scale[:] *= settings.stiffness.softening  # connects, joints, tendons
     hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
-    written = sum(joint.size for joint in building.written)
     if building.written:
-        rows = row_writer(tree, places, building.written, compiled.nv)
-        scale_placeholders(compiled, rows, settings.stiffness.softening)
-        before = equality_rows(compiled) - written
-        short = writing_free(tree, places, building.written, before, compiled.nv)
-        hooks += Hooks(control=(short or writing(rows, before, compiled.nv),))
+        write = row_callback(compiled, tree, places, building.written, settings.stiffness.softening)
+        hooks += Hooks(control=(write,))
     rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
     return Model(
         whole,
@@ -175,7 +166,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         driven,
         settings.drive,
         hooks,
-        building.size + written,
+        building.size + sum(joint.size for joint in building.written),
         building.writes,
         rates,
         unit,
@@ -254,9 +245,13 @@ def _add_bodies(spec: Any, tree: Tree) -> None:
             added.add_joint(name=f"coordinate {link.rotation}", type=hinge, axis=[0.0, 0.0, 1.0], pos=anchor)
 
 
-def _scale_tolerance_by_true_inertia(compiled: Any, driven: list[int]) -> None:
-    """MuJoCo measures its solver's tolerance by the mean inertia, which a driven armature would make useless."""
-    if not driven:
-        return
-    free = [index for index in range(compiled.nv) if index not in driven]
-    compiled.stat.meaninertia = float(compiled.dof_M0[free].mean()) if free else 1.0
+def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
+    """Ask of the solver what its tolerance asks where nothing is driven; `steady`: what nothing can accelerate.
+
+    MuJoCo measures its tolerance by the sum of the inertias on the diagonal of M: that of the start up to 3.12, that of
+    the step in 4.0.1 (`mj_solPrimal` in MuJoCo's engine_solver.c), which heeds no `stat.meaninertia`. An armature of
+    1e8 in it would let a solver that is wrong by all of an acceleration end at once.
+    """
+    free = np.delete(compiled.dof_M0, steady)
+    if steady and len(free):
+        compiled.opt.tolerance *= float(free.sum() / compiled.dof_M0.sum())

@@ -22,6 +22,7 @@ from engines.mujoco.joints.roll.roll_warnings import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
+from engines.mujoco.theory import claimed, seen_order
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
 
@@ -107,14 +108,17 @@ class MuJoCoRun:
         warnings += marks()
         warnings += roll_warnings(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
         estimate = self._estimate(samples, every, pose)
-        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at, estimate)
+        unresolved_at = None if estimate is None else self._unresolved_at(t, estimate)
+        if unresolved_at is not None:
+            warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim")
+        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at, estimate, unresolved_at)
 
     def _estimate(self, samples: int, every: int, pose: Array) -> Array | None:
         """What a run of half as many steps says of the error of these poses; NaN where that run is lost.
 
         Richardson's: RK4's error falls with the fourth power of the step, and that of soft rows with their compliance.
-        What hard rows lose in rounding falls with neither: a small difference counts in full. None where samples are
-        one step apart.
+        What hard rows lose in rounding falls with neither, and the order is not seen where steps are long: a small
+        difference counts in full, and so does each with long steps. None where samples are one step apart.
         """
         if self.other is None or every < 2:
             return None
@@ -129,9 +133,20 @@ class MuJoCoRun:
         coarse, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
         if complaints.reset_at is not None:
             return np.full_like(pose, np.nan)
-        length = self.model.mechanism.length_scale
         apart = np.abs(coarse - pose)
-        return np.maximum(apart / (ratio**4 - 1), np.minimum(apart, ROUNDED * np.array([length, length, 1.0])))
+        order = seen_order(self.model.mechanism, self.model.compiled.opt.timestep)
+        return np.maximum(apart / (ratio**order - 1), np.minimum(apart, ROUNDED * self._sizes))
+
+    def _unresolved_at(self, t: Array, estimate: Array) -> float | None:
+        """From when on [s] its estimate is not below what it claims."""
+        largest = np.max(estimate / self._sizes, axis=(1, 2))
+        return _first(t, ~(largest <= claimed(self.model.mechanism, self.model.compiled.opt.timestep, t)))
+
+    @property
+    def _sizes(self) -> Array:
+        """What differences of poses are measured by [m, m, rad]."""
+        length = self.model.mechanism.length_scale
+        return np.array([length, length, 1.0])
 
     def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:
         """(samples + 1, ...) positions, velocities and clock, as MuJoCo orders them, and the loop's CPU seconds."""

@@ -91,13 +91,14 @@ def ease(model: Model, softening: float) -> None:
     `softening` is by how much they are harder than as shipped. A compliance of 1e-12 of a row's own inverse inertia is
     too little where a light body carries a heavy one. Other solvers, which build no such matrix, keep what they have.
     """
-    compiled = model.compiled
-    if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, model.start()) < SOLVED:
+    compiled, start = model.compiled, model.start()
+    if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, start) < SOLVED:
         return
-    while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, model.start()) > LOST:
+    while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, start) > LOST:
         softening *= 10
         for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
             scale[:] *= 10
+        start = model.start()
 
 
 def choose_solver(model: Model, solvers: Sequence[str]) -> None:

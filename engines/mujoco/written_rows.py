@@ -16,7 +16,7 @@ floats throughout: on rows this small, arrays cost more than the arithmetic.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -24,6 +24,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from engines.mujoco.chain_motion import RESTING, ancestry, columns_of, kinematics
 from engines.tree import Tree
 
 # x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]; the ground's are all zero. Angles are never wrapped.
@@ -33,6 +34,20 @@ Row = tuple[float, float, float, float, float, float, float]
 GROUND: State = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 Rows = Callable[[float, list[float], list[float]], tuple[list[float], list[float]]]
+
+
+@dataclass(frozen=True)
+class Law:
+    """What one row is at a time and for two bodies' states: `row(numbers, first, second)`, plain arithmetic.
+
+    `engines.mujoco.native_rows` compiles the same function.
+    """
+
+    row: Callable[[Any, State, State], Row]
+    numbers: tuple[float, ...]
+
+    def __call__(self, _t: float, first: State, second: State) -> tuple[Row]:
+        return (self.row(self.numbers, first, second),)
 
 
 @dataclass(frozen=True)
@@ -90,7 +105,7 @@ def equality_rows(compiled: Any, before: int | None = None) -> int:
 def chain(tree: Tree, joint: WrittenJoint) -> list[int]:
     """The tree coordinates that can move the joint, ascending."""
     bodies = [body for body in (joint.first, joint.second) if body is not None]
-    return sorted(column for index in _ancestry(tree, bodies) for column in tree.links[index].columns)
+    return sorted(column for index in ancestry(tree, bodies) for column in tree.links[index].columns)
 
 
 def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], width: int) -> Rows:
@@ -98,21 +113,21 @@ def row_writer(tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint
 
     `address` is where each tree coordinate stands in qpos and in qvel, and `width` the length of qvel.
     """
-    needed = _ancestry(tree, [body for joint in joints for body in (joint.first, joint.second) if body is not None])
+    needed = ancestry(tree, [body for joint in joints for body in (joint.first, joint.second) if body is not None])
     place: dict[int | None, int] = {tree.links[index].body: own for own, index in enumerate(needed)}
     place[None] = -1  # the ground stands last, and rests
-    steps = [_kinematics(tree, index, address, place) for index in needed]
+    steps = [kinematics(tree, index, address, place) for index in needed]
     bodies = tree.mechanism.pose.tolist()
-    start = [(0.0,) * 12] * (len(needed) + 1)
+    start = [RESTING] * (len(needed) + 1)
     plan = []
     for joint in joints:
         ends = []
         for body, offset in ((joint.first, 0), (joint.second, 3)):
             if body is not None:
-                path = [place[tree.links[index].body] for index in _ancestry(tree, [body])]
+                path = [place[tree.links[index].body] for index in ancestry(tree, [body])]
                 ends.append((place[body], offset, path))
         plan.append((joint.rows, place[joint.first], place[joint.second], ends))
-    columns = [_columns(tree, index, address) for index in needed]
+    columns = [columns_of(tree, index, address) for index in needed]
     angles = [bodies[tree.links[index].body][2] for index in needed]
 
     def rows(t: float, q: list[float], v: list[float]) -> tuple[list[float], list[float]]:
@@ -208,93 +223,15 @@ def writing_free(
 def installed(
     control: Callable[[Any, Any], None] | None, passive: Callable[[Any, Any], None] | None = None
 ) -> Iterator[None]:
-    """Callbacks in place, MuJoCo's global ones as they were afterwards, whatever happens."""
+    """Callbacks in place, MuJoCo's global ones as they were afterwards, whatever happens.
+
+    One that has a form in machine code, `native`, is called in that form.
+    """
     before = mujoco.get_mjcb_control(), mujoco.get_mjcb_passive()
-    mujoco.set_mjcb_control(control)
+    mujoco.set_mjcb_control(getattr(control, "native", control))
     mujoco.set_mjcb_passive(passive)
     try:
         yield
     finally:
         mujoco.set_mjcb_control(before[0])
         mujoco.set_mjcb_passive(before[1])
-
-
-def _ancestry(tree: Tree, bodies: Sequence[int]) -> list[int]:
-    """Indices of the links of these bodies and of all that they hang on, parents before children."""
-    own = {link.body: index for index, link in enumerate(tree.links)}
-    wanted: set[int] = set()
-    for body in bodies:
-        at: int | None = body
-        while at is not None:
-            wanted.add(own[at])
-            at = tree.links[own[at]].parent
-    return sorted(wanted)
-
-
-def _columns(tree: Tree, index: int, address: Sequence[int]) -> tuple[int | None, int, int | None, int | None]:
-    """Where the link's slides in x and y, its slide along a slot, and its rotation stand in qvel."""
-    link = tree.links[index]
-    columns = [address[column] for column in link.columns]
-    if link.kind == "free":
-        return columns[0], columns[1], None, columns[2]
-    if link.kind == "hinge":
-        return None, 0, None, columns[0] if columns else None  # none: welded
-    return None, 0, columns[0], columns[1] if len(columns) > 1 else None
-
-
-def _kinematics(
-    tree: Tree, index: int, address: Sequence[int], place: Mapping[int | None, int]
-) -> Callable[..., tuple[float, ...]]:
-    """The link's motion from its parent's, as (x, y, turned, vx, vy, omega, ax, ay, px, py, dx, dy).
-
-    (ax, ay) is the acceleration of its centre of mass where no coordinate accelerates; (px, py) the point about which
-    its rotation turns it, (dx, dy) the direction of its slide.
-    """
-    link = tree.links[index]
-    start_x, start_y, _ = tree.mechanism.pose[link.body].tolist()
-    columns = [address[column] for column in link.columns]
-    if link.kind == "free":
-        column_x, column_y, rotation = columns
-
-        def free(_moving: Any, q: list[float], v: list[float]) -> tuple[float, ...]:
-            x, y = start_x + q[column_x], start_y + q[column_y]
-            return x, y, q[rotation], v[column_x], v[column_y], v[rotation], 0.0, 0.0, x, y, 0.0, 0.0
-
-        return free
-    arm_x, arm_y = link.arm
-    anchor_x, anchor_y = link.anchor
-    way_x, way_y = link.direction
-    parent = place[link.parent]
-    slide = columns[0] if link.kind == "slot" else None
-    turning = columns[-1] if link.turns else None
-    sine_of, cosine_of = math.sin, math.cos
-
-    def hung(moving: Any, q: list[float], v: list[float]) -> tuple[float, ...]:
-        base = moving[parent]
-        turned, omega = base[2], base[5]
-        cosine, sine = cosine_of(turned), sine_of(turned)
-        dx = dy = 0.0
-        x, y = cosine * arm_x - sine * arm_y, sine * arm_x + cosine * arm_y
-        vx, vy, ax, ay = base[3], base[4], base[6], base[7]
-        if slide is not None:
-            dx, dy = cosine * way_x - sine * way_y, sine * way_x + cosine * way_y
-            along, speed = q[slide], v[slide]
-            x, y = x + along * dx, y + along * dy
-            vx, vy = vx + speed * dx, vy + speed * dy
-            coriolis = 2 * omega * speed
-            ax, ay = ax - coriolis * dy, ay + coriolis * dx
-        vx, vy = vx - omega * y, vy + omega * x
-        square = omega * omega
-        ax, ay = ax - square * x, ay - square * y
-        x, y = base[0] + x, base[1] + y
-        if turning is not None:
-            turned, omega = turned + q[turning], omega + v[turning]
-            cosine, sine = cosine_of(turned), sine_of(turned)
-        own_x, own_y = cosine * anchor_x - sine * anchor_y, sine * anchor_x + cosine * anchor_y
-        square = omega * omega
-        return (
-            x - own_x, y - own_y, turned, vx + omega * own_y, vy - omega * own_x, omega,
-            ax + square * own_x, ay + square * own_y, x, y, dx, dy,
-        )  # fmt: skip
-
-    return hung

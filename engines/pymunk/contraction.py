@@ -69,12 +69,24 @@ def contraction_at(mechanism: Mechanism, pose: Numbers) -> float:
     return min(max(rho, 0.0), 1 - 1e-12)
 
 
+@validated
+def contractions(mechanism: Mechanism, poses: Numbers) -> Array:
+    """The same (poses,) at poses (poses, bodies, 3), of at most DENSE rows. Raises LinAlgError if a block is singular.
+
+    All in one go: for few rows a fifth of the time.
+    """
+    matrix, starts = _joint_matrix(mechanism, poses)
+    if not starts:
+        return np.zeros(len(poses))
+    changed = np.linalg.eigvals(np.linalg.solve(_lower(matrix, starts), matrix))
+    left = np.where(np.abs(changed) > RANK_TOLERANCE, np.abs(1 - changed), 0.0)
+    return np.clip(left.max(axis=-1), 0.0, 1 - 1e-12)
+
+
 def _spectral_radius(matrix: Array, starts: list[int]) -> float:
     if not starts:
         return 0.0
-    lower = np.zeros_like(matrix)
-    for start, end in zip(starts, [*starts[1:], len(matrix)], strict=True):
-        lower[start:end, :end] = matrix[start:end, :end]
+    lower = _lower(matrix, starts)
     if len(matrix) > DENSE:
         try:
             return 1 - _smallest(matrix, lower)
@@ -85,23 +97,34 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
     return float(np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE]).max(initial=0.0))
 
 
+def _lower(matrix: Array, starts: list[int]) -> Array:
+    """The lower block triangles (..., rows, rows) of matrices of that shape."""
+    lower = np.zeros_like(matrix)
+    for start, end in zip(starts, [*starts[1:], matrix.shape[-1]], strict=True):
+        lower[..., start:end, :end] = matrix[..., start:end, :end]
+    return lower
+
+
 def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
-    """A, without the rows that are prescribed motions here, and where the block of each constraint begins."""
+    """A at poses (..., bodies, 3), without the rows that are prescribed motions; where each constraint's block begins.
+
+    (..., rows, rows), and the beginnings.
+    """
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
         weights[mechanism.body_index(name), 2] = 0
     for name in find_cranks(mechanism):
         weights[mechanism.body_index(name)] = 0
     rows = mechanism.rows(pose)
-    matrix = (rows * weights.reshape(-1)) @ rows.T
+    matrix = (rows * weights.reshape(-1)) @ np.swapaxes(rows, -1, -2)
     kept, starts, row = [], [], 0
     for size in (part for joint in mechanism.joints for part in _parts(joint)):
         block = list(range(row, row + size))
         row += size
-        if np.any(matrix[block, block] > 0):
+        if np.any(matrix[..., block, block] > 0):
             starts.append(len(kept))
             kept += block
-    return matrix[np.ix_(kept, kept)], starts
+    return matrix[..., np.array(kept, dtype=int)[:, None], kept], starts
 
 
 def _parts(joint: Joint) -> tuple[int, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -17,11 +18,13 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstructio
 from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
+from engines.pymunk.planned import planned
 from engines.pymunk.projection import COST, MOST_ROWS
 from engines.pymunk.running import UNSETTLED, PymunkRun
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
+from reference.trajectory import Trajectory
 from reference.validation import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 
 
@@ -126,7 +129,14 @@ class Pymunk(Valid):
             lambda duration: self.sweeping(mechanism, duration),
             self.leapfrog,
             self.settled,
+            lambda coarser, sweeping: self._planned(mechanism, coarser, sweeping),
         )
+
+    def _planned(self, mechanism: Mechanism, coarser: Trajectory, sweeping: Sweeping) -> Sequence[int] | None:
+        """Sweeps (samples,) between samples, where a coarser run tells that fewer will do than in the worst pose."""
+        if self.iterations != CONTRACTION or sweeping.projected or sweeping.gain < 1:
+            return None
+        return planned(mechanism, coarser, sweeping.iterations, self.fewest, self.work)
 
     @validated
     def sweeps(self, mechanism: Mechanism) -> int:

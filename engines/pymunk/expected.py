@@ -7,13 +7,14 @@ them costs as much as some hundred steps.
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from math import ceil
 
 import numpy as np
 
 from engines import Unsupported
-from engines.pymunk.contraction import DENSE, contraction, contraction_at
+from engines.pymunk.contraction import DENSE, contraction, contraction_at, contractions
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.model import Settings, build_model
 from engines.pymunk.running import record
@@ -37,9 +38,17 @@ def worst_contraction(mechanism: Mechanism, duration: NonNegative) -> float:
     """The largest `contraction` over the start and what a rough run passes within `duration` [s]."""
     if not (_latest and _latest[0][0] is mechanism and _latest[0][1] == duration):
         passed = _poses(mechanism, duration)
-        found = max([contraction(mechanism), *(contraction_at(mechanism, pose) for pose in passed)])
+        found = max([contraction(mechanism), *_all(mechanism, passed)])
         _latest[:] = [(mechanism, duration, found)]
     return _latest[0][2]
+
+
+def _all(mechanism: Mechanism, poses: list[np.ndarray]) -> list[float]:
+    """The contraction at each pose, in one go where that is possible."""
+    if poses and mechanism.row_count <= DENSE:
+        with contextlib.suppress(np.linalg.LinAlgError):
+            return contractions(mechanism, np.array(poses)).tolist()
+    return [contraction_at(mechanism, pose) for pose in poses]
 
 
 def _poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any
@@ -88,10 +88,18 @@ class Recording:
     stopped: str = ""  # why the stepping ended early, if it did: from there on everything is NaN
 
 
-def record(model: Model, dt: float, samples: int, every: int, raw: bool, settling: int = 0) -> Recording:
+def record(
+    model: Model,
+    dt: float,
+    samples: int,
+    every: int,
+    raw: bool,
+    settling: int = 0,
+    planned: Sequence[int] | None = None,
+) -> Recording:
     """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
 
-    With `settling`, the first SETTLING steps have so many iterations.
+    With `settling`, the first SETTLING steps have so many iterations; `planned` (samples,) are those of all others.
     """
     velocities = every > 1
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
@@ -103,6 +111,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, settlin
     steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
+    iterations = repeat(own, samples) if planned is None else planned
     steps_left = SETTLING if settling else 0
 
     def settle(space: Any, dt: float) -> None:
@@ -115,7 +124,10 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, settlin
 
     begin = time.process_time()
     try:
-        for _ in repeat(None, samples):
+        for wanted in iterations:
+            if wanted != own:
+                own = wanted
+                lib.cpSpaceSetIterations(pointer, own)
             move = settle if steps_left > 0 else step
             if velocities:
                 for _ in steps_between:
@@ -187,9 +199,15 @@ class PymunkRun:
         swept: Callable[[float], Sweeping],
         leapfrog: bool,
         settled: bool,
+        planned: Callable[[Trajectory, Sweeping], Sequence[int] | None],
     ) -> None:
-        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds."""
+        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds.
+
+        `planned` tells how each interval between samples is, from a coarser run and what holds for the whole.
+        """
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
+        self._planned = planned
+        self._coarser: Trajectory | None = None
         self._leapfrog, self._settled, self._over = leapfrog, settled, False
         self.size: Size = make(swept(0.0)).size
 
@@ -203,6 +221,10 @@ class PymunkRun:
             model.space.iterations = sweeping.iterations
         return model
 
+    def follow(self, coarser: Trajectory) -> None:
+        """See `engines.extrapolated.Following`."""
+        self._coarser = coarser
+
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
@@ -210,9 +232,12 @@ class PymunkRun:
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True
+        begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
+        planned = self._planned(self._coarser, sweeping) if self._coarser else None
+        planning = time.process_time() - begin
         model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
-        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
+        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling, planned=planned)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         with np.errstate(all="ignore"):
@@ -226,8 +251,8 @@ class PymunkRun:
             ]
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
-        warnings = tuple(filter(None, (_unconverged(sweeping), recording.stopped)))
-        return Trajectory(t, pose, twist, reaction, stepping=recording.stepping, warnings=warnings)
+        warnings = tuple(filter(None, (self._unconverged(sweeping), recording.stopped)))
+        return Trajectory(t, pose, twist, reaction, stepping=planning + recording.stepping, warnings=warnings)
 
     def _start_reaction(self, sweeping: Sweeping) -> Array:
         """The reactions (rows,) at t = 0, where no step lies behind, from a twin that takes the first steps apart.
@@ -246,12 +271,15 @@ class PymunkRun:
             third, fourth = reactions(self._mechanism, recording.pose[3:], twist[2:], acceleration[2:], *held)
             return 4 * third - 3 * fourth if self._leapfrog else third
 
-
-def _unconverged(sweeping: Sweeping) -> str:
-    if sweeping.gain < 1:
-        return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
-    if sweeping.unsettled > UNSETTLED:
-        return (
-            f"ours: the reactions at the start are not converged, {sweeping.unsettled:.0e} of the slowest mode is left"
-        )
-    return ""
+    def _unconverged(self, sweeping: Sweeping) -> str:
+        """What is to be said of the sweeps; nothing of a projection that `Pymunk.holder` tells, by the start alone."""
+        if sweeping.gain < 1:
+            return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
+        if sweeping.unsettled > UNSETTLED:
+            return (
+                "ours: the reactions at the start are not converged, "
+                f"{sweeping.unsettled:.0e} of the slowest mode is left"
+            )
+        if sweeping.projected and not self._swept(0.0).projected:
+            return "ours: velocities are projected after every step, as sweeps don't converge on a part of the way"
+        return ""

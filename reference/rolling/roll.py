@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.curves.curve import Vector
 from reference.plane import components, rotation_velocity
+from reference.rolling.contact import Contact
 from reference.rolling.kinematics import Rolling
 from reference.validation import Name, Valid
 
@@ -61,13 +62,23 @@ class Roll(Valid):
 
         A complex rotation is continued by the first derivative: a complex step asks for no more, and it is exact.
         """
-        contact = self.rolling.contact(np.real(theta))
+        contact = self._contact_at(np.real(theta))
         if not np.iscomplexobj(theta):
             return contact.point, contact.arm, contact.tangent_angle
         step = 1j * np.imag(theta)
         advance = (step * contact.rate)[..., None] * contact.tangent
         angle = contact.tangent_angle + step * contact.ground_curvature * contact.rate
         return contact.point + advance, contact.arm + rotation_velocity(step, contact.arm) - advance, angle
+
+    def _contact_at(self, theta: NDArray[Any]) -> Contact:
+        """The contact at rotations (...), those of the last ones kept: gap and rows ask for the same."""
+        if not (self._kept and np.array_equal(self._kept[0][0], theta)):
+            self._kept[:] = [(theta.copy(), self.rolling.contact(theta))]
+        return self._kept[0][1]
+
+    @cached_property
+    def _kept(self) -> list[tuple[NDArray[Any], Contact]]:
+        return []
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Second body minus where rolling would put it at its rotation, along e_t and e_n (..., 2) [m]."""

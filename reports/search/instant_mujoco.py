@@ -10,7 +10,7 @@ held against ours on the way: each of its rows has to be one of them, seen in th
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 
 from engines import Softness
 from engines.mujoco import MuJoCo
-from engines.mujoco.joints.skate import STEPWISE
+from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
-from reference.joints import Drive, Skate
+from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
-from reports.search.law import Fault, NotAsked, constrained, difference, driving_force, force_difference
+from reports.search.law import Answer, Fault, NotAsked, constrained, difference, driving_force, force_difference
 
 Array = NDArray[np.float64]
 
@@ -46,14 +46,9 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     Raises NotAsked where the engine declares no law at an instant, Fault for a row that is lacking, and Unsupported.
     """
     dt = STEP * mechanism.time_scale
-    if engine.drive != "inertia" and any(joint.labels == ("torque",) for joint in mechanism.joints):
-        raise NotAsked(f"a drive by {engine.drive!r} obeys no law of an instant")
-    if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
-        raise NotAsked("a blade whose row is that of another pose obeys no law of an instant")
+    refuse_without_a_law(engine, mechanism, dt)
     run = replace(engine, estimates=False).build(mechanism, dt)  # an estimate takes a second run, and says nothing here
     softness = engine.softness(mechanism, dt)
-    if softness is not None and not softness.complete:
-        raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
     model = run.model
     if model.halves:
         raise NotAsked("a body that is cut into halves is another mechanism at one instant")
@@ -67,41 +62,110 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     with model.hooked():
         for sample, data in enumerate((start, run.data)):
             mujoco.mj_forward(model.compiled, data)
-            for name, value in _at(mechanism, model, data, softness, told.reaction[sample]).items():
-                out[name] = max(out[name], value)
+            _refine(model, data, engine.tolerance)
+            here = Instant.of(mechanism, model, data, softness)
+            found = {
+                "acceleration": here.missed(data.qacc),
+                "reaction": here.missed_force(told.reaction[sample]),
+            }
+            out = {name: max(out[name], value) for name, value in found.items()}
     return out
 
 
-def _at(mechanism: Mechanism, model: Model, data: Any, softness: Softness | None, reaction: Array) -> dict[str, float]:
-    """The errors of the state in `data`, to which `reaction` (rows,) was told."""
-    tree, address = model.tree, model.address
-    own = (values[address][None] for values in (data.qpos, data.qvel, data.qacc))
-    (pose,), (twist,), (change,) = tree.motion(*own)
-    rows = mechanism.rows(pose)
-    give, aimed, stiffest = _declared(mechanism, model, data, rows, softness, pose, twist)
-    right = mechanism.bias(pose, twist) + aimed
-    free = mechanism.unconstrained(pose, twist)
-    law = constrained(rows, right, mechanism.inertias, free, give)
-    force = driving_force(mechanism, twist)
-    # A gap is rounded, and what a stiff row makes of that is no fault: beyond the law, where this is the largest.
-    floor = stiffest * np.finfo(float).eps * mechanism.length_scale / LAW
-    # What a motion needs is compared with what acts, and with what the motion itself asks for.
-    others = (free, twist / mechanism.time_scale, np.array([[floor, 0.0, 0.0]]))
-    forces = (force, floor * float(mechanism.inertias[:, 0].max()))
-    return {
-        "acceleration": difference(mechanism, change, law.motion, others),
-        "reaction": force_difference(mechanism, reaction, law.force, forces),
-    }
+def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> None:
+    """Raises NotAsked for constructions that obey no law of an instant."""
+    if engine.drive != "inertia" and any(joint.labels == ("torque",) for joint in mechanism.joints):
+        raise NotAsked(f"a drive by {engine.drive!r} obeys no law of an instant")
+    if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
+        raise NotAsked("a blade whose row is that of another pose obeys no law of an instant")
+    softness = engine.softness(mechanism, dt)
+    if softness is not None and not softness.complete:
+        raise NotAsked("contacts, and rows that are held over a step, obey no law of an instant")
+
+
+def _refine(model: Model, data: Any, tolerance: float) -> None:
+    """Let the solver go on, where what it left is within the tolerance that the engine declares: that is no fault.
+
+    The tolerance is told of the inertia without what only keeps a drive's rate.
+    """
+    compiled = model.compiled
+    left = np.empty(compiled.nv)
+    mujoco.mj_mulM(compiled, data, left, data.qacc)
+    left -= data.qfrc_smooth + data.qfrc_constraint
+    inertia = float((compiled.dof_M0 - compiled.dof_armature)[model.address].sum())
+    if np.linalg.norm(left) <= tolerance * inertia:
+        kept, compiled.opt.tolerance = compiled.opt.tolerance, min(compiled.opt.tolerance, ROUNDED**2)
+        mujoco.mj_forward(compiled, data)
+        compiled.opt.tolerance = kept
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """A state of a model, and the law there: what it asks for, what it is compared with, and the rows it came from."""
+
+    mechanism: Mechanism
+    model: Model
+    data: Any
+    pose: Array  # (bodies, 3)
+    twist: Array
+    free: Array
+    aimed: Array  # (rows,): what J a is to be, beside the velocity term
+    give: Array
+    solved: Array  # (rows,): which rows are the solver's, the others being held by the tree
+    floor: float  # m/s^2: what rounded gaps make of stiff rows, beyond the law
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Softness | None) -> Instant:
+        """What `data` holds after mj_forward. Raises Fault where rows are lacking."""
+        pose, twist, _ = _motion(model, data, data.qacc)
+        give, aimed, solved, stiffest = _declared(mechanism, model, data, mechanism.rows(pose), softness, pose, twist)
+        # A gap is rounded, and what a stiff row makes of that is no fault: beyond the law, where this is the largest.
+        floor = stiffest * np.finfo(float).eps * mechanism.length_scale / LAW
+        free = mechanism.unconstrained(pose, twist)
+        return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, floor)
+
+    def law(self, velocity_term: bool = True) -> Answer:
+        """Accelerations (bodies, 3) and forces (rows,); without it, the solver's rows lack their `velocity_term`.
+
+        A row of the tree's coordinates is J D with D their directions, and its velocity term (J D)' is what then lacks.
+        So J a is what it is where no coordinate accelerates.
+        """
+        rows, right = self.mechanism.rows(self.pose), self.mechanism.bias(self.pose, self.twist)
+        if not velocity_term:
+            _, _, coasting = _motion(self.model, self.data, np.zeros(self.model.compiled.nv))
+            right = np.where(self.solved, rows @ coasting.reshape(-1), right)
+        return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.give)
+
+    def missed(self, accelerations: Array, law: Answer | None = None) -> float:
+        """By what accelerations (nv,) miss the law, relative to the largest."""
+        _, _, change = _motion(self.model, self.data, accelerations)
+        # What a motion needs is compared with what acts, and with what the motion itself asks for.
+        others = (self.free, self.twist / self.mechanism.time_scale, np.array([[self.floor, 0.0, 0.0]]))
+        return difference(self.mechanism, change, (law or self.law()).motion, others)
+
+    def missed_force(self, reaction: Array) -> float:
+        """By what reactions (rows,) miss the law, relative to the largest force."""
+        force = driving_force(self.mechanism, self.twist)
+        others = (force, self.floor * float(self.mechanism.inertias[:, 0].max()))
+        return force_difference(self.mechanism, reaction, self.law().force, others)
+
+
+def _motion(model: Model, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
+    """Poses, twists and accelerations (bodies, 3) of a state with these accelerations (nv,)."""
+    own = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
+    (pose,), (twist,), (change,) = model.tree.motion(*own)
+    return pose, twist, change
 
 
 def _declared(
     mechanism: Mechanism, model: Model, data: Any, rows: Array, softness: Softness | None, pose: Array, twist: Array
-) -> tuple[Array, Array, float]:
-    """How the rows give way (rows, rows), what they aim at beside their velocity term, and the stiffest of them
-    [1/s^2], all as MuJoCo declares.
+) -> tuple[Array, Array, Array, float]:
+    """How the rows give way (rows, rows), what they aim at beside their velocity term, which of them the solver has,
+    and the stiffest of them [1/s^2], all as MuJoCo declares.
     """
     compiled = model.compiled
     give, aimed, stiffest = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), 0.0
+    solved = np.zeros(len(rows), dtype=bool)
     in_tree = rows @ _directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
@@ -121,26 +185,37 @@ def _declared(
             # Its armature is a further inertia of this rotation alone: as a row, it gives way by the inverse.
             give[own, own] = 1 / np.sqrt(compiled.dof_armature[turned[0]] * model.unit)
             continue
-        found = [number for number in waiting if _within(lines[number][seen], in_tree[own][:, seen])][: joint.size]
+        within = _within(lines[waiting][:, seen], in_tree[own][:, seen])
+        found = [number for number, inside in zip(waiting, within, strict=True) if inside][: joint.size]
         if len(found) < joint.size:
             raise Fault(f"MuJoCo has {len(found)} constraints for {joint.name!r}, not {joint.size}")
-        waiting = [number for number in waiting if number not in found]
+        waiting, solved[own] = [number for number in waiting if number not in found], True
         # MuJoCo's rows are these times ours.
         factors = np.linalg.lstsq(in_tree[own][:, seen].T, lines[found][:, seen].T, rcond=None)[0].T
         # A clock beside the tree, by which a drive is geared, gives way by the inverse of its own inertia.
         clock = np.sum(lines[found][:, beside] ** 2 / compiled.dof_M0[beside], axis=1)
         give[own, own] = np.linalg.solve(factors, np.diag(np.sqrt((data.efc_R[found] + clock) / model.unit)))
         if softness is not None and _is_written(compiled, data.efc_id[found[0]]):
-            aimed[own] = -softness.stiffness * gap[own] - softness.damping * slip[own]  # a row that callbacks write
+            # A row that callbacks write; a skate's brings a damping of its own.
+            damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
+            aimed[own] = -softness.stiffness * gap[own] - damping * slip[own]
             stiffest = max(stiffest, softness.stiffness)
         else:  # each of MuJoCo's rows has a stiffness of its own
             stiffness, damping, impedance, _ = data.efc_KBIP[found].T
-            asked = -stiffness * impedance * (factors @ gap[own]) - damping * (factors @ slip[own])
+            # A clock is not quite where the rate would have it: forces accelerate even so large an inertia a little.
+            ahead, faster = (lines[found][:, beside] @ late for late in _clocks_ahead(joint, data, beside))
+            asked = -stiffness * impedance * (factors @ gap[own] + ahead) - damping * (factors @ slip[own] + faster)
             aimed[own] = np.linalg.solve(factors, asked)
             stiffest = max(stiffest, float(np.max(stiffness * impedance)))
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
-    return give, aimed, stiffest
+    return give, aimed, solved, stiffest
+
+
+def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
+    """By what angles [rad] and rates [rad/s] clocks are ahead of a drive; they begin at zero."""
+    rate = joint.turning_rate if isinstance(joint, Drive) else 0.0
+    return data.qpos[beside] - rate * data.time, data.qvel[beside] - rate
 
 
 def _is_written(compiled: Any, equality: int) -> bool:
@@ -150,10 +225,10 @@ def _is_written(compiled: Any, equality: int) -> bool:
     return bool(compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT)
 
 
-def _within(line: Array, rows: Array) -> bool:
-    """Whether a row is a sum of these."""
-    left = line - rows.T @ np.linalg.lstsq(rows.T, line, rcond=None)[0]
-    return float(np.linalg.norm(left)) <= SAME_ROW * float(np.linalg.norm(line))
+def _within(lines: Array, rows: Array) -> NDArray[np.bool_]:
+    """Which of these lines (lines,) are sums of the rows."""
+    left = lines.T - rows.T @ np.linalg.lstsq(rows.T, lines.T, rcond=None)[0]
+    return np.linalg.norm(left, axis=0) <= SAME_ROW * np.linalg.norm(lines, axis=1)
 
 
 def _directions(model: Model, data: Any) -> Array:

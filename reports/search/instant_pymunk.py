@@ -79,7 +79,8 @@ def _law(model: Model, mechanism: Mechanism, told: Recording, step: int, dt: flo
     closed = np.zeros(mechanism.row_count)
     closing = [not isinstance(joint, Skate | Drive) for joint in mechanism.joints for _ in range(joint.size)]
     held = np.array(closing, dtype=bool)
-    bias = next((constraint.error_bias for constraint in model.space.constraints), 0.0)
+    # A blade, which has no gap, closes none.
+    bias = min((constraint.error_bias for constraint in model.space.constraints), default=0.0)
     closed[held] = 1 - bias ** (dt / model.unit)
     pose = told.pose[step]
     gap = np.nan_to_num(mechanism.gap(pose, step * dt))

@@ -48,16 +48,19 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     fine = _run(engine, mechanism, dt / 2, 2 * COARSE)
     if coarse.warnings or fine.warnings:
         raise NotAsked("it says itself that something is wrong")
-    found = [_apart(mechanism, run, truth) for run in (coarse, fine)]
+    found = [_apart(mechanism, run, truth, promise) for run in (coarse, fine)]
     if _misses(promise, found):  # a coarser error may be small by chance: it must not fall between the next two either
-        found = [found[1], _apart(mechanism, _run(engine, mechanism, dt / 4, 4 * COARSE), truth)]
+        found = [found[1], _apart(mechanism, _run(engine, mechanism, dt / 4, 4 * COARSE), truth, promise)]
     out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
     rounded = _rounded_reactions(mechanism, promise, truth, dt / 4)
     out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
-        told = float(np.abs(fine.estimate * size).max()) / _size(mechanism, truth)
-        out["estimate"] = (_apart(mechanism, fine, truth)["motion"], min(ESTIMATED * told + LEAST["motion"], LOST))
+        told = float(np.abs(fine.estimate * size).max()) / _size(mechanism, truth, promise)
+        out["estimate"] = (
+            _apart(mechanism, fine, truth, promise)["motion"],
+            min(ESTIMATED * told + LEAST["motion"], LOST),
+        )
     return out
 
 
@@ -68,18 +71,28 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Traject
     return run
 
 
-def _size(mechanism: Mechanism, truth: Trajectory) -> float:
-    """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST."""
+def _size(mechanism: Mechanism, truth: Trajectory, promise: Promise) -> float:
+    """How far anything moves [m], or would without joints; at least so far that rounded places are below LEAST.
+
+    A combination of runs carries more of them: those that the steps of its finest run add up, as a random walk does.
+    """
     size = np.array([1.0, 1.0, mechanism.length_scale])
     moved = float(np.abs((truth.pose - mechanism.pose) * size).max())
     pulled = np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * size).max()
     free = float(pulled) * (SPAN * mechanism.time_scale) ** 2 / 2
-    place = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
-    return max(moved, free, ROUNDINGS * np.finfo(float).eps * place / LEAST["motion"])
+    place = _place(mechanism)
+    steps = SAMPLES * 4 * COARSE * promise.differences if promise.amplified > 1 else 1
+    carried = promise.amplified * max(steps, 1) ** 0.5
+    return max(moved, free, carried * ROUNDINGS * np.finfo(float).eps * place / LEAST["motion"])
 
 
-def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, float]:
-    largest = np.array([[_size(mechanism, truth), 0.0, 0.0]])
+def _place(mechanism: Mechanism) -> float:
+    """How large the numbers [m] are in which a mechanism's places are written."""
+    return max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+
+
+def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory, promise: Promise) -> dict[str, float]:
+    largest = np.array([[_size(mechanism, truth, promise), 0.0, 0.0]])
     moved = [difference(mechanism, pose, right, (largest,)) for pose, right in _moves(mechanism, run, truth)]
     most = _force_size(mechanism, truth)
     pulled = [
@@ -108,9 +121,12 @@ def _may_be(promise: Promise, name: str, coarser: float) -> float:
 
 
 def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory, dt: float) -> float:
-    """What rounding of velocities [m/s], divided by a step [s], leaves in reactions, as a part of them."""
+    """What rounding of velocities [m/s], divided by a step [s], leaves in reactions, as a part of them.
+
+    An engine that reads them so closes in every step what it sees of a gap, and that is rounded as places are.
+    """
     size = np.array([1.0, 1.0, mechanism.length_scale])
-    speed = float(np.abs(truth.twist * size).max())
+    speed = float(np.abs(truth.twist * size).max()) + _place(mechanism) * promise.differences / dt
     force = ROUNDINGS * np.finfo(float).eps * speed / dt * mechanism.inertias[:, 0].max()
     return promise.amplified * promise.differences * force / _force_size(mechanism, truth)
 

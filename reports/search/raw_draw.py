@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from reference.validation import InvalidMechanism
-from reports.search.raw import Equality, Link, Model, coordinates, judged
+from reports.search.raw import Equality, Link, Model, coordinates
+from reports.search.raw_law import judged
 
 MOST_BODIES, MOST_EQUALITIES = 9, 3
 HINGED = ("connect", "weld", "gear")

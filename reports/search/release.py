@@ -11,7 +11,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from reports.search import raw
+from reports.search import raw, raw_law
 from reports.versions.installed import environment, installed
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
@@ -70,8 +70,8 @@ def answer(model: raw.Model) -> dict:
     import mujoco  # of the folder
 
     try:
-        found, expected = raw.found_and_expected(model, raw.judged(model))
-        told = {"errors": raw.errors(model), "found": found.tolist(), "expected": expected.tolist()}
+        found, expected = raw_law.found_and_expected(model, raw_law.judged(model))
+        told = {"errors": raw_law.errors(model), "found": found.tolist(), "expected": expected.tolist()}
     except Exception as error:
         told = {"raised": f"{type(error).__name__}: {error}"}
     return told | {"version": mujoco.__version__}

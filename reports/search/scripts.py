@@ -9,7 +9,7 @@ import numpy as np
 from engines import Unsupported
 from engines.pymunk import Pymunk
 from engines.pymunk.written_script import object_lines
-from reports.search import instant_pymunk, raw
+from reports.search import instant_pymunk, raw, raw_law
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 from reports.search.release import release
@@ -27,11 +27,11 @@ def script(subject: Subject, case: Any, check: str) -> str:
 
 def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
     """One call of mj_forward, and the accelerations that the constraints ask for; `other`: another release."""
-    judge = raw.judged(model)
+    judge = raw_law.judged(model)
     if other:
         expected = np.array(release(other).asked(model)["expected"])
     else:
-        _, expected = raw.found_and_expected(model, judge)
+        _, expected = raw_law.found_and_expected(model, judge)
     names = [f"b{body} {what}" for body, what in raw.coordinates(model)]
     return f'''"""MuJoCo's accelerations in a state that satisfies every constraint.
 

@@ -10,14 +10,26 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.extrapolated import Extrapolated
+from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
-from reports.search import instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_draw, relations
+from reports.search import (
+    instant_mjx,
+    instant_mujoco,
+    instant_pymunk,
+    mechanisms,
+    motions,
+    raw,
+    raw_draw,
+    raw_law,
+    relations,
+)
 from reports.search.law import Fault, NotAsked
 from reports.search.parts import EVERY, Recipe, as_text, from_text
 from reports.search.recipe import build
 from reports.search.release import release
+from reports.search.renumbered import of_a_shape
 
 ORACLES = ("instant", "relations", "motions")
 LAW = 1e-9  # of MuJoCo alone: rounding makes a thousandth of it
@@ -57,6 +69,8 @@ class Adapted:
         return EVERY
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
+        if getattr(self.engine, "building", 0.0):  # seconds for a shape
+            return of_a_shape(self.engine, seed, number, kinds, decades)
         return mechanisms.recipe(seed, number, kinds, decades)
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Told:
@@ -101,12 +115,12 @@ class Alone:
 
     def ask(self, case: raw.Model, number: int, oracles: Sequence[str]) -> Told:
         def instant() -> dict[str, tuple[float, float]]:
-            told = {"errors": raw.errors(case)} if not self.release else release(self.release).asked(case)
+            told = {"errors": raw_law.errors(case)} if not self.release else release(self.release).asked(case)
             if "raised" in told:
                 raise Fault(told["raised"])
             return {name: (error, LAW) for name, error in told["errors"].items()}
 
-        raw.judged(case)  # a case that is none is no fault
+        raw_law.judged(case)  # a case that is none is no fault
         return _asked({"instant": instant} if "instant" in oracles else {})
 
     def text(self, case: raw.Model) -> str:
@@ -139,9 +153,9 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> 
     return Told(errors, tuple(left), "; ".join(words))
 
 
-def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk:
+def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx:
     """The engine that is stepped in the end: inside of those that choose and combine. Raises NotAsked."""
-    while not isinstance(engine, MuJoCo | Pymunk):
+    while not isinstance(engine, MuJoCo | Pymunk | Mjx):
         if hasattr(engine, "chosen"):
             engine = engine.chosen(mechanism)
         elif isinstance(engine, Extrapolated):
@@ -151,7 +165,12 @@ def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk:
     return engine
 
 
-def _instant(engine: MuJoCo | Pymunk, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
-    law = instant_mujoco if isinstance(engine, MuJoCo) else instant_pymunk
-    bound = law.bound(engine)  # type: ignore[arg-type]
-    return {name: (error, bound) for name, error in law.errors(engine, mechanism).items()}  # type: ignore[arg-type]
+def _instant(engine: MuJoCo | Pymunk | Mjx, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    match engine:
+        case MuJoCo():
+            bound, found = instant_mujoco.bound(engine), instant_mujoco.errors(engine, mechanism)
+        case Mjx():
+            bound, found = instant_mujoco.bound(engine.settings), instant_mjx.errors(engine, mechanism)
+        case Pymunk():
+            bound, found = instant_pymunk.bound(engine), instant_pymunk.errors(engine, mechanism)
+    return {name: (error, bound) for name, error in found.items()}

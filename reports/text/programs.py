@@ -11,8 +11,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, is_dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from reference.scene import Scene
 from reports.grid.cells import mechanism_of
@@ -66,12 +70,18 @@ def _setting(
         raise ValueError(f"{scene.name}: the program of {method} lacks its duration or does not print a place")
     duration = float(end[1])
     index = mechanism_of(scene).body_index(body[1])
-    x, y, angle = scene.motion([duration]).pose[0, index]
+    x, y, angle = _pose_at(scene, duration)[index]
     exact = f"x = {x:.10f} m, y = {y:.10f} m, angle = {angle:.10f} rad"
     counts = [round(duration / scene.spacing) * row.every for row, _ in rows]
     told = "; ".join(f"{count}: below {number(max(row[1]), 1)}" for count, row in zip(counts, rows, strict=True))
     text = STEPS.sub(f"steps = {counts[0]}" + (f"  # {told}" if len(rows) > 1 else ""), source)
     return Setting(method, settings, first.settings, text, body[1], exact)
+
+
+@cache
+def _pose_at(scene: Scene, t: float) -> NDArray[np.float64]:
+    """Exact poses (bodies, 3) at a time: worked out once, though several methods have a program of the scene."""
+    return scene.motion([t]).pose[0]
 
 
 def programs_of(page: Page) -> Path:

@@ -6,6 +6,7 @@ import os
 import platform
 from collections.abc import Iterable
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -37,7 +38,9 @@ def told_versions(engines: Iterable[Engine]) -> str:
     return ", ".join(dict.fromkeys(_version(package) for engine in engines for package in engine.packages))
 
 
+@cache
 def _version(package: str) -> str:
+    """Looked up once: each costs some milliseconds, and every page tells a dozen."""
     try:
         return f"{package} {metadata.version(package)}"
     except metadata.PackageNotFoundError:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from numba import njit, types
 
 from engines.lagrange.compiled.adaptive import controlled
+from engines.lagrange.compiled.inner import straight
 from engines.lagrange.compiled.steps import accelerated, marched
 from engines.lagrange.flat import ACCELERATION, COLUMNS, CONTROL, MARCH, POSE, REACTION, ROWS, TOLD, TWIST, WANTED_ROLL
 
@@ -25,6 +26,7 @@ def run(
 ):  # fmt: skip
     """MARCH: `steps.marched`. CONTROL: `adaptive.controlled`, `dt` between samples. REACT: fill `out` (samples, rows)
     and `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
+    whole, real = straight(whole), straight(real)
     if task == MARCH:
         return marched(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
     if task == CONTROL:

@@ -17,14 +17,14 @@ fixed tendon, held by an equality that has no velocity term and needs none.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import mujoco
 
 from engines.mujoco.construction import Building
 from engines.mujoco.joints.pin import add_pins
-from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.mujoco.written_rows import Law, Row, State, WrittenJoint
 from engines.tree import world_offset
 from reference.joints import Gear, Rod, Weld
 
@@ -90,33 +90,31 @@ def _hold(building: Building, name: str) -> None:
     )
 
 
-def rod_rows(rod: Rod, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:
+def rod_rows(rod: Rod, stiffness: float, damping: float) -> Law:
     """The rod's row and -(dJ/dt) v - damping slip - stiffness gap, see `reference.links.Rod`."""
-    (first_x, first_y), (second_x, second_y), length = rod.first_point, rod.second_point, rod.length
-    sine_of, cosine_of, root_of = math.sin, math.cos, math.sqrt
+    return Law(rod_row, (*rod.first_point, *rod.second_point, rod.length, stiffness, damping))
 
-    def rows(_t: float, first: State, second: State) -> Sequence[Row]:
-        x1, y1, angle1, vx1, vy1, omega1 = first
-        x2, y2, angle2, vx2, vy2, omega2 = second
-        cosine, sine = cosine_of(angle1), sine_of(angle1)
-        own_x1, own_y1 = cosine * first_x - sine * first_y, sine * first_x + cosine * first_y
-        cosine, sine = cosine_of(angle2), sine_of(angle2)
-        own_x2, own_y2 = cosine * second_x - sine * second_y, sine * second_x + cosine * second_y
-        x, y = x2 + own_x2 - x1 - own_x1, y2 + own_y2 - y1 - own_y1
-        now = root_of(x * x + y * y)
-        x, y = x / now, y / now
-        rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
-        rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
-        slip, across = x * rate_x + y * rate_y, x * rate_y - y * rate_x
-        square1, square2 = omega1 * omega1, omega2 * omega2
-        changing = x * (square1 * own_x1 - square2 * own_x2) + y * (square1 * own_y1 - square2 * own_y2)
-        changing += across * across / now
-        return (
-            (
-                -x, -y, x * own_y1 - y * own_x1,
-                x, y, y * own_x2 - x * own_y2,
-                -changing - damping * slip - stiffness * (now - length),
-            ),
-        )  # fmt: skip
 
-    return rows
+def rod_row(numbers: tuple[float, float, float, float, float, float, float], first: State, second: State) -> Row:
+    """Of a point on either body [m], the length [m], stiffness [1/s^2] and damping [1/s]."""
+    first_x, first_y, second_x, second_y, length, stiffness, damping = numbers
+    x1, y1, angle1, vx1, vy1, omega1 = first
+    x2, y2, angle2, vx2, vy2, omega2 = second
+    cosine, sine = math.cos(angle1), math.sin(angle1)
+    own_x1, own_y1 = cosine * first_x - sine * first_y, sine * first_x + cosine * first_y
+    cosine, sine = math.cos(angle2), math.sin(angle2)
+    own_x2, own_y2 = cosine * second_x - sine * second_y, sine * second_x + cosine * second_y
+    x, y = x2 + own_x2 - x1 - own_x1, y2 + own_y2 - y1 - own_y1
+    now = math.sqrt(x * x + y * y)
+    x, y = x / now, y / now
+    rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
+    rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
+    slip, across = x * rate_x + y * rate_y, x * rate_y - y * rate_x
+    square1, square2 = omega1 * omega1, omega2 * omega2
+    changing = x * (square1 * own_x1 - square2 * own_x2) + y * (square1 * own_y1 - square2 * own_y2)
+    changing += across * across / now
+    return (
+        -x, -y, x * own_y1 - y * own_x1,
+        x, y, y * own_x2 - x * own_y2,
+        -changing - damping * slip - stiffness * (now - length),
+    )  # fmt: skip

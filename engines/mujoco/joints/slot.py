@@ -13,14 +13,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Literal
 
 import mujoco
 import numpy as np
 
 from engines.mujoco.construction import Building
-from engines.mujoco.written_rows import Row, State, WrittenJoint
+from engines.mujoco.written_rows import Law, Row, State, WrittenJoint
 from engines.tree import Link, Tree, world_offset
 from reference.joints import Slot
 from reference.plane import rotation_velocity
@@ -131,35 +131,33 @@ def _turning(building: Building, slot: Slot) -> float:
     return float(rates[1] - rates[0])
 
 
-def slot_rows(slot: Slot, stiffness: float, damping: float) -> Callable[[float, State, State], Sequence[Row]]:
+def slot_rows(slot: Slot, stiffness: float, damping: float) -> Law:
     """The slot's row and -(dJ/dt) v - damping slip - stiffness gap, see `reference.joints.Slot`."""
-    (first_x, first_y), (second_x, second_y), line = slot.first_point, slot.second_point, slot.line_angle
-    sine_of, cosine_of = math.sin, math.cos
+    return Law(slot_row, (*slot.first_point, *slot.second_point, slot.line_angle, stiffness, damping))
 
-    def rows(_t: float, first: State, second: State) -> Sequence[Row]:
-        x1, y1, angle1, vx1, vy1, omega1 = first
-        x2, y2, angle2, vx2, vy2, omega2 = second
-        cosine, sine = cosine_of(angle1), sine_of(angle1)
-        own_x1, own_y1 = cosine * first_x - sine * first_y, sine * first_x + cosine * first_y
-        cosine, sine = cosine_of(angle2), sine_of(angle2)
-        own_x2, own_y2 = cosine * second_x - sine * second_y, sine * second_x + cosine * second_y
-        along_x, along_y = cosine_of(angle1 + line), sine_of(angle1 + line)
-        arm_x, arm_y = x2 + own_x2 - x1, y2 + own_y2 - y1
-        across_x, across_y = arm_x - own_x1, arm_y - own_y1
-        rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
-        rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
-        gap = along_x * across_y - along_y * across_x
-        slip = along_x * rate_y - along_y * rate_x - omega1 * (along_x * across_x + along_y * across_y)
-        square1, square2 = omega1 * omega1, omega2 * omega2
-        moved_x, moved_y = square1 * own_x1 - square2 * own_x2, square1 * own_y1 - square2 * own_y2
-        changing = along_x * moved_y - along_y * moved_x - square1 * gap
-        changing -= 2 * omega1 * (along_x * rate_x + along_y * rate_y)
-        return (
-            (
-                along_y, -along_x, -along_x * arm_x - along_y * arm_y,
-                -along_y, along_x, along_y * own_y2 + along_x * own_x2,
-                -changing - damping * slip - stiffness * gap,
-            ),
-        )  # fmt: skip
 
-    return rows
+def slot_row(numbers: tuple[float, float, float, float, float, float, float], first: State, second: State) -> Row:
+    """Of a point on either body [m], the line's angle [rad], stiffness [1/s^2] and damping [1/s]."""
+    first_x, first_y, second_x, second_y, line, stiffness, damping = numbers
+    x1, y1, angle1, vx1, vy1, omega1 = first
+    x2, y2, angle2, vx2, vy2, omega2 = second
+    cosine, sine = math.cos(angle1), math.sin(angle1)
+    own_x1, own_y1 = cosine * first_x - sine * first_y, sine * first_x + cosine * first_y
+    cosine, sine = math.cos(angle2), math.sin(angle2)
+    own_x2, own_y2 = cosine * second_x - sine * second_y, sine * second_x + cosine * second_y
+    along_x, along_y = math.cos(angle1 + line), math.sin(angle1 + line)
+    arm_x, arm_y = x2 + own_x2 - x1, y2 + own_y2 - y1
+    across_x, across_y = arm_x - own_x1, arm_y - own_y1
+    rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
+    rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
+    gap = along_x * across_y - along_y * across_x
+    slip = along_x * rate_y - along_y * rate_x - omega1 * (along_x * across_x + along_y * across_y)
+    square1, square2 = omega1 * omega1, omega2 * omega2
+    moved_x, moved_y = square1 * own_x1 - square2 * own_x2, square1 * own_y1 - square2 * own_y2
+    changing = along_x * moved_y - along_y * moved_x - square1 * gap
+    changing -= 2 * omega1 * (along_x * rate_x + along_y * rate_y)
+    return (
+        along_y, -along_x, -along_x * arm_x - along_y * arm_y,
+        -along_y, along_x, along_y * own_y2 + along_x * own_x2,
+        -changing - damping * slip - stiffness * gap,
+    )  # fmt: skip

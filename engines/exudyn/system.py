@@ -1,24 +1,4 @@
-"""Exudyn under test: planar rigid bodies in maximal coordinates, joints as algebraic equations, implicit integrators.
-
-A body is a NodeRigidBody2D with an ObjectRigidBody2D, a Pin an ObjectJointRevolute2D, a Slot an ObjectJointPrismatic2D
-that leaves the rotation free, a Rod an ObjectConnectorDistance. What is held between two rotations is an
-ObjectConnectorCoordinate: a Drive at velocity level, a Gear, and, beside a revolute joint, a Weld. A Skate is the
-engine's own rolling disc (ObjectJointRollingDisc), of which only the velocity along the axle is held: a real velocity
-constraint, as users build wheels with it. Its disc stands on edge in the plane, so the radius does not matter. A Roll
-of a circle on a straight line is the same joint lying in the plane, with the rolling velocity and the velocity along
-the line's normal held; the engine has no contact of other shapes that is an equation. Springs, dampers, forces and
-torques are the engine's own too.
-
-The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" holds them in positions (index 3),
-"TrapezoidalIndex2" in velocities (index 2); both are of second order. The engine's explicit integrators take only
-equations between single coordinates and the ground, which no joint of ours is.
-
-Accelerations are the engine's own, so that reactions belong to the sampled instant. Both integrators carry them from
-step to step, and those that the engine computes for the start know nothing of constraints between velocities (skates,
-rolling, drives). This error leaves poses and twists alone. In the accelerations GeneralizedAlpha takes about a tenth of
-it back every step, the trapezoidal rule nothing. So as shipped, reactions are NaN where there are such constraints; the
-other variants give the engine consistent accelerations for the start, by its public settings.
-"""
+"""Exudyn's objects for a mechanism, and a run of them."""
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
 # (the package is an extra, and its bindings are compiled.)
@@ -28,85 +8,49 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
-from engines.extrapolated import Extrapolated
+from engines.contract import Size, Unsupported
 from engines.lagrange.dynamics import Dynamics
-from engines.motions import is_prescribed, over_three
-from engines.single_run import Optional, Recorded, SingleRun, quiet
+from engines.single_run import Recorded, quiet
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, Positive, validated
 
 Integrator = Literal["GeneralizedAlpha", "TrapezoidalIndex2"]
-STEP_COST = 19e-6  # s, with three bodies
 AXIS = [0.0, 0.0, 1.0]  # out of the plane
-DISC = 0.1  # m: the radius of a skate's disc, which stands on edge
+DISC = 0.1  # the radius of a skate's disc, which stands on edge
 
 
 @dataclass(frozen=True)
-class Exudyn(Optional):
-    """An engine in the sense of `engines.Engine`.
+class Solving:
+    """How the engine steps; see `engines.exudyn.engine.Exudyn`. `absolute` is a norm of the model's own forces."""
 
-    `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
-    radius of GeneralizedAlpha at infinite frequency, 0.9 as shipped (1 damps nothing). `consistent`: the start's
-    accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as sparse.
-    """
-
-    extra: ClassVar[str] = "exudyn"
-    modules: ClassVar[tuple[str, ...]] = ("exudyn",)
-    distributions: ClassVar[tuple[str, ...]] = ("exudyn",)
-
-    variant: Name
-    integrator: Integrator = "GeneralizedAlpha"
-    relative: Positive = 1e-8
-    absolute: Positive = 1e-10
-    damping: Positive = 0.9
-    consistent: bool = False
-    sparse: bool = False
-
-    @validated
-    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """Second, both; what is held as an equation is exact up to Newton's tolerance."""
-        velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
-        if self.integrator == "TrapezoidalIndex2":
-            return Promise(2, slip=EXACT)
-        return Promise(2) if velocities or is_prescribed(mechanism) else Promise(2, gap=EXACT)
-
-    @validated
-    def step_cost(self, mechanism: Mechanism) -> float:
-        """About what a step takes [s]: the cube of many bodies where Newton's matrix is dense."""
-        size = over_three(mechanism)
-        if self.sparse:
-            return STEP_COST * size
-        return STEP_COST * size * max(1.0, size / 5) ** 2
-
-    @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Every joint is the engine's own."""
-        return "engine"
-
-    @validated
-    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
-        """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        self.require()
-        system = _System(mechanism)
-        return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(self, dt, samples, every))
+    integrator: Integrator
+    relative: float
+    absolute: float
+    damping: float
+    consistent: bool
+    sparse: bool
 
 
-class _System:
-    """The engine's objects for one mechanism."""
+def holds_velocities(mechanism: Mechanism) -> bool:
+    """Whether some joint is held as an equation between velocities."""
+    return any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
 
-    def __init__(self, mechanism: Mechanism) -> None:
+
+class System:
+    """The engine's objects for one mechanism, whose lengths are counted in `length` [m]: a force then in `length` N."""
+
+    def __init__(self, mechanism: Mechanism, length: float) -> None:
         import exudyn
         from exudyn import itemInterface
 
-        self.mechanism, self.exudyn, self.items = mechanism, exudyn, itemInterface
+        self.mechanism, self.exudyn, self.items, self.length = mechanism, exudyn, itemInterface, length
+        self.unit = np.array([length, length, 1.0])  # of poses, twists and accelerations
         self.container = exudyn.SystemContainer()  # owns the system, so it has to stay
         self.system: Any = self.container.AddSystem()
         self.ground = self.system.AddObject(itemInterface.ObjectGround())
@@ -130,11 +74,15 @@ class _System:
     def _add(self, body: Any) -> None:
         items = self.items
         node = self.system.AddNode(
-            items.NodeRigidBody2D(referenceCoordinates=list(body.pose), initialVelocities=list(body.twist))
+            items.NodeRigidBody2D(
+                referenceCoordinates=list(body.pose / self.unit), initialVelocities=list(body.twist / self.unit)
+            )
         )
-        made = self.system.AddObject(items.ObjectRigidBody2D(mass=body.mass, inertia=body.inertia, nodeNumber=node))
+        made = self.system.AddObject(
+            items.ObjectRigidBody2D(mass=body.mass, inertia=body.inertia / self.length**2, nodeNumber=node)
+        )
         marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=made))
-        pull = [*self.mechanism.gravity, 0.0]
+        pull = [value / self.length for value in (*self.mechanism.gravity, 0.0)]
         self.system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=pull))
         self.nodes[body.name], self.bodies[body.name] = node, made
 
@@ -145,7 +93,8 @@ class _System:
 
     def _point(self, name: str | None, point: tuple[float, float], rigid: bool = False) -> int:
         marker = self.items.MarkerBodyRigid if rigid else self.items.MarkerBodyPosition
-        return self.system.AddMarker(marker(bodyNumber=self.bodies[name], localPosition=[*point, 0.0]))
+        place = [value / self.length for value in (*point, 0.0)]
+        return self.system.AddMarker(marker(bodyNumber=self.bodies[name], localPosition=place))
 
     def _ends(self, parts: Any) -> list[int]:
         return [self._point(parts.first, parts.first_point), self._point(parts.second, parts.second_point)]
@@ -178,7 +127,9 @@ class _System:
                 self._hold(ends, factor1=joint.ratio, offset=turned)
                 return 1
             case Rod():
-                system.AddObject(items.ObjectConnectorDistance(markerNumbers=self._ends(joint), distance=joint.length))
+                system.AddObject(
+                    items.ObjectConnectorDistance(markerNumbers=self._ends(joint), distance=joint.length / self.length)
+                )
                 return 1
             case Slot():
                 # The line belongs to the joint's second marker.
@@ -211,12 +162,13 @@ class _System:
                 stiffness = [force.stiffness, force.stiffness, 0.0]
                 add(items.ObjectConnectorCartesianSpringDamper(markerNumbers=self._ends(force), stiffness=stiffness))
             case Spring():
-                law = {"stiffness": force.stiffness, "referenceLength": force.rest_length}
+                law = {"stiffness": force.stiffness, "referenceLength": force.rest_length / self.length}
                 add(items.ObjectConnectorSpringDamper(markerNumbers=self._ends(force), **law))
             case Damper():
                 add(items.ObjectConnectorSpringDamper(markerNumbers=self._ends(force), damping=force.damping))
             case TorsionSpring() | TorsionDamper():
-                law = {"damping": force.damping} if isinstance(force, TorsionDamper) else {"stiffness": force.stiffness}
+                strength = force.damping if isinstance(force, TorsionDamper) else force.stiffness
+                law = {"damping" if isinstance(force, TorsionDamper) else "stiffness": strength / self.length**2}
                 if isinstance(force, TorsionSpring):
                     law["offset"] = force.rest_angle - self._start(force.second) + self._start(force.first)
                 ends = [self._rotation(force.first), self._rotation(force.second)]
@@ -224,10 +176,13 @@ class _System:
             case Torque():
                 for name, torque in ((force.first, -force.torque), (force.second, force.torque)):
                     if name is not None:
-                        self.system.AddLoad(items.LoadCoordinate(markerNumber=self._rotation(name), load=torque))
+                        self.system.AddLoad(
+                            items.LoadCoordinate(markerNumber=self._rotation(name), load=torque / self.length**2)
+                        )
             case Force():
                 marker = self._point(force.second, force.second_point)
-                self.system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=[*force.force, 0.0]))
+                pull = [value / self.length for value in (*force.force, 0.0)]
+                self.system.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=pull))
 
     def _disc(self, ends: list[int], held: list[int], radius: float, axle: list[float], normal: list[float]) -> None:
         """A disc of the second marker on the plane of the first; held: along the axle, forwards, along the normal."""
@@ -246,11 +201,12 @@ class _System:
         heading, inward = float(ground.angle(joint.rolling.ground_arc)), float(body.angle(arc)) + math.pi / 2
         (x, y), radius = joint.second_point, 1 / low
         centre = (x + radius * math.cos(inward), y + radius * math.sin(inward))
-        ends = [self._point(joint.first, joint.first_point, True), self._point(joint.second, centre, True)]
-        self._disc(ends, [0, 1, 1], radius, AXIS, [math.sin(heading), -math.cos(heading), 0.0])
+        # As velocities alone are held, the plane's place does not matter; in a body the engine takes no other one.
+        ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, centre, True)]
+        self._disc(ends, [0, 1, 1], radius / self.length, AXIS, [math.sin(heading), -math.cos(heading), 0.0])
         return 3
 
-    def record(self, engine: Exudyn, dt: float, samples: int, every: int) -> Recorded:
+    def record(self, engine: Solving, dt: float, samples: int, every: int) -> Recorded:
         exudyn = self.exudyn
         settings = exudyn.SimulationSettings()
         steps = settings.timeIntegration
@@ -260,12 +216,11 @@ class _System:
         if engine.sparse:
             settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         steps.generalizedAlpha.spectralRadius = engine.damping
-        velocities = any(isinstance(joint, Skate | Roll | Drive) for joint in self.mechanism.joints)
         if engine.consistent:
             steps.generalizedAlpha.computeInitialAccelerations = False
             start = Dynamics(self.mechanism, 0.0).acceleration(self.mechanism.pose, self.mechanism.twist, 0.0)
             self.system.systemData.SetODE2Coordinates_tt(
-                start.reshape(-1).tolist(), configuration=exudyn.ConfigurationType.Initial
+                (start / self.unit).reshape(-1).tolist(), configuration=exudyn.ConfigurationType.Initial
             )
         settings.solution.sensors.writePeriod = every * dt
         settings.solution.file.write = False
@@ -283,10 +238,11 @@ class _System:
             for body, sensor in enumerate(sensors):
                 told = np.array(self.system.GetSensorStoredData(sensor)).reshape(-1, 4)[: samples + 1, 1:]
                 states[kind, : len(told), body], last = told, len(told) - 1
+        states *= self.unit
         states[0] += self.mechanism.pose  # coordinates count from where a node stands at the start
         if warnings:
             states[:, max(1, last) :] = np.nan
-        if velocities and not engine.consistent:
+        if holds_velocities(self.mechanism) and not engine.consistent:
             states[2] = np.nan
             warnings.append("ours: reactions are not told, as the start's accelerations ignore velocity constraints")
         mechanism = self.mechanism
@@ -294,9 +250,3 @@ class _System:
         return Recorded(
             pose, twist, acceleration, stepping, mechanism.inertias, np.array(mechanism.gravity), tuple(warnings)
         )
-
-
-DEFAULT = Exudyn("default")
-TUNED = Exudyn("tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-12, consistent=True, sparse=True)
-EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(2, 4, 6))
-VARIANTS = (DEFAULT, TUNED, EXTENDED)

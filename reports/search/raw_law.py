@@ -1,0 +1,216 @@
+"""The accelerations that models for MuJoCo alone have to give, and by what those that it gives differ.
+
+The judge describes the bodies of a model by pins, slots and drives, and takes from MuJoCo nothing but how far each
+constraint gives way (`efc_R`).
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.joints import Drive, Joint, Pin, Slot
+from reference.mechanism import Body, Mechanism
+from reference.validation import InvalidMechanism
+from reports.search.law import constrained
+from reports.search.parts import ladder
+from reports.search.raw import Model, coordinates, wrapped, xml
+from reports.search.recipe import LEAST_RANK, NO_MOTION
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A model as the judge sees it: rows of the tree, of the coordinates, and of each equality; all (rows, 3 bodies).
+
+    `right` are the values of J a of each; `rates` (coordinates,) a motion that the equalities allow.
+    """
+
+    mechanism: Mechanism
+    tree: tuple[Array, Array]
+    own: tuple[Array, Array]
+    equalities: tuple[tuple[Array, Array], ...]
+    rates: Array
+
+    @property
+    def directions(self) -> Array:
+        """Twists (3 bodies, coordinates) of the coordinates' unit velocities."""
+        held = len(self.tree[0])
+        return np.asarray(np.linalg.inv(np.vstack([self.tree[0], self.own[0]]))[:, held:], dtype=np.float64)
+
+    def expected(self, give: Array) -> Array:
+        """Accelerations of the coordinates, where the equalities' rows give way (rows, any) to their forces."""
+        rows = np.vstack([self.tree[0], *(rows for rows, _ in self.equalities)])
+        right = np.concatenate([self.tree[1], *(right for _, right in self.equalities)])
+        soft = np.vstack([np.zeros((len(self.tree[0]), give.shape[1])), give])
+        law = constrained(rows, right, self.mechanism.inertias, self.mechanism.free_fall, soft)
+        return self.own[0] @ law.motion.reshape(-1) - self.own[1]
+
+
+@lru_cache(maxsize=4)  # the same model is drawn, judged, and asked of MuJoCo
+def judged(model: Model) -> Judged:
+    """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
+    frames: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0)]
+    bodies, tree = [], []
+    own: dict[tuple[int, str], Joint] = {}
+
+    def placed(frame: tuple[float, float, float], x: float, y: float) -> tuple[float, float]:
+        cosine, sine = math.cos(frame[2]), math.sin(frame[2])
+        return frame[0] + cosine * x - sine * y, frame[1] + sine * x + cosine * y
+
+    for index, link in enumerate(model.links, start=1):
+        base, parent = frames[link.parent], f"b{link.parent}" if link.parent else None
+        at = placed(base, link.offset[0] / 10, link.offset[1] / 10)
+        frame = (*at, base[2] + link.angle * 0.3)
+        frames.append(frame)
+        centre = (link.centre[0] / 10, link.centre[1] / 10)
+        name, origin = f"b{index}", (-centre[0], -centre[1])
+        bodies.append(
+            Body(name, float(ladder(link.mass)), float(ladder(link.inertia)), (*placed(frame, *centre), frame[2]))
+        )
+        arm = (link.offset[0] / 10, link.offset[1] / 10)
+        if link.parent:
+            before = model.links[link.parent - 1].centre
+            arm = (arm[0] - before[0] / 10, arm[1] - before[1] / 10)
+        for slide in range(link.slides):  # the coordinate is the distance across a line a quarter turn before it
+            line = link.angle * 0.3 + slide * math.pi / 2 - math.pi / 2
+            own[index, f"slide {slide}"] = Slot(f"{name} slide {slide}", parent, name, arm, line, origin)
+        if link.turns:
+            own[index, "hinge"] = Drive(f"{name} hinge", parent, name, 0.0, link.angle * 0.3)
+        else:
+            tree.append(Drive(f"{name} angle", parent, name, 0.0, link.angle * 0.3))
+        if link.slides == 0:
+            tree.append(Pin(f"{name} pin", parent, name, arm, origin))
+        elif link.slides == 1:
+            tree.append(Slot(f"{name} line", parent, name, arm, link.angle * 0.3, origin))
+
+    loops: list[Joint] = []
+    for number, each in enumerate(model.equalities):
+        if each.kind in ("connect", "weld"):
+            if not 0 < each.first <= len(bodies) or not 0 <= each.second <= len(bodies) or each.first == each.second:
+                raise InvalidMechanism(f"model: equality {number} joins bodies {each.first} and {each.second}")
+            anchor = each.anchor if each.kind == "connect" else (0, 0)
+            x, y = placed(frames[each.first], anchor[0] / 10, anchor[1] / 10)
+            ends = [None if body == 0 else f"b{body}" for body in (each.second, each.first)]
+            points = [_seen(bodies, body, x, y) for body in (each.second, each.first)]
+            loops.append(Pin(f"{number} pin", ends[0], ends[1], points[0], points[1]))
+            if each.kind == "weld":
+                turn = frames[each.first][2] - frames[each.second][2]
+                loops.append(Drive(f"{number} angle", ends[0], ends[1], 0.0, turn))
+    order = coordinates(model)
+    joints = [*tree, *(own[each] for each in order), *loops]
+    still = Mechanism(tuple(bodies), tuple(joints), (float(model.gravity[0]), float(model.gravity[1])))
+    return _moving(model, still, sum(joint.size for joint in tree), len(order))
+
+
+def _seen(bodies: list[Body], body: int, x: float, y: float) -> tuple[float, float]:
+    if body == 0:
+        return x, y
+    at_x, at_y, angle = bodies[body - 1].pose
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return cosine * (x - at_x) + sine * (y - at_y), cosine * (y - at_y) - sine * (x - at_x)
+
+
+def _moving(model: Model, still: Mechanism, held: int, count: int) -> Judged:
+    """With velocities that all rows allow, and the terms that they bring."""
+    rows = still.rows(still.pose)
+    own = slice(held, held + count)
+
+    def equalities(all_rows: Array, right: Array, rates: Array) -> list[tuple[Array, Array]]:
+        out, begin = [], own.stop
+        for each in model.equalities:
+            if each.kind in ("connect", "weld"):
+                part = slice(begin, begin + (2 if each.kind == "connect" else 3))
+                begin = part.stop
+                out.append((all_rows[part], right[part]))
+                continue
+            slope, bend = each.curve[0] / 2, each.curve[1]  # the second derivative is twice the coefficient
+            if not (0 <= each.first < count and 0 <= each.second < count and each.first != each.second):
+                raise InvalidMechanism(f"model: an equality of coordinates {each.first} and {each.second} is none")
+            sums = [list(wrapped(one)) if each.kind == "tendon" else [one] for one in (each.first, each.second)]
+            (first, first_right), (second, second_right) = (
+                (all_rows[own][one].sum(axis=0), right[own][one].sum()) for one in sums
+            )
+            square = rates[sums[1]].sum() ** 2
+            out.append(((first - slope * second)[None], np.array([first_right - slope * second_right + bend * square])))
+        return out
+
+    loops = np.vstack(
+        [np.zeros((0, rows.shape[1])), *(row for row, _ in equalities(rows, np.zeros(len(rows)), np.zeros(count)))]
+    )
+    whole = np.vstack([rows[:held], loops])
+    norm = np.linalg.norm(whole, axis=1)
+    if not np.all(norm > 0) or len(whole) > whole.shape[1]:
+        raise InvalidMechanism("model: an equality holds nothing, or there are too many")
+    sizes = np.linalg.svd(whole / norm[:, None], compute_uv=False)
+    if len(sizes) and sizes[-1] < LEAST_RANK * sizes[0]:
+        raise InvalidMechanism("model: the equalities' rows are nearly dependent")
+    wanted = np.linalg.solve(np.vstack([rows[:held], rows[own]]), np.concatenate([np.zeros(held), _wanted(model)]))
+    twist = wanted - np.linalg.pinv(whole / norm[:, None]) @ ((whole @ wanted) / norm)
+    twist = twist - np.linalg.pinv(whole / norm[:, None]) @ ((whole @ twist) / norm)
+    if np.abs(twist).max() <= NO_MOTION * np.abs(wanted).max():
+        twist = np.zeros_like(twist)
+    right = still.bias(still.pose, twist.reshape(-1, 3))
+    rates = rows[own] @ twist
+    return Judged(
+        still, (rows[:held], right[:held]), (rows[own], right[own]), tuple(equalities(rows, right, rates)), rates
+    )
+
+
+def _wanted(model: Model) -> Array:
+    place = {"slide 0": 0, "slide 1": 1, "hinge": 2}
+    return np.array([model.links[body - 1].velocity[place[what]] / 2 for body, what in coordinates(model)])
+
+
+def errors(model: Model) -> dict[str, float]:
+    """By what MuJoCo's accelerations miss the law, relative to the largest; see `found_and_expected`."""
+    judge = judged(model)
+    found, expected = found_and_expected(model, judge)
+    # Sizes that the accelerations come from: gravity, and the square of the rates.
+    size = max(np.abs(expected).max(), np.hypot(*model.gravity), np.abs(judge.rates).max() ** 2)
+    error = float(np.abs(found - expected).max())
+    if not np.isfinite(error):
+        return {"acceleration": np.inf}
+    return {"acceleration": error / size if size > 0 else (np.inf if error > 0 else 0.0)}
+
+
+def found_and_expected(model: Model, judge: Judged) -> tuple[Array, Array]:
+    """Accelerations (coordinates,) of MuJoCo, and of the law that it declares."""
+    import mujoco
+
+    compiled = mujoco.MjModel.from_xml_string(xml(model))
+    data = mujoco.MjData(compiled)
+    data.qvel[:] = judge.rates
+    mujoco.mj_forward(compiled, data)
+    directions = judge.directions
+    count = sum(len(right) for _, right in judge.equalities)
+    give, begin = np.zeros((count, count)), 0
+    lines = jacobian(mujoco, compiled, data)
+    for number, (rows, right) in enumerate(judge.equalities):
+        own = [row for row in range(data.nefc) if data.efc_id[row] == number and np.linalg.norm(lines[row]) > 1e-12]
+        in_tree = rows @ directions
+        factors = np.linalg.lstsq(in_tree.T, lines[own].T, rcond=None)[0].T
+        part = slice(begin, begin + len(right))
+        begin = part.stop
+        give[part, part] = np.linalg.solve(factors, np.diag(np.sqrt(data.efc_R[own])))
+    return data.qacc.copy(), judge.expected(give)
+
+
+def jacobian(mujoco: Any, compiled: Any, data: Any) -> Array:
+    """MuJoCo's rows (rows, nv), whichever way it stores them."""
+    if not mujoco.mj_isSparse(compiled):
+        return data.efc_J.reshape(data.nefc, compiled.nv)
+    dense = np.zeros((data.nefc, compiled.nv))
+    for row in range(data.nefc):
+        begin, size = data.efc_J_rowadr[row], data.efc_J_rownnz[row]
+        dense[row, data.efc_J_colind[begin : begin + size]] = data.efc_J.reshape(-1)[begin : begin + size]
+    return dense

@@ -1,0 +1,115 @@
+"""How many steps stand for one: when rough runs are made, what they cost, and when no more of them are tried."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engines import finer
+from engines.finer import Division, division, steps_for_one, tells_itself
+from engines.pymunk import EXTENDED
+from reference.four_bar.scenes import FreeFourBar
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from tests.mechanisms import pendulum
+from tests.toys import Toy
+
+ORDER = 4.0
+
+
+def run_with(estimate: float, mechanism: Mechanism, duration: float = 1.0, samples: int = 16) -> Trajectory:
+    """A motion at rest whose estimate is this many radians, everywhere."""
+    t = np.linspace(0.0, duration, samples + 1)
+    still = np.zeros((samples + 1, len(mechanism.bodies), 3))
+    reaction = np.zeros((samples + 1, mechanism.row_count))
+    return Trajectory(t, still, still, reaction, estimate=np.full_like(still, estimate) * [0, 0, 1])
+
+
+def losing(losses: dict[int, float], mechanism: Mechanism, asked: list[int]):
+    """Builds rough runs that lose so much in a time scale, by how many times as fine they are."""
+    duration = 0.5 * mechanism.time_scale
+    roughest = 0
+
+    def build(dt: float):
+        def run(samples: int, every: int) -> Trajectory:
+            nonlocal roughest
+            roughest = roughest or every
+            asked.append(every // roughest)
+            lost = losses[every // roughest] * duration / mechanism.time_scale
+            return run_with(lost, mechanism, duration, samples)
+
+        return run
+
+    return division(Toy("rough"), build, mechanism, duration, ORDER)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("losses", "asked", "steps"),
+    [
+        ({1: 1e-7}, [1], 1),  # a usual motion
+        ({1: 1e-2, 4: 1e-4}, [1, 4], 13),  # 4 (1e-4 / 1e-6)^(1/4), rounded up
+        ({1: 5.0, 4: 9.0, 16: 1e-5}, [1, 4, 16], 29),  # too fast to be followed, until the steps are short enough
+        ({1: 1e-3, 4: 9.0}, [1, 4], 1),  # it seemed to be followed, and is lost by finer steps: no series in the step
+    ],
+)
+def test_rough_runs_become_finer_for_as_long_as_that_can_help(losses, asked, steps):
+    made: list[int] = []
+    found = losing(losses, pendulum(), made)
+    assert made == asked
+    assert found.steps == steps
+
+
+def test_a_run_tells_itself_if_its_estimate_is_small_at_the_rough_step_too():
+    own = pendulum()
+    duration = 0.5 * own.time_scale
+    rough = duration / finer.FEWEST
+    small = finer.USUAL * duration / own.time_scale
+    assert tells_itself(run_with(0.9 * small, own, duration), own, rough, ORDER)
+    assert not tells_itself(run_with(1.1 * small, own, duration), own, rough, ORDER)
+    # With half the step an order of four leaves a sixteenth, and longer steps than the rough ones are no excuse.
+    assert tells_itself(run_with(0.9 * small / 16, own, duration), own, rough / 2, ORDER)
+    assert not tells_itself(run_with(1.1 * small / 16, own, duration), own, rough / 2, ORDER)
+    assert not tells_itself(run_with(1.1 * small, own, duration), own, 2 * rough, ORDER)
+
+
+def test_a_usual_motion_makes_no_rough_run(monkeypatch):
+    def refuse(*_):
+        raise AssertionError("a rough run was made")
+
+    monkeypatch.setattr(finer, "_found", refuse)
+    own = FreeFourBar().mechanism()
+    found = EXTENDED.build(own, 1e-3)(10, 10)
+    assert found.estimate is not None
+    assert found.estimate.max() < 1e-9
+
+
+def test_what_a_rough_run_takes_is_part_of_the_stepping_also_when_it_is_known_already(monkeypatch):
+    own = FreeFourBar().mechanism()
+    monkeypatch.setattr("engines.extrapolated.tells_itself", lambda *_: False)
+    monkeypatch.setattr("engines.extrapolated.division", lambda *_: Division(1, 7.0))
+    assert EXTENDED.build(own, 1e-3)(2, 5).stepping > 7.0
+    # And what was run before the steps were divided.
+    monkeypatch.setattr("engines.extrapolated.division", lambda *_: Division(2, 0.0))
+    divided = EXTENDED.build(own, 1e-3)(2, 5)
+    plain = replace(EXTENDED, pins=replace(EXTENDED.pins, divides=False)).build(own, 0.5e-3)(2, 10)
+    assert np.array_equal(divided.pose, plain.pose)
+    assert divided.t[-1] == pytest.approx(plain.t[-1])
+
+
+def test_a_division_is_found_once_and_keeps_what_it_took():
+    made: list[int] = []
+    own = pendulum()
+    first = losing({1: 1e-2, 4: 1e-4}, own, made)
+    again = losing({1: 1e-2, 4: 1e-4}, own, made)
+    assert again is first
+    assert made == [1, 4]
+    assert first.seconds > 0
+
+
+def test_steps_for_one_is_the_division_without_its_cost():
+    own = pendulum()
+    duration = 0.5 * own.time_scale
+    build = lambda dt: lambda samples, every: run_with(0.0, own, duration, samples)  # noqa: E731
+    assert steps_for_one(Toy("still"), build, own, duration, ORDER) == 1  # type: ignore[arg-type]
