@@ -17,10 +17,11 @@ import pytest
 
 from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio, registry
 from engines.altered import Altered
+from engines.conformance.changes import Isometry
 from reference.joints import Gear
 from reference.mechanism import Mechanism
 from reference.validation import InvalidMechanism
-from reports.search import instant_mjx
+from reports.search import instant_mjx, relations
 from reports.search.recipe import build
 from reports.search.renumbered import RUN, SHAPES, of_a_shape
 from reports.search.subjects import Adapted, Told
@@ -142,6 +143,25 @@ def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str,
     build, change = box2d.Box2D.build, planted(kind, 1e-3)
     monkeypatch.setattr(box2d.Box2D, "build", lambda self, mechanism, dt: build(self, change(mechanism), dt))
     assert is_found(engine, kinds, 40, "instant")
+
+
+def test_what_box2d_rounds_grows_with_the_distance() -> None:
+    """So that differences of two descriptions are rounded places, and nothing that the shift itself does."""
+    engine = box2d.DEFAULT
+    if registry.missing(engine):
+        pytest.skip(registry.missing(engine))
+    subject = Adapted(engine)
+    growth = []
+    for number in (7, 20, 31, 44, 60):
+        right = build(subject.draw(3, number, ("pin", "slot", "rod", "weld", "spring", "force", "torque"), 0))
+        apart = []
+        for far in (100.0, 1000.0):
+            changed, back = Isometry(shift=(0.37 * far, -0.29 * far))(right)
+            step = relations.STEP * right.time_scale
+            runs = [engine.build(each, step)(1, relations.STEPS) for each in (right, changed)]
+            apart.append(np.abs(back(runs[1])[1][-1] - runs[0].twist[-1]).max())
+        growth.append(apart[1] / apart[0])
+    assert 3 < np.median(growth) < 30  # ten, as the distance
 
 
 # ---------------------------------------------------------------------------------------------------------------- MJX

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from engines import Unsupported
@@ -85,11 +86,12 @@ def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
         expected = np.array(release(other).asked(model)["expected"])
     else:
         _, expected = raw_law.found_and_expected(model, judge)
+    version = other or mujoco.__version__
     names = [f"b{body} {what}" for body, what in raw.coordinates(model)]
     return f'''"""MuJoCo's accelerations in a state that satisfies every constraint.
 
 Expected: M a = f + J^T F and J a + R F = -J' v, where R is MuJoCo's own (efc_R) and J' v the term of the velocities.
-The numbers of `expected` are those of an independent calculation.
+The numbers of `expected` are those of an independent calculation, with the R of MuJoCo {version}.
 """
 
 import mujoco
@@ -105,6 +107,8 @@ data.qvel[:] = {_numbers(judge.rates)}
 mujoco.mj_forward(model, data)
 expected = np.array({_numbers(expected)})
 print("MuJoCo", mujoco.__version__, "joints", {names!r})
+if mujoco.__version__ != {version!r}:
+    print("expected is of MuJoCo {version}, whose constraints may give way otherwise")
 print("found   ", data.qacc)
 print("expected", expected)
 print("largest difference", np.abs(data.qacc - expected).max())
