@@ -12,7 +12,8 @@ What one step does (its solver.c): `substeps` times with h = dt / substeps it ki
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
 So a state is read at its instant, and the motion is that of a semi-implicit Euler method of step h.
 
-Joints are springs of 60 Hz with a damping ratio of 2, solved implicitly (b2MakeSoft in its solver.h): frequency w and
+Joints are springs of 60 Hz, or of a quarter of the rate of sub-steps where that is less, with a damping ratio of 2,
+solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and
 ratio z give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push
 is taken back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower,
 while what opens it falls with h too. So no order can be promised. pyb2d3 sets the frequency of contacts, which is

@@ -6,6 +6,7 @@ import importlib
 import importlib.metadata
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 # Looking through all that is installed takes half a second, and is the same in every test.
-DISTRIBUTIONS = importlib.metadata.packages_distributions()
+DISTRIBUTIONS = cache(importlib.metadata.packages_distributions)
 
 
 def forget() -> None:
@@ -32,7 +33,7 @@ def forget() -> None:
 
 @pytest.fixture(autouse=True)
 def _fresh(monkeypatch):
-    monkeypatch.setattr(importlib.metadata, "packages_distributions", lambda: DISTRIBUTIONS)
+    monkeypatch.setattr(importlib.metadata, "packages_distributions", DISTRIBUTIONS)
     forget()
     yield
     forget()

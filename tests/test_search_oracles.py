@@ -316,3 +316,13 @@ def test_a_script_for_pymunk_prints_what_the_joints_ask_for() -> None:
     done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
     assert float(done.stdout.split("largest difference")[1]) < 1e-9  # a right case: expected is what is found
     assert "reports" not in text
+
+
+def test_a_script_for_mujoco_through_our_adapter_prints_what_its_law_asks_for() -> None:
+    subject = Adapted(TUNED)
+    text = script(subject, subject.draw(SEED, 2, ("pin", "weld", "gear", "spring", "torque"), 0), "acceleration")
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert "expected" in done.stdout
+    assert float(done.stdout.split("largest difference")[1]) < 1e-9
+    assert "reports" not in text
+    assert "engines" not in text

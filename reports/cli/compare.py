@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,10 +20,12 @@ if TYPE_CHECKING:
 
     from engines import Engine
     from reports.cli.terminal import Terminal
+    from reports.grid.measure import Measurement
     from reports.versions.column import Column
     from reports.versions.comparison import Comparison
 
 WIDTH = 150  # into a file or a pipe
+LONGEST = 300  # letters of a reason
 # A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
 SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
 
@@ -175,6 +178,9 @@ def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
     if rows:
         print_table(console, f"From {sides[0].label} to {sides[1].label}", header, rows, 2)
         console.print()
+    for side, rows in zip(sides, _ended(found), strict=True):
+        for told, count in rows.items():
+            console.say(f"{side.label}: {told}{f' ({count} cells)' if count > 1 else ''}")
     turned = [[t.scene, t.method, f"{t.before:.1f}", f"{t.after:.1f}"] for t in found.turns]
     if turned:
         print_table(console, "Order of the angle's error", ("scene", "method", "before", "after"), turned, 2)
@@ -184,3 +190,18 @@ def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
     if math.isfinite(found.cost):
         cost = f"CPU time is {found.cost:.2f} times as much, by the median"
     console.say(f"{found.pairs} cells in both: {len(found.worse)} numbers are worse, {better} better or other; {cost}")
+
+
+def _ended(found: Comparison) -> tuple[Counter[str], Counter[str]]:
+    """Of each side why cells ended as they did, where the other's did not, and how many for each reason."""
+    from reports.grid.outcomes import Outcome
+
+    def told(row: Measurement) -> str:
+        usable = Outcome(row.outcome).comparable
+        return "" if usable else ": ".join(filter(None, (row.outcome, " ".join(row.sentence.split())[:LONGEST])))
+
+    ended = [each for each in found.differences if each.quantity == "outcome"]
+    before, after = (Counter(map(told, rows)) for rows in ([d.before for d in ended], [d.after for d in ended]))
+    for counted in (before, after):
+        del counted[""]
+    return before, after

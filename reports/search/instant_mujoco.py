@@ -136,6 +136,13 @@ class Instant:
             right = np.where(self.solved, rows @ coasting.reshape(-1), right)
         return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.give)
 
+    def accelerations(self) -> Array:
+        """The accelerations (tree coordinates,) of the law."""
+        _, _, coasting = _motion(self.model, self.data, np.zeros(self.model.compiled.nv))
+        own = _directions(self.model, self.data)[:, self.model.address]
+        told = np.linalg.lstsq(own, (self.law().motion - coasting).reshape(-1), rcond=None)[0]
+        return np.asarray(told, dtype=np.float64)
+
     def missed(self, accelerations: Array, law: Answer | None = None) -> float:
         """By what accelerations (nv,) miss the law, relative to the largest."""
         _, _, change = _motion(self.model, self.data, accelerations)

@@ -17,8 +17,9 @@ from reports.search.chunk import Asked, asked, from_words, lost
 from reports.search.picture import distribution
 from reports.search.recipe import LEAST_RANK
 from reports.search.release import release_of
+from reports.search.renumbered import SHAPES
 from reports.search.shrunk import Shrink, line_of, worst_of
-from reports.search.subjects import Adapted, Alone, Subject
+from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.search.summary import HEADER, refused, summary
 
 
@@ -53,6 +54,7 @@ def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot
     page = {
         "cases": len(told),
         "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
+        "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
         "rank": f"{LEAST_RANK:g}",
         "searched": _searched(told),
         "picture": next(iter(out), ""),

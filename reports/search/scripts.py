@@ -4,16 +4,29 @@ from __future__ import annotations
 
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from engines import Unsupported
+from engines.mjx import Mjx
+from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from engines.pymunk.written_script import object_lines
-from reports.search import instant_pymunk, raw, raw_law
+from reports.search import instant_mujoco, instant_pymunk, raw, raw_law
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 from reports.search.release import release
-from reports.search.subjects import Adapted, Alone, Subject
+from reports.search.subjects import Adapted, Alone, Subject, at_an_instant
+
+MJX_IMPORTS = """from importlib.metadata import version as version_of
+
+import jax
+from mujoco import mjx
+
+jax.config.update("jax_enable_x64", True)
+"""
+FOUND_BY_MJX = """put = mjx.put_model(model), mjx.put_data(model, data)
+found, version = jax.jit(mjx.forward)(*put).qacc, version_of("mujoco-mjx")"""
 
 
 def script(subject: Subject, case: Any, check: str) -> str:
@@ -22,7 +35,48 @@ def script(subject: Subject, case: Any, check: str) -> str:
         return of_mujoco_alone(case, subject.release)
     if isinstance(subject, Adapted) and check == "velocity":
         return of_pymunk(subject.engine, case)
+    if isinstance(subject, Adapted) and check == "acceleration":
+        return of_mujoco(subject.engine, case)
     return ""
+
+
+def of_mujoco(engine: Any, recipe: Recipe) -> str:
+    """The model as MJCF and its accelerations by MuJoCo or MJX; empty where our code helps while the engine steps."""
+    mechanism = build(recipe)
+    inner = at_an_instant(engine, mechanism)
+    if not isinstance(inner, MuJoCo | Mjx):
+        return ""
+    method = inner.settings if isinstance(inner, Mjx) else inner
+    dt = instant_mujoco.STEP * mechanism.time_scale
+    try:
+        text, model = method.text(mechanism, dt), method.model(mechanism, dt, as_text=True)
+    except Unsupported:
+        return ""
+    here = instant_mujoco.Instant.of(mechanism, model, model.start(), method.softness(mechanism, dt))
+    lines = f"import mujoco\nimport numpy as np\n{MJX_IMPORTS if isinstance(inner, Mjx) else ''}"
+    return f'''"""The accelerations of a model at its start, which satisfies every constraint.
+
+Expected: M a = f + J^T F and J a + R F = aref - J' v, where R and aref are MuJoCo's own (efc_R, efc_KBIP) and J' v the
+term of the velocities. The numbers of `expected` are those of an independent calculation.
+"""
+
+{lines}
+MODEL = """
+{text.strip()}
+"""
+
+model = mujoco.MjModel.from_xml_string(MODEL)
+data = mujoco.MjData(model)
+mujoco.mj_resetDataKeyframe(model, data, 0)
+mujoco.mj_forward(model, data)
+{FOUND_BY_MJX if isinstance(inner, Mjx) else "found, version = data.qacc, mujoco.__version__"}
+expected = np.array({_numbers(here.accelerations())})
+found = np.array(found)[{model.address!r}]
+print({("MJX" if isinstance(inner, Mjx) else "MuJoCo")!r}, version)
+print("found   ", found)
+print("expected", expected)
+print("largest difference", np.abs(found - expected).max())
+'''
 
 
 def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
@@ -32,11 +86,12 @@ def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
         expected = np.array(release(other).asked(model)["expected"])
     else:
         _, expected = raw_law.found_and_expected(model, judge)
+    version = other or mujoco.__version__
     names = [f"b{body} {what}" for body, what in raw.coordinates(model)]
     return f'''"""MuJoCo's accelerations in a state that satisfies every constraint.
 
 Expected: M a = f + J^T F and J a + R F = -J' v, where R is MuJoCo's own (efc_R) and J' v the term of the velocities.
-The numbers of `expected` are those of an independent calculation.
+The numbers of `expected` are those of an independent calculation, with the R of MuJoCo {version}.
 """
 
 import mujoco
@@ -52,6 +107,8 @@ data.qvel[:] = {_numbers(judge.rates)}
 mujoco.mj_forward(model, data)
 expected = np.array({_numbers(expected)})
 print("MuJoCo", mujoco.__version__, "joints", {names!r})
+if mujoco.__version__ != {version!r}:
+    print("expected is of MuJoCo {version}, whose constraints may give way otherwise")
 print("found   ", data.qacc)
 print("expected", expected)
 print("largest difference", np.abs(data.qacc - expected).max())

@@ -17,6 +17,7 @@ from reports.search.shrinking import shrunk
 from reports.search.subjects import ORACLES, Adapted, Subject, Told
 
 SECONDS = 20.0  # of CPU time for one finding
+TRIED = 2  # shapes of which each takes an engine long to build: an example is smaller then by few bodies
 MOST = 2  # findings of one check of a subject that are made smaller
 
 
@@ -40,7 +41,7 @@ class Shrink(Task):
 
     @property
     def cost(self) -> float:
-        return SECONDS
+        return SECONDS + TRIED * getattr(self.engine, "building", 0.0)
 
     @property
     def label(self) -> str:
@@ -63,7 +64,7 @@ class Shrink(Task):
             except InvalidMechanism:
                 return False
 
-        small = shrunk(case, still, SECONDS)
+        small = shrunk(case, still, self.cost)
         told = self.subject.ask(small, self.number, oracles)
         error, bound = told.errors[self.check]
         text = self.subject.text(small)

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from engines import Engine, Unsupported
+from engines.box2d import Box2D
 from engines.extrapolated import Extrapolated
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
 from reports.search import (
+    instant_box2d,
     instant_mjx,
     instant_mujoco,
     instant_pymunk,
@@ -69,7 +71,7 @@ class Adapted:
         return EVERY
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
-        if getattr(self.engine, "building", 0.0):  # seconds for a shape
+        if is_shaped(self):
             return of_a_shape(self.engine, seed, number, kinds, decades)
         return mechanisms.recipe(seed, number, kinds, decades)
 
@@ -77,7 +79,7 @@ class Adapted:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
         mechanism = build(case)
         asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
-            "instant": lambda: _instant(_at_an_instant(self.engine, mechanism), mechanism),
+            "instant": lambda: _instant(at_an_instant(self.engine, mechanism), mechanism),
             "relations": lambda: {
                 name: (error, relations.bound(self.engine))
                 for name, error in relations.errors(self.engine, case, number).items()
@@ -133,6 +135,11 @@ class Alone:
 Subject = Adapted | Alone
 
 
+def is_shaped(subject: Subject) -> bool:
+    """Whether its cases are of few shapes, since a model takes seconds to build."""
+    return isinstance(subject, Adapted) and getattr(subject.engine, "building", 0.0) > 0
+
+
 def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> Told:
     errors: dict[str, tuple[float, float]] = {}
     left, words = [], []
@@ -153,9 +160,9 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> 
     return Told(errors, tuple(left), "; ".join(words))
 
 
-def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx:
+def at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:
     """The engine that is stepped in the end: inside of those that choose and combine. Raises NotAsked."""
-    while not isinstance(engine, MuJoCo | Pymunk | Mjx):
+    while not isinstance(engine, MuJoCo | Pymunk | Mjx | Box2D):
         if hasattr(engine, "chosen"):
             engine = engine.chosen(mechanism)
         elif isinstance(engine, Extrapolated):
@@ -165,12 +172,14 @@ def _at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx:
     return engine
 
 
-def _instant(engine: MuJoCo | Pymunk | Mjx, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+def _instant(engine: MuJoCo | Pymunk | Mjx | Box2D, mechanism: Mechanism) -> dict[str, tuple[float, float]]:
     match engine:
         case MuJoCo():
             bound, found = instant_mujoco.bound(engine), instant_mujoco.errors(engine, mechanism)
         case Mjx():
             bound, found = instant_mujoco.bound(engine.settings), instant_mjx.errors(engine, mechanism)
+        case Box2D():
+            bound, found = instant_box2d.bound(engine), instant_box2d.errors(engine, mechanism)
         case Pymunk():
             bound, found = instant_pymunk.bound(engine), instant_pymunk.errors(engine, mechanism)
     return {name: (error, bound) for name, error in found.items()}
