@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Protocol, runtime_checkable
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Holder, Promise, Run, Size, Unpromised
-from engines.finer import Division, division, tells_itself
+from engines.finer import Division, Lasting, division, tells_itself
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -122,6 +122,14 @@ class Extrapolated(Valid):
         return sum(self.levels) * self.engine.step_cost(mechanism)
 
     @validated
+    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
+        """The same in a motion of `duration` [s]: see `engines.finer.Lasting`."""
+        inner = self.engine
+        lasting = isinstance(inner, Lasting)
+        each = inner.step_cost_within(mechanism, duration) if lasting else inner.step_cost(mechanism)
+        return sum(self.levels) * each
+
+    @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         """Whoever holds it in the runs that are combined."""
         return self.engine.holder(joint, mechanism)
@@ -145,9 +153,11 @@ class Extrapolated(Valid):
 
 @runtime_checkable
 class Following(Protocol):
-    """A run that can make use of how the coarsest run of the same samples went, which is called before it."""
+    """A run that can make use of how the coarsest run of the same samples went."""
 
-    def follow(self, coarser: Trajectory) -> None: ...
+    def follow(self, coarser: Trajectory) -> None:
+        """Called before the run itself."""
+        ...
 
 
 class ExtrapolatedRun:
@@ -176,20 +186,21 @@ class ExtrapolatedRun:
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True
-        found = self._combined(self._runs, samples, every)
+        found = self._combined(samples, every, 1)
         order = self._method.powers[-1] + 1.0
         if self._divided is None or tells_itself(found, self._mechanism, self._dt, order):
             return found
         needed = self._divided(samples * every * self._dt)
         spent = found.stepping + needed.seconds
         if needed.steps > 1:
-            found = self._combined(self._built(needed.steps), samples, every * needed.steps)
+            found = self._combined(samples, every, needed.steps)
             spent += found.stepping
         return replace(found, stepping=spent)
 
-    def _combined(self, runs: Sequence[Run], samples: int, every: int) -> Trajectory:
-        """What the runs of all levels say, with `every` steps of the method between samples."""
+    def _combined(self, samples: int, every: int, finer: int) -> Trajectory:
+        """What the runs of all levels say, with `every` steps of the method between samples, each divided."""
         levels, powers = self._method.levels, self._method.powers
+        runs, every = self._runs if finer == 1 else self._built(finer), every * finer
         parts: list[Trajectory] = []
         for run, level in zip(runs, levels, strict=True):
             if parts and isinstance(run, Following):

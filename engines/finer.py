@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, isfinite
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from reference.validation import Count, Positive, validated
 
 SAMPLES = 16  # a motion that is fast for a while is met by some of them, and an error stays
 SHARE, FEWEST, MOST = 100, 64, 1024  # rough steps in the mechanism's time scale; at least; at most, or it is too long
-DEAREST = 1.0  # s, by the method's own `step_cost`: a rough run of long chains would cost more than smaller steps bring
+DEAREST = 1.0  # s, by the method's own formula: a rough run of long chains would cost more than smaller steps bring
 # Of a radian or of the mechanism's length, lost in its time scale by a rough run. Usual motions lose 1e-6 at most by
 # Runge and Kutta's fourth order and less by higher ones. Beyond FAST, smaller steps must bring it back to USUAL. In
 # between, and above RESOLVED, the rough steps may be too long for the order to be seen: more of them are asked.
@@ -41,6 +41,13 @@ class Division:
 
     steps: int
     seconds: float
+
+
+@runtime_checkable
+class Lasting(Protocol):
+    """An engine whose step costs more than at the start [s] in a motion that is so long that it meets worse poses."""
+
+    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float: ...
 
 
 @validated
@@ -85,11 +92,13 @@ def division(
     run's own estimate tells the rest. So it is where a motion that a rough run seemed to follow is lost by a finer one:
     then it is no series in the step, at a singular position say, and still shorter steps are not tried.
     """
+    duration = float(f"{duration:.12g}")  # which runs at different steps round differently
     for known, same, lasting, found in _known:
         if same is mechanism and lasting == duration and known == method:
             return found
     begin = time.process_time()
-    steps = _found(build, mechanism, duration, order, finest, method.step_cost(mechanism))
+    cost = method.step_cost_within(mechanism, duration) if isinstance(method, Lasting) else method.step_cost(mechanism)
+    steps = _found(build, mechanism, duration, order, finest, cost)
     found = Division(steps, time.process_time() - begin)
     _known.append((method, mechanism, duration, found))
     return found

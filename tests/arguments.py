@@ -156,7 +156,8 @@ def good(annotation: Any) -> Any:
     if annotation in simple:
         return simple[annotation]
     if origin is Annotated:
-        for value in (good(arguments[0]), 3, np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 3))):
+        arrays = (np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 3)), np.ones((1, 1)))
+        for value in (good(arguments[0]), 3, *arrays):
             if all(note.holds(value) for note in annotation.__metadata__ if hasattr(note, "holds")):
                 return value
     if origin is Literal:

@@ -12,7 +12,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The longest, each of which would keep one worker busy after the others have ended.
-FIRST = ("third_party", "wrong_models", "wheel", "any_rows", "lagrange_compiled")
+FIRST = ("third_party", "site_in_browser", "wrong_models", "any_rows", "wheel", "lagrange_compiled")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

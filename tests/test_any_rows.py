@@ -125,11 +125,12 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
 @pytest.fixture
 def undrawn(monkeypatch):
     """Pictures are made of nothing, since drawing them is what costs; which there are is decided as always."""
+    drawn = theme.svg
     for module in [module for name, module in sys.modules.items() if name.startswith("reports")]:
         for name, value in list(vars(module).items()):
             if inspect.isfunction(value) and value.__annotations__.get("return") == "Figure":
                 monkeypatch.setattr(module, name, lambda *arguments, **settings: None)
-            elif value is theme.svg:
+            elif value is drawn:
                 monkeypatch.setattr(module, name, lambda figure, title: "<svg/>")
     monkeypatch.setattr(rolling_drawings, "roulettes", lambda: None)
 

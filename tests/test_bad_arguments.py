@@ -49,6 +49,7 @@ NOT_MADE_BY_USERS = {
         "engines.lagrange.batch.Batch",
     ),
     *("engines.lagrange.compiled_run.Machine", "engines.lagrange.flat.Flat"),
+    *("engines.lagrange.differing.Differing", "engines.lagrange.differing.Part"),
     *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),

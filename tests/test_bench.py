@@ -78,11 +78,12 @@ def test_the_judges_figures_are_of_runs_that_are_right(monkeypatch):
     found = {figure.what: figure for figure in judge.figures(links=(3,))}
     assert all(figure.measured > 0 for figure in found.values())
     errors = [figure.measured for what, figure in found.items() if what.endswith("its error")]
-    assert len(errors) == 3
-    # Of order 4 at 1e-3 s, and of order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding.
+    assert len(errors) == 4
+    # Of order 4 at 1e-3 s, of order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding; and of a tolerance.
     assert errors[0] < 1e-6
     assert errors[1] < 1e-9
     assert errors[2] < errors[1] / 20
+    assert errors[3] < 1e-12
     chain = next(figure for what, figure in found.items() if what.startswith("chain of 3 links"))
     assert chain.asked == 3e-3
 
@@ -128,5 +129,5 @@ def test_crosscheck_bench_judge_prints_truths_figures_and_factors(monkeypatch, c
     told = capsys.readouterr().out
     assert "the dearest truths" in told
     assert "four-bar: one evaluation" in told
-    assert "3 four-bars: stacking them" in told
+    assert "3 four-bars: making them" in told
     assert "factor [1]" in told

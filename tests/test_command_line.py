@@ -106,7 +106,9 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
     monkeypatch.setattr(selection, "page_cells", lambda page: (cell,))
-    monkeypatch.setattr(rendering, "render_all", lambda material, command, further: {"index.md": f"made by {command}"})
+    monkeypatch.setattr(
+        rendering, "render_all", lambda material, command, further, made: {"index.md": f"made by {command}"}
+    )
     monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
         from reports.grid.measure import measure

@@ -10,8 +10,10 @@ import pytest
 from engines import finer
 from engines.finer import Division, division, steps_for_one, tells_itself
 from engines.pymunk import EXTENDED
+from engines.pymunk.methods import SETTLED
 from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
+from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests.mechanisms import pendulum
 from tests.toys import Toy
@@ -113,3 +115,41 @@ def test_steps_for_one_is_the_division_without_its_cost():
     duration = 0.5 * own.time_scale
     build = lambda dt: lambda samples, every: run_with(0.0, own, duration, samples)  # noqa: E731
     assert steps_for_one(Toy("still"), build, own, duration, ORDER) == 1  # type: ignore[arg-type]
+
+
+def test_no_rough_run_is_made_where_the_worst_pose_of_the_motion_makes_its_steps_too_dear():
+    own = pendulum()
+    duration = 0.5 * own.time_scale
+    least = {"cost": 0.0}
+
+    class Later(Toy):
+        def step_cost_within(self, mechanism: Mechanism, duration: float) -> float:
+            return least["cost"]
+
+    def refuse(dt: float):
+        raise AssertionError("a rough run was made")
+
+    least["cost"] = 1.1 * finer.DEAREST / finer.FEWEST
+    assert division(Later("dear"), refuse, own, duration, ORDER).steps == 1
+    least["cost"] = 0.9 * finer.DEAREST / finer.FEWEST
+    with pytest.raises(AssertionError, match="was made"):
+        division(Later("cheap"), refuse, own, duration, ORDER)
+
+
+def test_pymunks_steps_cost_more_in_a_motion_that_meets_a_singular_position():
+    scene = DrivenSliderCrank(offset=0.693)  # a dead centre is a hundredth away
+    own = scene.mechanism()
+    engine = EXTENDED.pins
+    assert engine.step_cost_within(own, 1e-3) == pytest.approx(engine.step_cost(own), rel=0.5)
+    assert engine.step_cost_within(own, scene.duration) > 20 * engine.step_cost(own)
+    levels = sum(engine.levels)
+    assert engine.step_cost_within(own, 0.1) == pytest.approx(levels * SETTLED.step_cost_within(own, 0.1))
+
+
+def test_durations_that_differ_by_rounding_are_one(monkeypatch):
+    own, duration = FreeFourBar().mechanism(), 0.3
+    assert duration != 3 * 0.1
+    asked: list[int] = []
+    monkeypatch.setattr("engines.pymunk.expected._poses", lambda *_: asked.append(1) or [])
+    assert SETTLED.sweeping(own, 3 * 0.1) == SETTLED.sweeping(own, duration)
+    assert asked == [1]

@@ -6,6 +6,7 @@ import importlib
 import importlib.metadata
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,19 +21,19 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 # Looking through all that is installed takes half a second, and is the same in every test.
-DISTRIBUTIONS = importlib.metadata.packages_distributions()
+DISTRIBUTIONS = cache(importlib.metadata.packages_distributions)
 
 
 def forget() -> None:
     """Files and versions are read once a process; here they change. What a text says of imports does not."""
-    for name, member in vars(fingerprint_module).items():
-        if hasattr(member, "cache_clear") and name != "_named_in":
+    for member in vars(fingerprint_module).values():
+        if hasattr(member, "cache_clear"):
             member.cache_clear()
 
 
 @pytest.fixture(autouse=True)
 def _fresh(monkeypatch):
-    monkeypatch.setattr(importlib.metadata, "packages_distributions", lambda: DISTRIBUTIONS)
+    monkeypatch.setattr(importlib.metadata, "packages_distributions", DISTRIBUTIONS)
     forget()
     yield
     forget()

@@ -44,10 +44,10 @@ def touch(monkeypatch):
     ("engine", "own", "others"),
     [
         # Its package makes the extended variant by extrapolation, so that file is run with it.
-        (pymunk.TUNED, "engines/pymunk", ("engines/mujoco", "engines/lagrange")),
+        (pymunk.TUNED, "engines/pymunk", ("engines/mujoco",)),
         (mujoco.TUNED, "engines/mujoco", ("engines/pymunk", "engines/lagrange", "engines/extrapolated")),
         (lagrange.Lagrange("rk4", "projection"), "engines/lagrange", ("engines/pymunk", "engines/mujoco")),
-        (Extrapolated(pymunk.TUNED, "x", (1, 2), (2,)), "engines/pymunk", ("engines/mujoco", "engines/lagrange")),
+        (Extrapolated(pymunk.TUNED, "x", (1, 2), (2,)), "engines/pymunk", ("engines/mujoco",)),
     ],
     ids=("pymunk", "mujoco", "lagrange", "extrapolated pymunk"),
 )
@@ -61,8 +61,9 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
         "engines/__init__",
     } <= files
     assert not [name for name in files if name.startswith(others)]
-    # Compiled code is imported by name, and only to step.
-    assert ("engines/lagrange/compiled/rows" in files) == (own == "engines/lagrange")
+    # Compiled code is imported by name, and only to step; pymunk's projections take rows from it too.
+    assert ("engines/lagrange/compiled/rows" in files) == (own != "engines/mujoco")
+    assert ("engines/pymunk/compiled/entry" in files) == (own == "engines/pymunk")
     assert not [
         name for name in files if name.startswith(("reference/pendulum", "reference/skate", "reference/wheels"))
     ]
@@ -74,7 +75,7 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
             *(f"grid/{name}" for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool")),
             *(
                 f"grid/{name}"
-                for name in ("ending", "expected", "processors", "requirements", "spending", "supervisor")
+                for name in ("ending", "expected", "imports", "processors", "requirements", "spending", "supervisor")
             ),
             *(f"grid/{name}" for name in ("tasks", "timing", "truths", "waiting", "worker", "worker_process")),
         )

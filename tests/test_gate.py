@@ -177,8 +177,12 @@ def rows(*errors: float) -> list[Measurement]:
     return [row(every=every, angle=error) for every, error in zip((1, 3, 10, 30), errors, strict=False)]
 
 
+def falling_errors(power: float, points: int = 4) -> tuple[float, ...]:
+    return tuple(1e-3 / every**power for every in (1, 3, 10, 30)[:points])
+
+
 def falling(power: float, points: int = 4) -> list[Measurement]:
-    return rows(*(1e-3 / every**power for every in (1, 3, 10, 30)[:points]))
+    return rows(*falling_errors(power, points))
 
 
 def test_the_promised_order_passes():
@@ -190,15 +194,15 @@ def test_the_promised_order_passes():
 @pytest.mark.parametrize(
     ("promised", "errors"),
     [
-        (2, falling(1)),  # falls too slowly
-        (1, falling(2)),  # the promise is weaker than the method
-        (1, rows(1e-3, 3.3e-4, 3.2e-4, 3.1e-4)),  # a plateau
-        (1, rows(1e-3, 3.3e-4, 3.2e-4)),  # levels off
-        (1, rows(1e-5, 1e-4, 1e-3, 1e-2)),  # grows
+        (2, falling_errors(1)),  # too slowly
+        (1, falling_errors(2)),  # the promise is weaker than the method
+        (1, (1e-3, 3.3e-4, 3.2e-4, 3.1e-4)),  # a plateau
+        (1, (1e-3, 3.3e-4, 3.2e-4)),  # levels off
+        (1, (1e-5, 1e-4, 1e-3, 1e-2)),  # grows
     ],
 )
 def test_another_order_a_plateau_and_growth_fail(promised, errors):
-    (check,) = order(Promise(promised), errors)
+    (check,) = order(Promise(promised), rows(*errors))
     assert not check.passed
 
 

@@ -36,7 +36,7 @@ def both(own: Mechanism, samples: int, every: int, dt: float = 1e-3) -> tuple[Tr
     """The same motion, its rows written by machine code and by Python."""
     native, python = ENGINE.build(own, dt), ENGINE.build(own, dt)
     hooks = python.model.hooks
-    plain = replace(hooks, control=tuple(each.python for each in hooks.control))
+    plain = replace(hooks, control=tuple(each.python for each in hooks.control if isinstance(each, Native)))
     return native(samples, every), replace(python, model=replace(python.model, hooks=plain))(samples, every)
 
 
@@ -80,11 +80,20 @@ def test_a_motion_that_blows_up_is_told_alike() -> None:
     assert native.warnings == python.warnings
 
 
+def test_a_row_that_is_no_number_makes_the_reference_none() -> None:
+    model = ENGINE.model(ChaplyginSleigh().mechanism(), 1e-3)
+    data = mujoco.MjData(model.compiled)
+    data.qvel[:] = 1e200  # its square is beyond all numbers
+    with model.hooked():
+        mujoco.mj_forward(model.compiled, data)
+    assert np.isnan(data.efc_aref).all()
+
+
 def test_rows_that_are_not_known_are_left_to_python(monkeypatch: pytest.MonkeyPatch) -> None:
     sleigh = ChaplyginSleigh().mechanism()
     assert isinstance(callback(sleigh), Native)
     assert not isinstance(callback(RollingEllipse().mechanism()), Native)
-    monkeypatch.setattr(row_callback, "_numba", lambda: False)
+    monkeypatch.setattr(row_callback, "machine_code", lambda: False)
     assert not isinstance(callback(sleigh), Native)
 
 
@@ -106,7 +115,7 @@ def test_machine_code_that_writes_otherwise_is_not_taken(monkeypatch: pytest.Mon
 
 def test_a_law_is_a_function_of_its_numbers() -> None:
     numbers = (0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 3.0)
-    still, across = (0.0,) * 6, (0.0, 0.5, 0.0, 0.0, 0.25, 0.0)
+    still, across = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.5, 0.0, 0.0, 0.25, 0.0)
     (row,) = Law(slot_row, numbers)(0.0, still, across)
     # A line along x: the gap is y. J = (0, -1, 0, 0, 1, 0), and J a = -3 * 0.25 - 2 * 0.5.
     assert np.allclose(row, (0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.75), rtol=0.0, atol=1e-15)

@@ -89,9 +89,9 @@ def test_a_survivor_is_good_with_a_reason_only_and_a_reason_that_is_not_needed_i
 
 def test_a_mistake_that_can_not_be_imported_or_never_ends_is_caught(tree, monkeypatch):
     assert trial(replace(SOUND, old="def area", new="import nowhere\n\n\ndef area"), tree).fate is Fate.CAUGHT
-    monkeypatch.setattr("tests.mutants.trial.LIMIT", 3.0)
+    monkeypatch.setattr("tests.mutants.trial.LIMIT", 1.0)
     endless = trial(replace(SOUND, old='    label = "area"', new="    while True:\n        pass"), tree)
-    assert (endless.fate, endless.by) == (Fate.CAUGHT, "no end within 3 s")
+    assert (endless.fate, endless.by) == (Fate.CAUGHT, "no end within 1 s")
 
 
 @pytest.mark.parametrize(

@@ -180,7 +180,7 @@ def representative(trials: Iterable[Trial], each: int = 2) -> list[Trial]:
 
 
 # Scenes whose kinds of joints and numbers others have too, at less cost: these the slow test alone looks at.
-LONGER = ("spinning_four_bar", "pendulum_100", "n_four_bar_40", "andrews")
+LONGER = ("spinning_four_bar", "pendulum_100", "n_four_bar_40", "andrews", "rolling_in_ring")
 
 REPRESENTATIVE = representative(trial for trial in whole(EXTENDED) if trial.scene.name not in LONGER)
 EVERYTHING = whole({**EXTENDED, **OTHERS})

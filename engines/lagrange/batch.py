@@ -1,4 +1,7 @@
-"""Many mechanisms of one shape stepped at once: for sweeps over parameters, maps and searches.
+"""Many mechanisms of one shape stepped at once: for sweeps over parameters and maps of them; `varied` makes them.
+
+The random search steps each of its mechanisms alone, since no two are of one shape; and its judge takes 1 to 7 % of the
+time of a case (60 motions of each of four methods). The atlas compares engines with closed forms and steps no judge.
 
 One set of flat arrays a thread, into which each mechanism's numbers are laid: compiled code holds no lock of Python's,
 so as many threads as there are processors run at the same time.

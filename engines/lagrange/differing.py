@@ -35,7 +35,7 @@ class Part:
     def of(cls, owner: str, usual: Any, given: Mapping[str, Any]) -> Part:
         """With arrays as they are given; raises InvalidMechanism for what is no number of its, or can't be one."""
         hints = typing.get_type_hints(type(usual), include_extras=True)
-        known = [] if isinstance(usual, Roll) else [name for name, value in usual.__dict__.items() if _is_number(value)]
+        known = [] if isinstance(usual, Roll) else [name for name, value in usual.__dict__.items() if is_number(value)]
         found: dict[str, Array] = {}
         for name, values in given.items():
             if name not in known:
@@ -65,14 +65,15 @@ class Part:
         """That of every mechanism, unchecked."""
         if not self.differing:
             return [self.usual] * count
-        kinds = [tuple if values.ndim > 1 else float for values in self.differing.values()]
         columns = [
-            list(map(kind, values.tolist())) for kind, values in zip(kinds, self.differing.values(), strict=True)
+            [tuple(value) for value in values.tolist()] if values.ndim > 1 else values.tolist()
+            for values in self.differing.values()
         ]
         return [_with(self.usual, dict(zip(self.differing, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a field of a joint or force is a number, or a vector of them."""
     return isinstance(value, float) or (isinstance(value, tuple) and all(isinstance(each, float) for each in value))
 
 
@@ -96,8 +97,11 @@ class Differing:
 
     def some(self, which: slice) -> Differing:
         """Some of the mechanisms."""
-        groups = ([part.some(which) for part in group] for group in (self.bodies, self.joints, self.forces))
-        return Differing(self.mechanism, *groups, self.gravity[which], self.pose[which], self.twist[which])
+        bodies, joints, forces = (
+            [part.some(which) for part in group] for group in (self.bodies, self.joints, self.forces)
+        )
+        rest = self.gravity[which], self.pose[which], self.twist[which]
+        return Differing(self.mechanism, bodies, joints, forces, *rest)
 
     def rates(self) -> list[Array | float]:
         """The right side of every row, as in `Mechanism.rate`: a number, or one of each mechanism."""
@@ -132,7 +136,7 @@ class Differing:
     def _wide(self, part: Part) -> Any:
         if isinstance(part.usual, Roll):
             return part.usual
-        numbers = {name: value for name, value in part.usual.__dict__.items() if _is_number(value)}
+        numbers = {name: value for name, value in part.usual.__dict__.items() if is_number(value)}
         count = len(self.gravity)
         return _with(
             part.usual,

@@ -13,13 +13,11 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from engines.lagrange.ordering import ordered
 from engines.lagrange.rolls import CONSTANTS, form_of
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -48,7 +46,6 @@ MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
 JOINT = 5  # kind, first body, second body, first row, which of the rolls
 FORCED = 3  # of a force element: kind, first body, second body
 ROW = 5  # first body, second body, whether it limits a position, first column of its envelope, where that begins
-TERM = 4  # entry of the envelope; two ends of rows, and the body on which they meet: the entry gets their product
 ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells, where they begin
 # Records, in real numbers.
 PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], its angle or length, rate or ratio, offset
@@ -111,7 +108,7 @@ def flat(mechanism: Mechanism) -> Flat:
     ends = ends.reshape(-1, 2)
     forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
     size = np.array([joint.size for joint in joints], dtype=np.int64)
-    begin, place, owner, start, offset, terms = _ordered(ends.tobytes(), size.tobytes(), bodies)
+    begin, place, owner, start, offset, terms = ordered(ends.tobytes(), size.tobytes(), bodies)
     holonomic = np.array([joint.holonomic for joint in joints], dtype=np.int64)[owner]
     rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
     which = np.cumsum([isinstance(joint, Roll) for joint in joints]) - 1
@@ -176,55 +173,6 @@ def _dependent(mechanism: Mechanism) -> bool:
     if rows == 0 or rows > MOST_ROWS:
         return False
     return rank(mechanism.rows(mechanism.pose), mechanism.length_scale) < rows
-
-
-@lru_cache(maxsize=64)
-def _ordered(ends: bytes, size: bytes, bodies: int) -> tuple[Integers, ...]:
-    """What `flat` takes from who is joined with whom alone: all mechanisms of one shape have it from here.
-
-    Where the rows of joints begin; where each row stands, and its joint; and `_products`.
-    """
-    pairs, counts = np.frombuffer(ends, dtype=np.int64).reshape(-1, 2), np.frombuffer(size, dtype=np.int64)
-    begin = _places(pairs, counts, bodies)
-    place = np.array([row for at, count in zip(begin, counts, strict=True) for row in range(at, at + count)], dtype=int)
-    owner = np.empty(len(place), dtype=np.int64)
-    owner[place] = np.repeat(np.arange(len(pairs)), counts)
-    return begin, place, owner, *_products(pairs[owner], bodies)
-
-
-def _places(ends: Integers, size: Integers, bodies: int) -> Integers:
-    """(joints,) where the first row of every joint stands, such that joints on one body are near each other."""
-    count = len(ends)
-    if not count:
-        return np.zeros(0, dtype=np.int64)
-    member, joint = ends.reshape(-1), np.repeat(np.arange(count), 2)
-    moving = member < bodies
-    on = coo_array((np.ones(moving.sum()), (joint[moving], member[moving])), shape=(count, bodies)).tocsr()
-    order = reverse_cuthill_mckee((on @ on.T).tocsr(), symmetric_mode=True)
-    begin = np.empty(count, dtype=np.int64)
-    begin[order] = np.cumsum(size[order]) - size[order]
-    return begin
-
-
-def _products(bodies: Integers, count: int) -> tuple[Integers, Integers, Integers]:
-    """Of rows between these bodies (rows, 2), `count` of which move: first columns, where rows begin, and TERMs."""
-    ends: list[list[tuple[int, int]]] = [[] for _ in range(count)]
-    for row, pair in enumerate(bodies.tolist()):
-        for side, body in enumerate(pair):
-            if body < count:
-                ends[body].append((row, side))
-    start = np.arange(len(bodies))
-    for own in ends:
-        for row, _ in own:
-            start[row] = min(start[row], own[0][0])
-    offset = np.append(0, np.cumsum(np.arange(len(bodies)) - start + 1))
-    terms = [
-        (offset[row] + column - start[row], 6 * row + 3 * side, 6 * column + 3 * other, 3 * body)
-        for body, own in enumerate(ends)
-        for i, (row, side) in enumerate(own)
-        for column, other in own[: i + 1]
-    ]
-    return start, offset, np.array(terms, dtype=np.int64).reshape(-1, TERM)
 
 
 def parameters(joint: Joint) -> tuple[float, ...]:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import inspect
 import os
 import sys
 import tempfile
@@ -24,10 +25,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from engines.lagrange import flat, rolls
+from engines.lagrange import flat, ordering, rolls
 
 SOURCES = Path(__file__).parent
-ENTRY = "engines.lagrange.compiled.entry"
 READY = "ready"  # a file that says that all is compiled
 
 
@@ -37,27 +37,34 @@ def installed() -> bool:
     return find_spec("numba") is not None
 
 
+def _entry() -> Any:
+    # By its name as it stands, here and in other engines: so fingerprints of rows know what they depend on.
+    return import_module("engines.lagrange.compiled.entry")
+
+
 @cache
-def compiled(entry: str = ENTRY) -> Callable[..., int]:
-    """`run` of `compiled.entry`, or of another engine's that uses the same code. Raises ImportError without numba."""
+def compiled(entry: Callable[[], Any] = _entry) -> Callable[..., int]:
+    """`run` of `compiled.entry`, or of that which another engine's `entry` imports and which uses the same code.
+
+    Its sources are the folder `compiled` beside that function's own. Raises ImportError without numba.
+    """
     folder = _folder(entry)
     with _alone(folder), _kept_in(folder):
-        run = import_module(entry).run
+        run = entry().run
         if folder is not None:
             with contextlib.suppress(OSError):  # a full disk: the next process compiles again
                 (folder / READY).touch()
     return run
 
 
-def _digest(entry: str = ENTRY) -> str:
+def _digest(entry: Callable[[], Any] = _entry) -> str:
     """Of the sources of the compiled code, and of the constants that it takes from elsewhere."""
     digest = hashlib.sha256()
-    own = SOURCES.parent.joinpath(*entry.split(".")[1:-1])
-    for source in (
-        each for folder in dict.fromkeys((SOURCES / "compiled", own)) for each in sorted(folder.glob("*.py"))
-    ):
+    folders = dict.fromkeys((SOURCES / "compiled", Path(inspect.getfile(entry)).parent / "compiled"))
+    for source in (each for folder in folders for each in sorted(folder.glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    constants = {(name, value) for part in (flat, rolls) for name, value in vars(part).items() if type(value) is int}
+    sources = flat, ordering, rolls
+    constants = {(name, value) for part in sources for name, value in vars(part).items() if type(value) is int}
     digest.update(repr(sorted(constants)).encode())
     return digest.hexdigest()[:16]
 
@@ -66,13 +73,13 @@ def _beside() -> Path:
     return SOURCES / "__pycache__"
 
 
-def _folder(entry: str = ENTRY) -> Path | None:
+def _folder(entry: Callable[[], Any] = _entry) -> Path | None:
     """Where compiled code is kept, made if need be; None if nowhere can be written to."""
     named = os.environ.get("NUMBA_CACHE_DIR")
     users = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     places = [Path(named)] if named else [_beside(), Path(users) / "planar-crosscheck"]
     for place in places:
-        folder = place / f"{entry.split('.')[1]}-{_digest(entry)}"
+        folder = place / f"{entry.__module__.split('.')[1]}-{_digest(entry)}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()

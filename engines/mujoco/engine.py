@@ -195,9 +195,9 @@ class MuJoCo(Valid):
             as_text,
         )
         model = build_model(mechanism, dt, settings)
-        choose_solver(model, self.solvers)
+        start = choose_solver(model, self.solvers)
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
-            ease(model, self.stiffness.softening)
+            ease(model, self.stiffness.softening, start)
         return model
 
 

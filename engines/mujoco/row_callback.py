@@ -47,7 +47,7 @@ class Native:
 
 def reserve_plan(spec: Any, tree: Tree, joints: Sequence[WrittenJoint]) -> None:
     """Room in the model for what the machine code has to know of it, where there may be such code."""
-    if _numba() and hasattr(spec, "add_numeric") and all(isinstance(joint.rows, Law) for joint in joints):
+    if machine_code() and hasattr(spec, "add_numeric") and all(isinstance(joint.rows, Law) for joint in joints):
         from engines.mujoco.native_rows import HEADER, JOINT, LINK
 
         room = HEADER + LINK * len(tree.links) + JOINT * len(joints)
@@ -58,13 +58,13 @@ def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], softening: float
 ) -> Callback:
     """What writes the joints' rows, the last of the model's equalities, each made as soft as `softening` says."""
-    rows = row_writer(tree, address, joints, compiled.nv)
-    scale_placeholders(compiled, rows, softening)
+    rows, data = row_writer(tree, address, joints, compiled.nv), mujoco.MjData(compiled)
+    scale_placeholders(compiled, data, rows, softening)
     before = equality_rows(compiled) - sum(joint.size for joint in joints)
     short = writing_free(tree, address, joints, before, compiled.nv)
     python = short or writing(rows, before, compiled.nv)
     native = _native(compiled, tree, address, joints, before) if compiled.nnumeric else None
-    return Native(python, native) if native is not None and _agree(compiled, native, rows, before) else python
+    return Native(python, native) if native is not None and _agree(compiled, data, native, rows, before) else python
 
 
 def _native(
@@ -83,9 +83,8 @@ def _native(
     return None if code is None else code.ctypes
 
 
-def _agree(compiled: Any, native: Any, rows: Rows, first_row: int) -> bool:
+def _agree(compiled: Any, data: Any, native: Any, rows: Rows, first_row: int) -> bool:
     """Whether the machine code writes what Python does, in some state: it found MuJoCo's arrays by their addresses."""
-    data = mujoco.MjData(compiled)
     data.qpos[:], data.qvel[:] = 0.1 / np.arange(1, compiled.nq + 1), 1 / np.arange(1, compiled.nv + 1)
     with installed(native):
         mujoco.mj_forward(compiled, data)
@@ -99,5 +98,6 @@ def _agree(compiled: Any, native: Any, rows: Rows, first_row: int) -> bool:
 
 
 @cache
-def _numba() -> bool:
+def machine_code() -> bool:
+    """Whether there is numba, which makes it; it is not imported."""
     return find_spec("numba") is not None

@@ -85,13 +85,14 @@ def _lost(compiled: Any, data: Any) -> float:
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 
-def ease(model: Model, softening: float) -> None:
+def ease(model: Model, softening: float, start: Any) -> None:
     """Let every row give way tenfold, up to as shipped, until Newton's iterations lose no more than LOST in rounding.
 
-    `softening` is by how much they are harder than as shipped. A compliance of 1e-12 of a row's own inverse inertia is
-    too little where a light body carries a heavy one. Other solvers, which build no such matrix, keep what they have.
+    `start`: a mujoco.MjData at the start, solved by the model's solver. `softening` is by how much rows are harder than
+    as shipped. A compliance of 1e-12 of a row's own inverse inertia is too little where a light body carries a heavy
+    one. Other solvers, which build no such matrix, keep what they have.
     """
-    compiled, start = model.compiled, model.start()
+    compiled = model.compiled
     if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, start) < SOLVED:
         return
     while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, start) > LOST:
@@ -101,12 +102,13 @@ def ease(model: Model, softening: float) -> None:
         start = model.start()
 
 
-def choose_solver(model: Model, solvers: Sequence[str]) -> None:
+def choose_solver(model: Model, solvers: Sequence[str]) -> Any:
     """Set the first of the solvers that solves the start; the one that comes nearest if none does.
 
-    Newton is the fastest and as exact as any on a few loops and on many short ones, and loses the compliance in
-    rounding on long chains; there the dual solver (PGS) is better, which fails for bodies of very different mass and
-    takes hundreds of sweeps for many loops. CG is slower than either, and stands in for both.
+    Returns the mujoco.MjData of the start as that solver solves it. Newton is the fastest and as exact as any on a few
+    loops and on many short ones, and loses the compliance in rounding on long chains; there the dual solver (PGS) is
+    better, which fails for bodies of very different mass and takes hundreds of sweeps for many loops. CG is slower than
+    either, and stands in for both.
     Raises Unsupported if none of the solvers can serve.
     """
     missed = {}
@@ -114,9 +116,11 @@ def choose_solver(model: Model, solvers: Sequence[str]) -> None:
         if solver == "PGS" and model.written:
             continue  # it has built its matrix before the rows are written
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
-        missed[solver] = unsolved(model.compiled, model.start())
+        start = model.start()
+        missed[solver] = unsolved(model.compiled, start)
         if missed[solver] < SOLVED:
-            return
+            return start
     if not missed:
         raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")
     model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{min(missed, key=missed.__getitem__).upper()}")
+    return model.start()

@@ -7,7 +7,8 @@ Jacobian, no islands, and a primal solver (Newton or CG): the dual one has built
 then.
 
 A row is written for the poses and twists of two bodies, J a = right, and is taken to the tree's coordinates here. Plain
-floats throughout: on rows this small, arrays cost more than the arithmetic.
+floats throughout: on rows this small, arrays cost more than the arithmetic. Where numba is there, machine code does the
+same (`engines.mujoco.row_callback`).
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -80,9 +81,11 @@ def add_placeholders(spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impe
         )
 
 
-def scale_placeholders(compiled: Any, rows: Rows, softening: float) -> None:
-    """Make each row as soft as its own inverse inertia at the start says; the placeholder's knows nothing of it."""
-    data = mujoco.MjData(compiled)
+def scale_placeholders(compiled: Any, data: Any, rows: Rows, softening: float) -> None:
+    """Make each row as soft as its own inverse inertia at the start says; the placeholder's knows nothing of it.
+
+    `data`: a mujoco.MjData at the start, to work in.
+    """
     mujoco.mj_fwdPosition(compiled, data)
     flat, reference = rows(0.0, data.qpos.tolist(), data.qvel.tolist())
     jacobian = np.array(flat).reshape(len(reference), compiled.nv)

@@ -98,7 +98,14 @@ class Pymunk(Valid):
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
         """About how long a step takes [s]: the bodies, and every joint in every sweep."""
-        swept = self.sweeping(mechanism)
+        return self._cost(mechanism, self.sweeping(mechanism))
+
+    @validated
+    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
+        """The same in a motion of `duration` [s], swept for its worst pose: see `engines.finer.Lasting`."""
+        return self._cost(mechanism, self.sweeping(mechanism, duration))
+
+    def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
         sweeps = SWEEP_COST * len(mechanism.joints) * swept.iterations
         return STEP_COST * over_three(mechanism) + sweeps + (COST if swept.projected else 0.0)
 

@@ -36,6 +36,7 @@ _latest: list[tuple[Mechanism, float, float]] = []  # an extrapolation asks for 
 @validated
 def worst_contraction(mechanism: Mechanism, duration: NonNegative) -> float:
     """The largest `contraction` over the start and what a rough run passes within `duration` [s]."""
+    duration = float(f"{duration:.12g}")  # the levels of an extrapolation round one duration differently
     if not (_latest and _latest[0][0] is mechanism and _latest[0][1] == duration):
         passed = _poses(mechanism, duration)
         found = max([contraction(mechanism), *_all(mechanism, passed)])

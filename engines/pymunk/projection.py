@@ -13,6 +13,7 @@ what is rare, rolling contacts.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from math import cos, sin
 from typing import Any
 
@@ -30,7 +31,6 @@ from reference.row_system import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 
-ENTRY = "engines.pymunk.compiled.entry"
 MOST_ROWS = 40  # least squares of more take longer than the sweeps that are too few
 COST = 2.5e-4  # s, of some ten rows
 
@@ -103,11 +103,15 @@ class Projection:
         return state
 
 
+def _entry() -> Any:
+    return import_module("engines.pymunk.compiled.entry")
+
+
 def _compiled(mechanism: Mechanism, closed: Array, root: Array) -> Callable[[Array], Array | None] | None:
     """`_change` in machine code; None where a contact rolls, whose tables are not read here."""
     if any(isinstance(joint, Roll) for joint in mechanism.joints):
         return None
-    arrays, run, out = flat(mechanism), compiled(ENTRY), np.zeros((len(mechanism.bodies), 3))
+    arrays, run, out = flat(mechanism), compiled(_entry), np.zeros((len(mechanism.bodies), 3))
     in_order = np.empty_like(closed)
     in_order[arrays.rows] = closed
     whole, real, cells, flat_out = arrays.whole, arrays.real, np.zeros((0, CELL), dtype=complex), out.reshape(-1)

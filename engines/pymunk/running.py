@@ -207,7 +207,8 @@ class PymunkRun:
         """
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
         self._planned = planned
-        self._coarser: Trajectory | None = None
+        self._plan: Sequence[int] | None = None
+        self._planning = 0.0  # s of CPU time
         self._leapfrog, self._settled, self._over = leapfrog, settled, False
         self.size: Size = make(swept(0.0)).size
 
@@ -223,7 +224,9 @@ class PymunkRun:
 
     def follow(self, coarser: Trajectory) -> None:
         """See `engines.extrapolated.Following`."""
-        self._coarser = coarser
+        begin = time.process_time()
+        self._plan = self._planned(coarser, self._swept(float(coarser.t[-1])))
+        self._planning = time.process_time() - begin
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
@@ -234,10 +237,9 @@ class PymunkRun:
         self._over = True
         begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
-        planned = self._planned(self._coarser, sweeping) if self._coarser else None
-        planning = time.process_time() - begin
+        planning = self._planning + time.process_time() - begin
         model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
-        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling, planned=planned)
+        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling, planned=self._plan)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         with np.errstate(all="ignore"):

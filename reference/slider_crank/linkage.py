@@ -44,10 +44,12 @@ class SliderCrank(Valid):
     @validated
     def rod_sine(self, theta: Complexes) -> Any:
         """sin(beta) (...) [1] for crank angles (...) [rad]."""
-        return (self.offset - self.crank * np.sin(theta)) / self.rod
+        return self._rod(theta)[0]
+
+    # Those that begin with an underscore check nothing: an integration asks for them thousands of times.
 
     def _rod(self, theta: Any) -> tuple[Any, Any]:
-        sine = self.rod_sine(theta)
+        sine = (self.offset - self.crank * np.sin(theta)) / self.rod
         return sine, self.branch * np.sqrt((1 - sine) * (1 + sine))
 
     @validated
@@ -59,6 +61,9 @@ class SliderCrank(Valid):
     @validated
     def rod_rates(self, theta: Complexes) -> tuple[Any, Any]:
         """beta' and beta'' with respect to theta (...): r cos(theta) + l cos(beta) beta' = 0, and once more."""
+        return self._rod_rates(theta)
+
+    def _rod_rates(self, theta: Any) -> tuple[Any, Any]:
         sine, cosine = self._rod(theta)
         first = -self.crank * np.cos(theta) / (self.rod * cosine)
         return first, (self.crank * np.sin(theta) / self.rod + sine * first**2) / cosine
@@ -71,8 +76,11 @@ class SliderCrank(Valid):
     @validated
     def position_rates(self, theta: Complexes) -> tuple[Any, Any]:
         """x' and x'' with respect to theta (...) [m]: velocity x' w, acceleration x'' w^2 + x' alpha."""
+        return self._position_rates(theta)
+
+    def _position_rates(self, theta: Any) -> tuple[Any, Any]:
         sine, cosine = self._rod(theta)
-        first, second = self.rod_rates(theta)
+        first, second = self._rod_rates(theta)
         return (
             -self.crank * np.sin(theta) - self.rod * sine * first,
             -self.crank * np.cos(theta) - self.rod * (cosine * first**2 + sine * second),
@@ -111,7 +119,7 @@ class MovingSliderCrank(Valid):
     def _centre_of_rod(self, theta: Any) -> tuple[Any, Any]:
         """First and second derivatives with respect to theta of the rod's centre: each (x, y) (...) [m]."""
         r, e = self.shape.crank, self.shape
-        first, second = e.position_rates(theta)
+        first, second = e._position_rates(theta)
         # The centre is halfway between the crank pin and the slider.
         return (
             ((first - r * np.sin(theta)) / 2, r * np.cos(theta) / 2),
@@ -121,8 +129,11 @@ class MovingSliderCrank(Valid):
     @validated
     def inertia(self, theta: Complexes) -> tuple[Any, Any]:
         """The reduced inertia J(theta) [kg m^2] and its derivative: the kinetic energy is J w^2 / 2."""
-        x1, x2 = self.shape.position_rates(theta)
-        b1, b2 = self.shape.rod_rates(theta)
+        return self._inertia(theta)
+
+    def _inertia(self, theta: Any) -> tuple[Any, Any]:
+        x1, x2 = self.shape._position_rates(theta)
+        b1, b2 = self.shape._rod_rates(theta)
         (cx1, cy1), (cx2, cy2) = self._centre_of_rod(theta)
         rod_inertia = self.rod_mass * self.shape.rod**2 / 12
         value = (
@@ -143,7 +154,7 @@ class MovingSliderCrank(Valid):
     @validated
     def acceleration(self, theta: Complexes, rate: Complexes) -> Any:
         """theta'' (...) [rad/s^2] when nothing drives it: J theta'' + J' theta'^2 / 2 + V' = 0."""
-        inertia, inertia_slope = self.inertia(theta)
+        inertia, inertia_slope = self._inertia(theta)
         return -(inertia_slope * rate**2 / 2 + self.potential(theta)[1]) / inertia
 
     @validated

@@ -152,7 +152,10 @@ class FreeSliderCrank(DrivenSliderCrank):
 
     def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
         until = max(self.duration, float(t.max(initial=0.0)))
-        state = _integrated(self.moving, self.angle, self.rate, until, self.angle_unit)(t)
+        if t.any():
+            state = _integrated(self.moving, self.angle, self.rate, until, self.angle_unit)(t)
+        else:  # a mechanism needs no more than the start
+            state = np.full((len(t), 2), (self.angle, self.rate), dtype=float)
         return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
 
     def truth_error(self, t: ArrayLike) -> Array:

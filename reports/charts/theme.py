@@ -12,6 +12,7 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation
 
 WIDTH = 9.2  # inches: GitHub shows about this much of a page without scaling
 
@@ -108,6 +109,29 @@ def new_figure(height: float, theme: Theme, width: float = WIDTH) -> Figure:
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
 
 
+TIMES = "\N{MULTIPLICATION SIGN}"
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+class PowersOfTen(LogFormatterSciNotation):
+    """Ticks of a logarithmic axis as text, 10⁻³: matplotlib has a formula there, and parses it for milliseconds."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        if not super().__call__(x, pos):  # a tick between others, without a word
+            return ""
+        digits, power = f"{x:.0e}".split("e")
+        return f"{'' if digits == '1' else digits + TIMES}10{str(int(power)).translate(RAISED)}"
+
+
+def _in_powers(figure: Figure) -> None:
+    """Give logarithmic axes that have matplotlib's own words ours."""
+    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
+        if type(axis.get_major_formatter()) is LogFormatterSciNotation:
+            axis.set_major_formatter(PowersOfTen())
+        if type(axis.get_minor_formatter()) is LogFormatterSciNotation:
+            axis.set_minor_formatter(PowersOfTen(labelOnlyBase=False))
+
+
 def style_axes(axes: Axes, theme: Theme, grid: bool = True) -> None:
     """Quiet frame, quiet ticks, a grid behind the data."""
     axes.set_facecolor(theme.paper)
@@ -131,6 +155,7 @@ def svg(figure: Figure, title: str) -> str:
     role replaces them on dark paper. `title` becomes the text that a screen reader says.
     """
     out = io.StringIO()
+    _in_powers(figure)
     with settings():
         FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None, "Creator": None, "Title": title})
     text = _renumbered(out.getvalue()).replace("'DejaVu Sans'", FONTS)

@@ -12,10 +12,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
+from scipy.spatial import KDTree
 
 from reports.charts.families import look
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.charts.theme import LIGHT, PowersOfTen, Theme, new_figure, settings, style_axes
 from reports.grid.convergence import groups
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
@@ -83,7 +84,7 @@ def _finish(panel: Axes) -> None:
         # Less than two decades may have a single power of ten: one tick tells no scale.
         narrow = math.log10(high / low) < 2
         axis.set_major_locator(LogLocator(base=10, subs=(1.0, 3.0) if narrow else (1.0,), numticks=9))
-        axis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(math.inf, math.inf)))
+        axis.set_major_formatter(PowersOfTen(minor_thresholds=(math.inf, math.inf)))
         axis.set_minor_formatter(NullFormatter())
     panel.minorticks_off()
 
@@ -174,19 +175,17 @@ def _guides(panel: Axes, theme: Theme) -> None:
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
     # What the fan and its numbers cover, in shares of the panel from the point of the fan.
-    places = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
-    fan = np.array([*places, *((width + gap, slope * width) for slope in SLOPES)]) / size
+    slopes = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
+    fan = np.array([*slopes, *((width + gap, slope * width) for slope in SLOPES)]) / size
     lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
     between = np.linspace(0, 1, 12)[:, None]
     taken = [a + between * (b - a) for line in lines for a, b in zip(line, [*line[1:], line[-1]], strict=True)]
     room = 0.97 - fan.max(axis=0)
-    corners = [np.array([x, y]) for x in np.linspace(0.03, room[0], PLACES) for y in np.linspace(0.03, room[1], PLACES)]
+    places = [np.linspace(0.03, most, PLACES) for most in room]
+    corners = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 1, 2)
     points = np.concatenate(taken) if taken else np.array([[0.0, 1.0]])
-
-    def distance(place: np.ndarray) -> float:
-        return float(np.linalg.norm((fan + place)[:, None] - points, axis=-1).min())
-
-    left, bottom = low + max(corners, key=distance) * size
+    distances = KDTree(points).query(corners + fan)[0].min(axis=1)
+    left, bottom = low + corners[distances.argmax(), 0] * size
     for slope in SLOPES:
         end = bottom + slope * width
         panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=theme.quiet,

@@ -35,35 +35,34 @@ def report(
         line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
-    from reports.cli.known import registered, with_remembered
-    from reports.cli.selection import page_cells, page_tasks, shown_cells
+    from reports.cli.drawing import MANY, drawn, known_to, material_of
+    from reports.cli.selection import page_cells, page_tasks
     from reports.grid.running import missing
     from reports.grid.store import Store
-    from reports.pages.page import Material
+    from reports.pages.catalogue import PAGES
     from reports.text.rendering import render_all, render_readme
 
-    own = registered()
-    with Store.read(results / STORE) as store:
-        # What is published is of what is registered; a report of one's own shows what else was run.
-        known = own if publish else with_remembered(own, store.remembered())
-        # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
-        asked = (item for page in own.pages for item in (*page_cells(page), *page_tasks(page)))
-        whole = tuple(dict.fromkeys(asked))
-        material = {
-            page: Material(store.get(shown_cells(page)), store.answers(page.all_tasks())) for page in known.pages
-        }
-        left = len(missing(whole, store))
-    names = {page.name for page in own.pages}
-    # A scene that is only remembered, and whose sources have changed since, has nothing to show.
-    material = {page: given for page, given in material.items() if given.rows or page.name in names}
-    command = with_folder("crosscheck run --full", results)
-    grid = f"{left} of {len(whole)} cells of the full grid are not stored: {command}"
-    if not any(given.rows for given in material.values()):
-        raise nothing
-    if publish and left:
-        raise BadInput(f"nothing is published, {grid}")
     folder = published() if publish else results
-    files = render_all(material, "make report" if publish else "crosscheck report", searched)
+    with Store.read(results / STORE) as store:
+        known = known_to(store, publish)
+        # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
+        asked = (item for page in PAGES for item in (*page_cells(page), *page_tasks(page)))
+        whole = tuple(dict.fromkeys(asked))
+        left = len(missing(whole, store))
+        material = {page: material_of(page, store) for page in known.pages}
+        names = {page.name for page in PAGES}
+        # A scene that is only remembered, and whose sources have changed since, has nothing to show.
+        material = {page: given for page, given in material.items() if given.rows or page.name in names}
+        grid = f"{left} of {len(whole)} cells of the full grid are not stored: "
+        grid += with_folder("crosscheck run --full", results)
+        if not any(given.rows for given in material.values()):
+            raise nothing
+        if publish and left:
+            raise BadInput(f"nothing is published, {grid}")
+        command = "make report" if publish else "crosscheck report"
+        many = sum(len(given.rows) for given in material.values()) > MANY
+        made = drawn(store, publish, command, material, published()) if many else {}
+    files = render_all(material, command, searched, made)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
         readme = CHECKOUT / "README.md"

@@ -9,13 +9,18 @@ from types import MappingProxyType
 
 from engines import Engine
 from reference.scene import Scene
-from reports.grid.cells import FULL, QUICK, Cell, beside_cells, estimated_cost, sweep_cells
+from reports.grid.cells import FULL, QUICK, Cell, beside_cells, sweep_cells
 from reports.grid.ending import BadInput
+from reports.grid.expected import expected_seconds
 from reports.grid.tasks import Task
 from reports.grid.usual_steps import usual_cells
 from reports.pages.page import Page
 
-# A quick run over everything shall end within about a minute: no cell of it is estimated to step longer than this [s].
+# A quick run over everything shall end within half a minute of two cores. So no cell of it takes longer than this [s],
+# but for the shortest of each method in each scene: that one is left out only beyond QUICK_MOST [s].
+QUICK_SECONDS = 0.02
+QUICK_MOST = 0.5
+# By the formulas of engines and tasks alone: what tasks of a quick run, and cells of many versions, take at most [s].
 QUICK_CELL = 0.1
 NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
@@ -118,7 +123,7 @@ def choose_cells(
     """The cells of a run: the grid, with the failures of the pages that teach these scenes; their maps and the steps
     that people use if full.
 
-    A quick run leaves out what would take longer than QUICK_CELL. `every` or `steps` replace the grid by these steps
+    A quick run leaves out what would take long (`_quick`). `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
     """
     for count in every:
@@ -145,7 +150,7 @@ def choose_cells(
                 if any(cell.engine == engine for engine in engines) and (full or cell.purpose not in ("map", "large"))
             ]
     chosen_once = dict.fromkeys(cells)
-    return tuple(chosen_once if full else (cell for cell in chosen_once if _quick(cell)))
+    return tuple(chosen_once) if full else _quick(tuple(chosen_once))
 
 
 def choose_tasks(
@@ -165,9 +170,22 @@ def choose_tasks(
     return tuple(dict.fromkeys(found))
 
 
-def _quick(cell: Cell) -> bool:
-    """Whether a quick run has the time for a cell; the coarsest step of a scene's grid is always there."""
-    return estimated_cost(cell) <= QUICK_CELL or (cell.purpose == "sweep" and cell.every == QUICK[0])
+def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
+    """Those for which a quick run has the time: of an engine beside the grid one step, the finest that is short.
+
+    Seconds are those of the published run where it has the cell, so that the choice is the same on every machine.
+    """
+    alike: dict[tuple[Scene, Engine, str], list[Cell]] = {}
+    for cell in cells:
+        alike.setdefault((cell.scene, cell.engine, cell.purpose), []).append(cell)
+    chosen: set[Cell] = set()
+    for (_, _, purpose), members in alike.items():
+        ordered = sorted(members, key=expected_seconds)
+        short = [cell for cell in ordered if expected_seconds(cell) <= QUICK_SECONDS]
+        least = [cell for cell in ordered[:1] if expected_seconds(cell) <= QUICK_MOST]
+        coarsest = [cell for cell in members if cell.purpose == "sweep" and cell.every == QUICK[0]]
+        chosen.update(short[-1:] or least if purpose == "beside" else (*short, *least, *coarsest))
+    return tuple(cell for cell in cells if cell in chosen)
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -96,13 +97,20 @@ def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit
 
     An error at or below `rounding` is rounding, whatever it does there.
     """
-    pairs = sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)
+    return _fit(
+        tuple(sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)), rounding
+    )
+
+
+@lru_cache(maxsize=32768)  # a report asks for the same sweep on a page, on its data page, in the index, in the readme
+def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
+    """As `fit`, of (step, error) from coarse to fine."""
     if not pairs:
         return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))
     # After it has met rounding an error may grow again, as rounding does with the number of steps; not by much more.
     reaches = first < len(pairs) and pairs[-1][1] <= ROUNDING_GROWTH * rounding
-    above = pairs[:first] if reaches else [(h, e) for h, e in pairs if e > rounding]
+    above = list(pairs[:first]) if reaches else [(h, e) for h, e in pairs if e > rounding]
     if len(above) < 2:
         return Fit(Verdict.ROUNDING if reaches else Verdict.TOO_FEW)
     h, e = np.array([p[0] for p in above]), np.array([p[1] for p in above])
@@ -195,12 +203,13 @@ def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measu
     return {key: sorted(members, key=lambda row: -row.step) for key, members in found.items()}
 
 
-def sweeps(rows: Iterable[Measurement]) -> tuple[Sweep, ...]:
+def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTITIES) -> tuple[Sweep, ...]:
     """Every quantity of every group of rows."""
+    quantities = tuple(quantities)
     out = []
     for (scene, engine, variant), members in groups(rows).items():
         usable = [row for row in members if Outcome(row.outcome).comparable]
-        for quantity in QUANTITIES:
+        for quantity in quantities:
             values = [(row.step, getattr(row, quantity.name)) for row in usable]
             steps, errors = [step for step, _ in values], [error for _, error in values]
             known = [(error, step) for step, error in values if math.isfinite(error)]
@@ -217,7 +226,7 @@ def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, 
 def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measurement]:
     """The rows with `finished` replaced by what their sweep says: converged or plateau, where it says either."""
     rows = list(rows)
-    verdicts = by_method(sweeps(rows), quantity)
+    verdicts = by_method(sweeps(rows, [each for each in QUANTITIES if each.name == quantity]), quantity)
     out = []
     for row in rows:
         sweep = verdicts.get((row.scene, row.engine, row.variant))

@@ -7,20 +7,18 @@ file counts by its bytes: ours, an engine's of somebody else in a checkout of hi
 
 from __future__ import annotations
 
-import ast
 import dataclasses
 import hashlib
 import platform
-import re
 import sys
 from collections.abc import Mapping
 from functools import cache
 from importlib import metadata
 from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES
-from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any
 
+from reports.grid.imports import named_in
 from reports.grid.requirements import with_required
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,7 +26,7 @@ OURS = ("reference", "engines", "reports")
 # What every row is made by: errors and outcomes, and the supervision that tells an abort from a time limit.
 MEASURING = ("reports.grid.measure", "reports.grid.pool")
 SUFFIXES = (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)
-PATH = re.compile(r"[\w-][\w./-]{0,200}")
+PLAIN = {float, int, bool, str, type(None)}
 INSTALLED = {"site-packages", "dist-packages"}  # names of the folders in which a version stands for the files
 
 
@@ -62,40 +60,6 @@ def _place(module: str) -> tuple[Path | None, tuple[Path, ...]]:
     return None, tuple(folder / name for folder in folders if (folder / name).is_dir())
 
 
-@cache
-def _named_in(text: bytes, package: str) -> tuple[frozenset[str], frozenset[str]]:
-    """(every module that a source's imports could mean, at any depth of nesting; its strings that look like files).
-
-    `package` is what relative imports start from.
-    """
-    names: set[str] = set()
-    strings: set[str] = set()
-    for node in ast.walk(ast.parse(text)):
-        match node:
-            case ast.Import(names=aliases):
-                names.update(alias.name for alias in aliases)
-            case ast.ImportFrom(module=module, names=aliases, level=level):
-                origin = _absolute("." * level + (module or ""), package)
-                names.add(origin)
-                names.update(f"{origin}.{alias.name}" for alias in aliases)
-            case (
-                ast.Call(func=ast.Name(id="import_module" | "__import__"), args=[ast.Constant(value=str(name)), *_])
-                | ast.Call(func=ast.Attribute(attr="import_module"), args=[ast.Constant(value=str(name)), *_])
-            ):
-                names.add(_absolute(name, package))
-            case ast.Constant(value=str(word)) if PATH.fullmatch(word):
-                strings.add(word)
-    return frozenset(names), frozenset(strings)
-
-
-def _absolute(name: str, package: str) -> str:
-    """A module's whole name, of a relative import too; without its dots where they lead out of all packages."""
-    try:
-        return resolve_name(name, package)
-    except ImportError:
-        return name.lstrip(".")
-
-
 def _data(folder: Path, strings: frozenset[str]) -> set[Path]:
     """The files beside a source that its strings name, and those in a folder beside it that they name too."""
     files = [name for name in strings if Path(name).suffix not in ("", ".py")]
@@ -126,7 +90,7 @@ def _closure(module: str) -> tuple[frozenset[tuple[str, Path]], frozenset[str]]:
             continue
         files.add((name, path))
         if path.suffix == ".py":
-            imported, strings = _named_in(path.read_bytes(), name if path.name == "__init__.py" else parent)
+            imported, strings = named_in(path.read_bytes(), name if path.name == "__init__.py" else parent)
             waiting.extend(imported)
             files.update((f"{name}: {file.relative_to(path.parent)}", file) for file in _data(path.parent, strings))
     followed = {name.split(".")[0] for name, _ in files}
@@ -138,10 +102,12 @@ def modules_behind(*values: Any) -> set[str]:
 
     What a dataclass holds stands in its fields: an engine that wraps another, a setting that is an object.
     """
-    found: set[str] = set()
+    found = {object.__module__}
     waiting = list(values)
     while waiting:
         value = waiting.pop()
+        if type(value) in PLAIN:  # nearly all that a scene holds
+            continue
         classes = value.__mro__ if isinstance(value, type) else type(value).__mro__
         found.update(base.__module__ for base in classes)
         if callable(value) and isinstance(getattr(value, "__module__", None), str):

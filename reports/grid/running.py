@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from reports.grid.cells import Cell
 from reports.grid.files import folder_for
+from reports.grid.imports import keep, recall
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import TIME_LIMIT, run_items, worker_count
@@ -21,6 +22,7 @@ Item = TypeVar("Item", bound=Cell | Task)
 def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> tuple[Item, ...]:
     """The cells and tasks without an answer to a run with this limit [s]: not stored, or timed out within a smaller."""
     items = tuple(items)
+    recall(store.path.parent / FOLDER)
     known = {**store.get(_cells(items)), **store.answers(_tasks(items))}
     return tuple(item for item in items if item not in known or not holds(known[item], limit))
 
@@ -58,6 +60,8 @@ def run_into(
     lost: list[str] = []
     # Its whole path: workers have folders of their own.
     truths = folder_for(store.path.parent.resolve() / FOLDER, ELSEWHERE) if waiting else None
+    if truths is not None:
+        keep(truths)
     for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
         if result.outcome == Outcome.LOST:
             lost.append(f"{item.label}: {result.sentence}")

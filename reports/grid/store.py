@@ -51,11 +51,12 @@ class Store:
     stop at once, the last of it may be missing, and runs again.
 
     A damaged file is put aside, with what lies beside it, and its readable rows are taken over into a new one; `notice`
-    says so (empty otherwise). Raises FileTrouble, here and in every method, where the file can't be used.
+    says so (empty otherwise). `copied`: the file that is read, which is a copy of `path` in a store that is only read.
+    Raises FileTrouble, here and in every method, where the file can't be used.
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
+        self.path = self.copied = path
         self.notice = ""
         folder_for(path.parent, ELSEWHERE)
         with _sentences(path):
@@ -83,7 +84,7 @@ class Store:
         with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
             copy = Path(folder) / "copy.sqlite"
             store = cls.__new__(cls)
-            store.path, store.notice = path, ""
+            store.path, store.notice, store.copied = path, "", copy
             with _sentences(path):
                 if path.is_dir():
                     raise FileTrouble(f"{path} is a folder, and should be a file; {ELSEWHERE}")

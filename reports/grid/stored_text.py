@@ -7,6 +7,7 @@ import hashlib
 import json
 import zlib
 from dataclasses import fields
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ def text_of_row(row: Measurement) -> str:
     return _signed(json.dumps(row.as_dict()))
 
 
+@lru_cache(maxsize=8192)  # a command asks for a row more than once: what is missing, a table, several pages
 def row_of(key: str, stored: Any) -> Measurement | None:
     """The row of this key; None unless it is whole and has the fields that rows have now."""
     try:

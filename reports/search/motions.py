@@ -1,4 +1,7 @@
-"""A short motion and its reactions against the judge, at two steps, with the order that the engine promises."""
+"""A short motion and its reactions against the judge, at two steps, with the order that the engine promises.
+
+The judge moves one mechanism at a time: no two cases are of one shape, as `engines.lagrange.batch` asks.
+"""
 
 from __future__ import annotations
 

@@ -144,17 +144,21 @@ def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
 
 
 def render_all(
-    pages: Mapping[Page, Material], command: str, further: Mapping[str, str] = MappingProxyType({})
+    pages: Mapping[Page, Material],
+    command: str,
+    further: Mapping[str, str] = MappingProxyType({}),
+    made: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
 ) -> dict[str, str]:
     """Every file of the results by name; only timings.csv and the pages' CPU columns differ between machines.
 
-    `further`: files of another kind beside them, which the index may name.
+    `further`: files of another kind beside them, which the index may name. `made`: what `render_page` gives, by the
+    names of the pages for which that was done already.
     """
     files: dict[str, str] = dict(further)
     rows: dict[str, Measurement] = {}
     made_by: dict[str, Engine] = {}
     for page, material in pages.items():
-        files.update(render_page(page, material, command))
+        files.update(made[page.name] if page.name in made else render_page(page, material, command))
         rows.update({row.key: row for row in material.rows.values()})
         made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))

@@ -26,8 +26,7 @@ class Straight(types.Array):
 register_model(Straight)(models.ArrayModel)
 
 
-@intrinsic
-def straight(_: Any, array: Any) -> Any:
+def _straight(_: Any, array: Any) -> Any:
     """The same array [float64 or int64, one dimension, contiguous] as a `Straight`; nothing is copied."""
 
     def same(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -35,6 +34,9 @@ def straight(_: Any, array: Any) -> Any:
         return values[0]
 
     return Straight(array.dtype, 1, "C")(array), same
+
+
+straight: Any = intrinsic(_straight)
 
 
 def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any) -> Any:

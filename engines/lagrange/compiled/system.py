@@ -31,12 +31,12 @@ from engines.lagrange.flat import (
     ROWS,
     SMALLEST,
     SOFT,
-    TERM,
     TERM_AT,
     TERMS,
     TOLD,
     WHICH,
 )
+from engines.lagrange.ordering import TERM
 
 # Pivots below which a row follows from others. Where rows are independent at the start: the rounding of the product,
 # times a thousand. Where some are not: their dependence is blurred by as much, squared, as joints are open in a step,
@@ -169,19 +169,8 @@ def along(whole, real, vector, row):
 @inner
 def missed(whole, real, vector, right, out):
     """Fill `out` with what J times the vector of columns lacks of the right side."""
-    end, record = whole[ENDS], whole[ROW_AT]
     for row in range(whole[ROWS]):
-        one, other = vector + whole[record], vector + whole[record + 1]
-        real[out + row] = real[right + row] - (
-            real[end] * real[one]
-            + real[end + 1] * real[one + 1]
-            + real[end + 2] * real[one + 2]
-            + real[end + 3] * real[other]
-            + real[end + 4] * real[other + 1]
-            + real[end + 5] * real[other + 2]
-        )
-        end += 6
-        record += ROW
+        real[out + row] = real[right + row] - along(whole, real, vector, row)
 
 
 @inner

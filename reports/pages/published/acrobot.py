@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,8 +61,9 @@ def _energy(state: Array) -> float:
     return kinetic - GRAVITY * (1.5 * math.cos(first) + 0.5 * math.cos(first + second))
 
 
-def by_hand(angle: float, step: float, rounded: bool = False) -> float:
-    """The drift of RK4 in the two angles; `rounded`: of states seen in numbers of 32 bits, as Gymnasium shows them."""
+@lru_cache(maxsize=len(STEPS))  # the same states are seen in 64 bits and in 32
+def _path(angle: float, step: float) -> Array:
+    """Angles and rates (steps + 1, 4) by RK4."""
     state = np.array([angle, 0.0, 0.0, 0.0])
     seen = [state]
     for _ in range(round(HORIZON / step)):
@@ -70,7 +72,12 @@ def by_hand(angle: float, step: float, rounded: bool = False) -> float:
         three = _rates(state + step / 2 * two)
         state = state + step / 6 * (one + 2 * two + 2 * three + _rates(state + step * three))
         seen.append(state)
-    states = np.array(seen)
+    return np.array(seen)
+
+
+def by_hand(angle: float, step: float, rounded: bool = False) -> float:
+    """The drift of RK4 in the two angles; `rounded`: of states seen in numbers of 32 bits, as Gymnasium shows them."""
+    states = _path(angle, step)
     if rounded:
         shown = [
             np.arctan2(*(f(states[:, i]).astype(np.float32).astype(float) for f in (np.sin, np.cos))) for i in (0, 1)

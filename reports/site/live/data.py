@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from reference.scene import Scene
+from reference.mechanism import Mechanism
 from reports.grid.tasks import Answer, Motion
 from reports.site import drawn
 from reports.site.joints import joints_of, loose, measure_of
@@ -52,6 +52,10 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     """All that a page needs of a live scene, for JSON; lists of places are in the order of `Live.places`."""
     pool = Pool()
     places = list(live.places())
+    mechanisms, poses = [], []  # of each place once, side by side: both may need the same integration
+    for scene in places:
+        mechanisms.append(scene.mechanism())
+        poses.append(scene.motion(np.arange(live.frames + 1) * (scene.duration / live.frames)).pose)
     mechanism = live.scene.mechanism()
     return {
         "word": live.word,
@@ -62,11 +66,14 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
         "duration": live.scene.duration,
         "sliders": [{"name": slider.field, "size": len(slider.values)} for slider in live.sliders],
         "bodies": [body.name for body in mechanism.bodies],
-        "truth": [pool.number(_truth(scene, live.frames)) for scene in places],
-        "drawings": [pool.number(_drawing(live, scene)) for scene in places],
-        "joints": [pool.number(joints_of(scene.mechanism())) for scene in places],
-        "mujoco": [_or_why(lambda engine=engine: _texts(engine, live, pool)) for _, engine in live.mujoco],
-        "munk": [_or_why(lambda engine=engine: _plans(engine, places, pool)) for _, engine in live.munk],
+        "truth": [pool.number(packed(pose)) for pose in poses],
+        "drawings": [
+            pool.number(_drawing(Take(scene, ends=live.ends, traces=live.traces), own, pose))
+            for scene, own, pose in zip(places, mechanisms, poses, strict=True)
+        ],
+        "joints": [pool.number(joints_of(own)) for own in mechanisms],
+        "mujoco": [_or_why(lambda engine=engine: _texts(engine, live, mechanisms, pool)) for _, engine in live.mujoco],
+        "munk": [_or_why(lambda engine=engine: _plans(engine, mechanisms, pool)) for _, engine in live.munk],
         "traces": [{"body": mechanism.body_index(body), "point": point} for body, point in live.traces],
         "native": {
             name: {"version": native_version(name), "pose": _pose(answers.get(motion))}
@@ -90,10 +97,6 @@ def _or_why(make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         return {"why": str(reason)}
 
 
-def _truth(scene: Scene, frames: int) -> str:
-    return packed(scene.motion(np.arange(frames + 1) * (scene.duration / frames)).pose)
-
-
 def _pose(answer: Answer | None) -> str | None:
     return packed(answer.array("pose")) if answer is not None and answer.finished else None
 
@@ -103,12 +106,11 @@ def packed(values: NDArray[np.float64]) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
-def _plans(engine: Any, places: Sequence[Scene], pool: Pool) -> dict[str, Any]:
-    return {"plans": [pool.number(packed(np.array(plan_of(engine, scene.mechanism())))) for scene in places]}
+def _plans(engine: Any, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
+    return {"plans": [pool.number(packed(np.array(plan_of(engine, mechanism)))) for mechanism in mechanisms]}
 
 
-def _texts(engine: Any, live: Live, pool: Pool) -> dict[str, Any]:
-    mechanisms = [scene.mechanism() for scene in live.places()]
+def _texts(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
     steps = [live.scene.duration / steps for steps in live.steps]
     # Where nothing stands on skates, a model for one step is that for all.
     known = steps if loose(mechanisms[0]) else steps[:1]
@@ -139,10 +141,7 @@ def template(texts: Sequence[str]) -> tuple[list[str], list[str]]:
     return parts[0], [",".join(NUMBER.findall(text)) for text in texts]
 
 
-def _drawing(live: Live, scene: Scene) -> dict[str, Any]:
-    take = Take(scene, ends=live.ends, traces=live.traces)
-    mechanism = scene.mechanism()
-    pose = scene.motion(np.arange(live.frames + 1) * (scene.duration / live.frames)).pose
+def _drawing(take: Take, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
     left, bottom, width, height = drawn.box(mechanism, take, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
