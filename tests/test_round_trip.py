@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import runpy
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 from engines import Unsupported
 from engines.mujoco import DEFAULT, TUNED
+from engines.mujoco.model import Model
 from engines.mujoco.reading import read as read_mujoco
 from engines.mujoco.written_urdf import urdf
 from engines.pymunk import DEFAULT as PYMUNK
@@ -24,6 +26,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
 from reference.validation import InvalidMechanism
 from reports.check.law import accelerations
+from reports.search.mechanisms import mechanism as random_mechanism
 
 # Numbers are written with all their digits. What is left is the rounding of two ways to the same place, times the
 # condition of the rows: largest, 2e-13, for ten four-bars in line, which stand 0.05 rad from a singular position.
@@ -226,17 +229,9 @@ def test_gravity_stands_in_the_urdf_file_for_mujoco_and_points_down_for_others()
     assert read_mujoco(model).mechanism.gravity == (0.5, -2.0)
 
 
-@pytest.mark.parametrize("scene", IDEAL[:12], ids=lambda scene: scene.name)
-def test_bars_that_show_an_exported_model_change_no_step(scene):
-    """They are in the file alone: the engine's own model has none, and both go the same way."""
-    mechanism = scene.mechanism()
+def moves_alike(mechanism: Mechanism, own: Model) -> Any:
+    """The model of the exported file, which was seen to move as the engine's own."""
     shown = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))  # type: ignore[attr-defined]
-    own = DEFAULT.model(mechanism, 1e-3)
-    assert own.compiled.ngeom == 0
-    named = {mechanism.bodies[index].name: f"body {index}" for index in range(len(mechanism.bodies))}
-    assert all(shown.body(name).geomnum[0] > 0 for name in named)
-    assert not shown.geom_contype.any()
-    assert not shown.geom_conaffinity.any()
     data, start = mujoco.MjData(shown), own.start()  # type: ignore[attr-defined]
     mujoco.mj_resetDataKeyframe(shown, data, 0)  # type: ignore[attr-defined]
     for _ in range(20):
@@ -244,6 +239,28 @@ def test_bars_that_show_an_exported_model_change_no_step(scene):
         mujoco.mj_step(own.compiled, start)  # type: ignore[attr-defined]
     # The engine counts masses in a power of two of its own; a tolerance of the solver is told apart from rounding.
     np.testing.assert_allclose(data.qpos, start.qpos, rtol=0, atol=1e-9)
+    return shown
+
+
+@pytest.mark.parametrize("scene", IDEAL[:12], ids=lambda scene: scene.name)
+def test_bars_that_show_an_exported_model_change_no_step(scene):
+    """They are in the file alone: the engine's own model has none, and both go the same way."""
+    mechanism = scene.mechanism()
+    own = DEFAULT.model(mechanism, 1e-3)
+    assert own.compiled.ngeom == 0
+    shown = moves_alike(mechanism, own)
+    named = {mechanism.bodies[index].name: f"body {index}" for index in range(len(mechanism.bodies))}
+    assert all(shown.body(name).geomnum[0] > 0 for name in named)
+    assert not shown.geom_contype.any()
+    assert not shown.geom_conaffinity.any()
+
+
+def test_a_body_in_halves_goes_the_same_way_as_a_file():
+    """A slot in a loop of moving bodies is held by half a body and a weld, which the file has to name."""
+    mechanism = random_mechanism(3, 2, ("pin", "slot"))
+    own = DEFAULT.model(mechanism, 1e-3)
+    assert own.halves
+    moves_alike(mechanism, own)
 
 
 def test_bars_go_through_the_joints():

@@ -201,6 +201,8 @@ def _equality(element: Element) -> tuple[str, dict[str, str]]:
     match element.type:
         case mujoco.mjtEq.mjEQ_CONNECT:
             return "connect", told | {"body1": first, "body2": second or "world", "anchor": _text(element.data[:3])}
+        case mujoco.mjtEq.mjEQ_WELD:  # in the pose of the start, as MuJoCo has it where none is given
+            return "weld", told | {"body1": first, "body2": second or "world", "anchor": _text(element.data[:3])}
         case mujoco.mjtEq.mjEQ_JOINT:
             kind = "joint"
         case _:
