@@ -216,6 +216,44 @@ def test_a_gear_whose_ratio_is_that_of_its_other_wheel_is_found(monkeypatch: pyt
     assert faults(LEAPFROG, ("pin", "gear"), 12)
 
 
+def _row_flipped(right: Callable[..., Any]) -> Callable[..., Any]:
+    """A rod whose arm on the second body has a sign of its row flipped: its anchor is on the other side."""
+
+    def rod(joint: Any, *given: Any) -> Any:
+        x, y = joint.second_point
+        return right(replace(joint, second_point=(x, -y)), *given)
+
+    return rod
+
+
+@pytest.mark.parametrize(
+    ("kind", "wrong"),
+    [
+        ("rod", _row_flipped),
+        ("rod", lambda right: lambda joint, *given: right(replace(joint, length=1.0001 * joint.length), *given)),
+        ("gear", lambda right: lambda joint, *given: right(replace(joint, ratio=-joint.ratio), *given)),
+        ("gear", lambda right: lambda joint, *given: right(replace(joint, phase=joint.phase + 1e-4), *given)),
+        ("weld", lambda right: lambda joint, *given: right(replace(joint, angle=joint.angle + 1e-4), *given)),
+    ],
+)
+def test_a_mistake_in_a_rod_a_gear_or_a_weld_of_pymunk_is_found(
+    kind: str, wrong: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pymunk_model, kind, wrong(getattr(pymunk_model, kind)))
+    assert faults(LEAPFROG, ("pin", kind), 12)
+
+
+def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.weld
+    monkeypatch.setattr(pymunk_model, "weld", lambda *given: right(*given)[:1])
+    assert faults(LEAPFROG, ("pin", "weld"), 12)
+
+
+@pytest.mark.parametrize("kind", ["rod", "gear", "weld", "spring", "force"])
+def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(kind: str) -> None:
+    assert "velocity" in faults(HeavierToTurnThere("leapfrog", leapfrog=True), ("pin", kind), 12)
+
+
 @dataclass(frozen=True)
 class Otherwise(MuJoCo):
     """Builds force elements with one number changed."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from reference.scene import Scene
 from reports.gate.baseline import Baseline, identity
@@ -13,9 +14,11 @@ from reports.gate.checks import Check, complaints, nearest
 from reports.gate.nudged import nudged_cells
 from reports.gate.prediction import Kind, Prediction, prediction
 from reports.gate.verdicts import Case, checks, predictions
-from reports.grid.cells import Cell
+from reports.grid.cells import Cell, mechanism_of
 from reports.grid.measure import Measurement
-from reports.grid.pool import Loss, run_cells, supervise
+from reports.grid.outcomes import Loss
+from reports.grid.pool import run_cells
+from reports.grid.supervisor import Answer, Supervise, supervise
 
 # The judge's largest scenes take this long [s] on a busy machine.
 JUDGE_LIMIT = 600.0
@@ -46,8 +49,49 @@ class Verdict:
         return nearest(self.theory) if self.theory else None
 
 
-def _predicted(item: tuple[Scene, frozenset[Kind]]) -> Prediction:
-    return prediction(*item)
+@dataclass(frozen=True)
+class Foretold:
+    """What the judge is asked: a scene, and the kinds of softness."""
+
+    scene: Scene
+    soft: frozenset[Kind]
+
+    @property
+    def label(self) -> str:
+        return f"the judge on {self.scene.name}"
+
+
+@dataclass(frozen=True)
+class Either:
+    """What a worker does with a cell (`function`), or with a Foretold."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, item: Any) -> Any:
+        return prediction(item.scene, item.soft) if isinstance(item, Foretold) else self.function(item)
+
+
+@dataclass(frozen=True)
+class Judging:
+    """As `supervise`, with the judge's own work beside that of the cells: it begins first, since some of it is long.
+
+    found: what the judge said, as it is known. Raises RuntimeError where it fails.
+    """
+
+    asked: tuple[Foretold, ...]
+    found: dict[Scene, Prediction]
+
+    def __call__(
+        self, function: Callable[[Any], Any], items: Iterable[Any], limit: float, *terms: Any
+    ) -> Iterator[Answer]:
+        jobs = [*sorted(self.asked, key=lambda item: -len(mechanism_of(item.scene).bodies)), *items]
+        for item, result, note in supervise(Either(function), jobs, max(limit, JUDGE_LIMIT), *terms):
+            if not isinstance(item, Foretold):
+                yield item, result, note
+            elif isinstance(result, Loss):
+                raise RuntimeError(f"the judge has no prediction for {item.scene.name}: {result.sentence}")
+            else:
+                self.found[item.scene] = result
 
 
 def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None) -> dict[Case, Verdict]:
@@ -56,13 +100,9 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
     Raises RuntimeError when the judge itself fails.
     """
     chosen, workers = tuple(chosen), workers or os.cpu_count() or 1
-    found: dict[Scene, Prediction] = {}
-    for (scene, _), result, _ in supervise(_predicted, predictions(chosen).items(), JUDGE_LIMIT, workers):
-        if isinstance(result, Loss):
-            raise RuntimeError(f"the judge has no prediction for {scene.name}: {result.sentence}")
-        found[scene] = result
+    judging = Judging(tuple(Foretold(scene, soft) for scene, soft in predictions(chosen).items()), {})
     cells = {case: case.cells() for case in chosen}
-    rows = _measured((cell for own in cells.values() for cell in own), workers)
+    rows = _measured((cell for own in cells.values() for cell in own), workers, judging)
     old = baseline.cells
     doubtful = [
         cell
@@ -83,11 +123,11 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
             elif before is not None:
                 changed += drift(row, before)
         new = sum(identity(row) not in old for row in measured)
-        out[case] = Verdict(case, measured, checks(case, measured, found[case.scene]), tuple(changed), new)
+        out[case] = Verdict(case, measured, checks(case, measured, judging.found[case.scene]), tuple(changed), new)
     return out
 
 
-def _measured(cells: Iterable[Cell], workers: int) -> Mapping[Cell, Measurement]:
+def _measured(cells: Iterable[Cell], workers: int, supervised: Supervise = supervise) -> Mapping[Cell, Measurement]:
     by_key = {cell.key: cell for cell in cells}
-    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=False)}
+    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=False, supervised=supervised)}
     return {cell: rows[key] for key, cell in by_key.items()}

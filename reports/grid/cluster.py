@@ -39,6 +39,12 @@ ANSWERS_WITHIN = 10.0  # s for a scheduler to answer
 WORKERS_WITHIN = 120.0  # s for a worker to be there
 CHUNK = 0.3  # s that a chunk should take: much more than sending one, much less than waiting for the last
 MOST_ITEMS = 200  # of a chunk
+# What Dask measures of itself, a hundred times a second, in the process that hands out chunks: nobody looks there.
+QUIET = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
 AHEAD = 2  # chunks for each thread: one runs, one waits beside it
 MOST_TRIES = 5  # of a chunk of which a foreman, or several workers one after the other, ended
 
@@ -59,6 +65,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
     if not (local or ADDRESS.fullmatch(scheduler)):
         raise BadInput(f"--scheduler is {scheduler!r}; it must be {FORMS}")
     try:
+        import dask
         import distributed
     except ImportError:
         raise BadInput(
@@ -73,6 +80,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
             try:
                 where: Any = scheduler
                 if local:
+                    stack.enter_context(dask.config.set(QUIET))
                     where = stack.enter_context(
                         distributed.LocalCluster(
                             n_workers=int(local[1]),

@@ -17,7 +17,7 @@ from reports.search.shrinking import shrunk
 from reports.search.subjects import ORACLES, Adapted, Subject, Told
 
 SECONDS = 20.0  # of CPU time for one finding
-TRIED = 2  # shapes of which each takes an engine long to build: an example is smaller then by few bodies
+TRIED = 1  # times the seconds that a shape takes to build, for engines that compile one: few shapes are tried
 MOST = 2  # findings of one check of a subject that are made smaller
 
 
