@@ -15,6 +15,7 @@ from reports.pages.page import Page
 from reports.text.links import anchor, headings
 from reports.text.programs import PAGES as FOLDER
 from reports.text.programs import program, programs_of
+from reports.text.tables import number
 from tests import test_any_rows as rendering
 from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole
@@ -28,6 +29,8 @@ OBSERVED = 500
 MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PROGRAM = re.compile(r"^### ([^\n]*)\n\n```python\n(.*?)^```\n\nExact: ([^:]*): ([^\n]*)\.$", re.DOTALL | re.MULTILINE)
+# Engine, variant and step of each line of the table of advice.
+ADVISED = re.compile(r"^\| (\w+) \| [^|]* \| \*\*([^|]*)\*\* \| [^|]* \| ([^| ]*) \|", re.MULTILINE)
 
 named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 
@@ -117,6 +120,8 @@ def test_a_program_moves_as_the_method_whose_name_it_has(page, undrawn):
         assert said.startswith(f"{body}: ")
         rows = [r for r in whole(page).values() if (r.method, r.scene) == (method, scene.name) and r.purpose == "sweep"]
         (row,) = [row for row in rows if row.step == pytest.approx(duration / steps)]
+        # The first step that the table above advises for this method: another one may have a row too.
+        assert number(row.step) == next(step for *who, step in ADVISED.findall(text) if " ".join(who) == method)
         told = np.array([float(value) for value in re.findall(r"= (-?[\d.]+)", exact)])
         far = np.abs(told - names["end"])
         assert max(far[:2]) <= 1.01 * row.position + 1e-9
