@@ -45,6 +45,7 @@ NOT_MADE_BY_USERS = {
     *(
         "engines.loading.Kind",
         "engines.finer.Division",
+        "engines.exudyn.system.Solving",
         "engines.entry_points.Registered",
         "engines.lagrange.batch.Batch",
     ),

@@ -13,14 +13,14 @@ from reference.slider_crank.scenes import DrivenSliderCrank
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.pages.faults.equalities import KINDS, Bead, Equalities
 from reports.pages.faults.groove import CASES, WRONG, Grooves, Offsets, across, beside, wrong
-from reports.pages.faults.scripts import Script, script
+from reports.pages.faults.scripts import MJX, Script, script
 from reports.pages.faults.versions import MUJOCO, PYMUNK, recorded
 from reports.pages.page import Material, Page
 from reports.text.tables import markdown, number
 
 NAME = "faults"
 SNIPPETS = "faults/snippets"
-SCRIPTS: Mapping[str, Script] = {name: script(name) for name in (*MUJOCO, *PYMUNK)}
+SCRIPTS: Mapping[str, Script] = {name: script(name) for name in (*MUJOCO, *PYMUNK, *MJX)}
 GROOVES = tuple(map(Grooves, CASES))
 EQUALITIES = tuple(map(Equalities, KINDS))
 BEADS = (Bead(1e-2), Bead(1e-4))

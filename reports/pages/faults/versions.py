@@ -6,13 +6,11 @@ python -m reports.pages.faults.versions    # installs each version in the user's
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.pages.faults.scripts import FOLDER
+from reports.pages.faults.scripts import said_apart
 from reports.versions.installed import environment, installed
 
 RECORDED = Path(__file__).parent / "versions.csv"
@@ -25,8 +23,6 @@ RELEASES = (
     *(("mujoco-core", version, MUJOCO) for version in ("4.0.0", "4.0.1")),
     *(("pymunk", version, PYMUNK) for version in ("6.4.0", "7.0.0", "7.3.1")),
 )
-# Printed by a process of its own behind a script's last line.
-TOLD = '\nprint("told", repr(float(expected)), repr(float(found)))\n'
 
 
 @dataclass(frozen=True)
@@ -63,14 +59,11 @@ def found_with(package: str, version: str, scripts: Iterable[str]) -> list[Found
     own = environment(folder)
     out = []
     for name in scripts:
-        text = (FOLDER / f"{name}.py").read_text(encoding="utf-8") + TOLD
-        run = subprocess.run(
-            [sys.executable, "-c", text], capture_output=True, text=True, env=own, cwd=folder, check=False
-        )
-        words = run.stdout.split()[-3:]
-        if run.returncode or words[:1] != ["told"]:
-            raise SystemExit(f"{name} with {package} {version}: {(run.stderr or run.stdout).strip().splitlines()[-1]}")
-        out.append(Found(name, package, version, float(words[1]), float(words[2])))
+        try:
+            expected, found = said_apart(name, own, folder)
+        except RuntimeError as reason:
+            raise SystemExit(f"{name} with {package} {version}: {reason}") from None
+        out.append(Found(name, package, version, expected, found))
     return out
 
 
