@@ -82,7 +82,7 @@ class Exudyn(Optional):
 
 DEFAULT = Exudyn("default")
 TUNED = Exudyn(
-    "tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-12, consistent=True, sparse=True, own_units=True
+    "tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-14, consistent=True, sparse=True, own_units=True
 )
 EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(2, 4, 6))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)

@@ -18,6 +18,8 @@ from reports.search.subjects import ORACLES, Adapted, Subject, Told
 
 SECONDS = 20.0  # of CPU time for one finding
 TRIED = 1  # times the seconds that a shape takes to build, for engines that compile one: few shapes are tried
+# Of the error that was found: what is left of it in a smaller case. Of less, it may be another fault, or a trifle.
+KEPT = 0.01
 MOST = 2  # findings of one check of a subject that are made smaller
 
 
@@ -55,14 +57,15 @@ class Shrink(Task):
         case: Any = self.subject.draw(self.seed, self.number, self.kinds, self.decades)
         oracles = oracle_of(self.subject, case, self.number, self.check, self.oracles)
 
-        why = _kind_of(self.subject.ask(case, self.number, oracles))
+        whole = self.subject.ask(case, self.number, oracles)
+        why, least = _kind_of(whole), KEPT * whole.errors[self.check][0]
 
         def still(smaller: Any) -> bool:
             try:
                 told = self.subject.ask(smaller, self.number, oracles)
-                return self.check in told.faults and _kind_of(told) == why
             except InvalidMechanism:
                 return False
+            return self.check in told.faults and told.errors[self.check][0] >= least and _kind_of(told) == why
 
         small = shrunk(case, still, self.cost)
         told = self.subject.ask(small, self.number, oracles)

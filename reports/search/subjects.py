@@ -177,7 +177,7 @@ def _instant(engine: MuJoCo | Pymunk | Mjx | Box2D, mechanism: Mechanism) -> dic
         case MuJoCo():
             bound, found = instant_mujoco.bound(engine), instant_mujoco.errors(engine, mechanism)
         case Mjx():
-            bound, found = instant_mujoco.bound(engine.settings), instant_mjx.errors(engine, mechanism)
+            bound, found = instant_mjx.bound(engine), instant_mjx.errors(engine, mechanism)
         case Box2D():
             bound, found = instant_box2d.bound(engine), instant_box2d.errors(engine, mechanism)
         case Pymunk():
