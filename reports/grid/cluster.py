@@ -80,7 +80,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
             try:
                 where: Any = scheduler
                 if local:
-                    stack.enter_context(dask.config.set(QUIET))
+                    stack.enter_context(dask.config.set(QUIET))  # pyright: ignore[reportPrivateImportUsage]
                     where = stack.enter_context(
                         distributed.LocalCluster(
                             n_workers=int(local[1]),

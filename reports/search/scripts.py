@@ -72,7 +72,7 @@ mujoco.mj_forward(model, data)
 {FOUND_BY_MJX if isinstance(inner, Mjx) else "found, version = data.qacc, mujoco.__version__"}
 expected = np.array({_numbers(here.accelerations())})
 found = np.array(found)[{model.address!r}]
-print({("MJX" if isinstance(inner, Mjx) else "MuJoCo")!r}, version)
+print("{"MJX" if isinstance(inner, Mjx) else "MuJoCo"}", version)
 print("found   ", found)
 print("expected", expected)
 print("largest difference", np.abs(found - expected).max())
