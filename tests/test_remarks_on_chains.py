@@ -106,8 +106,11 @@ def test_sweeps_on_a_heavy_tip() -> None:
     if rows := found.get(f"mujoco {pendulum_failures.PATIENT.variant}"):  # the newest of these cells
         assert comparable(rows) == [True]
     assert comparable(found["mujoco tuned"]) == [False, True, True]
-    for name in ("mujoco extended", "mujoco extended, free, sparse Newton"):  # they divide a step that is too long
-        assert comparable(found[name]) == [True, True, True]
+    # They divide a step that is too long, and say that their estimate is above what they claim.
+    for name in ("mujoco extended", "mujoco extended, free, sparse Newton"):
+        assert comparable(found[name]) == [False, True, True]
+        assert found[name][0].outcome == Outcome.UNRESOLVED
+        assert found[name][0].angle < 1e-2
 
 
 def test_beyond_the_horizon_only_methods_of_higher_order_are_right_and_only_at_the_small_step() -> None:
