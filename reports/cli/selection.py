@@ -16,7 +16,7 @@ from reports.grid.tasks import Task
 from reports.grid.usual_steps import usual_cells
 from reports.pages.page import Page
 
-# A quick run over everything shall end within half a minute of two cores. So no cell of it takes longer than this [s],
+# A quick run over everything takes about a minute of two cores. For that no cell of it takes longer than this [s],
 # but for the shortest of each method in each scene: that one is left out only beyond QUICK_MOST [s].
 QUICK_SECONDS = 0.02
 QUICK_MOST = 0.5
