@@ -1,0 +1,25 @@
+"""Pages that workers render are those that one process renders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports.cli.drawing import drawn, material_of
+from reports.cli.selection import shown_cells
+from reports.grid.measure import measure
+from reports.grid.store import Store
+from reports.pages.catalogue import PAGES
+from reports.text.rendering import render_page
+
+
+def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
+    pages = [page for page in PAGES if page.name in ("four_bar", "person")]
+    path = tmp_path / "cells.sqlite"
+    with Store(path) as store:
+        for cell in [next(c for c in shown_cells(page) if c.engine.name == "lagrange") for page in pages]:
+            store.put(measure(cell, repeat=False))
+    with Store.read(path) as store:
+        made = drawn(store, True, "make report", pages, tmp_path)
+        alone = {page.name: render_page(page, material_of(page, store), "make report") for page in pages}
+    assert set(made) == {page.name for page in pages}
+    assert made == alone
