@@ -61,8 +61,7 @@ def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
     if not gives.all():
         rigid, soft = np.flatnonzero(~gives), np.flatnonzero(gives)
         coupled = matrix[np.ix_(rigid, soft)]
-        answer = np.linalg.lstsq(matrix[np.ix_(rigid, rigid)], coupled, rcond=RANK_TOLERANCE)[0]
-        out[soft] -= np.einsum("ij,ij->j", coupled, answer)
+        out[soft] -= np.einsum("ij,ij->j", coupled, solved(matrix[np.ix_(rigid, rigid)], coupled))
     # Of a row that others hold already nothing would be left; engines take an estimate that knows no others.
     return np.maximum(out, REDUNDANT * np.diag(matrix))
 
