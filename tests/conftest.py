@@ -22,7 +22,7 @@ GRID = "test_crosscheck.py"
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Where `-m` asks for the grid alone, no other file is imported: importing them all takes ten seconds."""
     other = collection_path.name.startswith("test_") and collection_path.name != GRID
-    return True if other and wants_the_grid_alone(config.getoption("-m")) else None
+    return True if other and wants_the_grid_alone(config.getoption("-m") or "") else None
 
 
 def wants_the_grid_alone(expression: str) -> bool:

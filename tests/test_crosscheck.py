@@ -94,6 +94,6 @@ def test_other_files_are_left_out_only_where_no_test_of_theirs_can_be_meant(expr
 
 
 def test_no_other_file_has_tests_of_the_grid():
-    ways = ("grid_tests", "mark." + "crosscheck")
-    texts = {path.name: path.read_text("utf-8") for path in Path(__file__).parent.glob("**/*.py")}
-    assert {name for name, text in texts.items() if any(way in text for way in ways)} == {FILE}
+    ways = ("from reports.gate.grid_tests", "mark." + "crosscheck")
+    texts = {path.name: path.read_text("utf-8") for path in Path(__file__).parent.glob("**/*.py") if path.name != FILE}
+    assert not [name for name, text in texts.items() if any(way in text for way in ways)]
