@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -152,7 +153,11 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
             )
     except IntegrationFailed:
         return integration.integrate(rates, state, until, coarser * integration.TOLERANCE, unit)
-    return lambda t: by(t).astype(float)
+    return partial(_rounded, by)
+
+
+def _rounded(motion: Windows, t: ArrayLike) -> Array:
+    return motion(t).astype(float)
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
