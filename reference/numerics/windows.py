@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -131,6 +130,16 @@ def integrate(
     return Windows(stages, np.array(times), np.array(states), slopes)
 
 
+@dataclass(frozen=True)
+class InDouble:
+    """Windows whose states are rounded to double."""
+
+    windows: Windows
+
+    def __call__(self, t: ArrayLike) -> Array:
+        return self.windows(t).astype(float)
+
+
 def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarser: float = 1.0) -> Motion:
     """The motion up to `until` [s] of angles and then, as many, their rates (2 n,), whose `rates` are known in double:
     times (times,) to states (times, 2 n). By few windows, else by the explicit method of `integration`.
@@ -153,11 +162,7 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
             )
     except IntegrationFailed:
         return integration.integrate(rates, state, until, coarser * integration.TOLERANCE, unit)
-    return partial(_rounded, by)
-
-
-def _rounded(motion: Windows, t: ArrayLike) -> Array:
-    return motion(t).astype(float)
+    return InDouble(by)
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
