@@ -1,4 +1,4 @@
-"""The judge's own work beside the cells of a gate: it begins first, its answers are kept apart, and its failure is told."""
+"""The judge's own work beside the cells of a gate: it begins first, its answers are kept apart, its failure is told."""
 
 from __future__ import annotations
 
