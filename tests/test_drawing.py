@@ -19,7 +19,8 @@ def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
         for cell in [next(c for c in shown_cells(page) if c.engine.name == "lagrange") for page in pages]:
             store.put(measure(cell, repeat=False))
     with Store.read(path) as store:
-        made = drawn(store, True, "make report", pages, tmp_path)
-        alone = {page.name: render_page(page, material_of(page, store), "make report") for page in pages}
+        material = {page: material_of(page, store) for page in pages}
+    made = drawn(material, (), "make report", tmp_path)
+    alone = {page.name: render_page(page, given, "make report") for page, given in material.items()}
     assert set(made) == {page.name for page in pages}
     assert made == alone
