@@ -26,7 +26,8 @@
 
 More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
 is given (engine, mechanism, dt, steps) and tells the CPU seconds of that many steps of its model with nothing read:
-`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too.
+`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too. And an engine may have a method
+`prepare()`: what it loads or compiles once in a process, so that no build is timed with it.
 """
 
 from __future__ import annotations

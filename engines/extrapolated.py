@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,15 +150,6 @@ class Extrapolated(Valid):
         )
 
 
-@runtime_checkable
-class Following(Protocol):
-    """A run that can make use of how the coarsest run of the same samples went."""
-
-    def follow(self, coarser: Trajectory) -> None:
-        """Called before the run itself."""
-        ...
-
-
 class ExtrapolatedRun:
     """The built models of all levels, ready to be stepped once; see `engines.Run`."""
 
@@ -201,11 +191,7 @@ class ExtrapolatedRun:
         """What the runs of all levels say, with `every` steps of the method between samples, each divided."""
         levels, powers = self._method.levels, self._method.powers
         runs, every = self._runs if finer == 1 else self._built(finer), every * finer
-        parts: list[Trajectory] = []
-        for run, level in zip(runs, levels, strict=True):
-            if parts and isinstance(run, Following):
-                run.follow(parts[0])
-            parts.append(run(samples, every * level))
+        parts = [run(samples, every * level) for run, level in zip(runs, levels, strict=True)]
         weights = extrapolation_weights(levels, powers)
         poses, twists, reactions = (
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")

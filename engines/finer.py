@@ -63,19 +63,6 @@ def tells_itself(run: Trajectory, mechanism: Mechanism, dt: Positive, order: Pos
 
 
 @validated
-def steps_for_one(
-    method: Engine,
-    build: Callable[[float], Run],
-    mechanism: Mechanism,
-    duration: Positive,
-    order: Positive,
-    finest: Count = 16,
-) -> int:
-    """`division` without what it took."""
-    return division(method, build, mechanism, duration, order, finest).steps
-
-
-@validated
 def division(
     method: Engine,
     build: Callable[[float], Run],

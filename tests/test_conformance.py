@@ -73,7 +73,7 @@ FOUND_BY = {
 METHODS = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS)
 SPECIAL = (
     *(*of_pymunk.SKATES, *of_pymunk.SLOTS, *of_pymunk.ROLLS),
-    *(*of_mujoco.SKATES, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
+    *(*of_mujoco.SKATES, *of_mujoco.SLOTS, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
 # Enough for every day: what differs by its settings alone, or takes seconds of steps in Python, is left out.
 DAILY = (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from engines import Promise
@@ -16,6 +18,8 @@ from reports.gate.grid_tests import (
     test_the_baseline_knows_some_of_the_grid,
 )
 from reports.pages.catalogue import PAGES, page_of, untaught
+from tests.conftest import GRID as FILE
+from tests.conftest import wants_the_grid_alone
 from tests.present import present
 from tests.toys import Disc
 
@@ -69,3 +73,27 @@ def test_a_scene_that_no_page_teaches_is_named():
     assert untaught((*SCENES, Disc())) == ("disc",)
     assert untaught(SCENES, [page for page in PAGES if page.name != "wheels"]) == ("car_and_trailer", "cart")
     assert page_of(Disc()) is None
+
+
+@pytest.mark.parametrize(
+    ("expression", "alone"),
+    [
+        ("crosscheck", True),
+        ("crosscheck and not slow", True),
+        ("not slow and (crosscheck or crosscheck and browser)", True),
+        ("", False),
+        ("slow", False),
+        ("not crosscheck", False),
+        ("crosscheck or slow", False),
+        ("not (slow and crosscheck)", False),
+        ("crosscheck(level=", False),
+    ],
+)
+def test_other_files_are_left_out_only_where_no_test_of_theirs_can_be_meant(expression, alone):
+    assert wants_the_grid_alone(expression) is alone
+
+
+def test_no_other_file_has_tests_of_the_grid():
+    ways = ("from reports.gate.grid_tests", "mark." + "crosscheck")
+    texts = {path.name: path.read_text("utf-8") for path in Path(__file__).parent.glob("**/*.py") if path.name != FILE}
+    assert not [name for name, text in texts.items() if any(way in text for way in ways)]

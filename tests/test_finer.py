@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engines import finer
-from engines.finer import Division, division, steps_for_one, tells_itself
+from engines.finer import Division, division, tells_itself
 from engines.pymunk import EXTENDED
 from engines.pymunk.methods import SETTLED
 from reference.four_bar.scenes import FreeFourBar
@@ -108,13 +108,6 @@ def test_a_division_is_found_once_and_keeps_what_it_took():
     assert again is first
     assert made == [1, 4]
     assert first.seconds > 0
-
-
-def test_steps_for_one_is_the_division_without_its_cost():
-    own = pendulum()
-    duration = 0.5 * own.time_scale
-    build = lambda dt: lambda samples, every: run_with(0.0, own, duration, samples)  # noqa: E731
-    assert steps_for_one(Toy("still"), build, own, duration, ORDER) == 1  # type: ignore[arg-type]
 
 
 def test_no_rough_run_is_made_where_the_worst_pose_of_the_motion_makes_its_steps_too_dear():

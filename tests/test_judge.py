@@ -10,8 +10,9 @@ import pytest
 from engines import Softness
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.pendulum.link import PointPendulum
 from reference.pendulum.scenes import LinkPendulum
-from reports.gate.judge import QUANTITY_NAMES, errors, integrate
+from reports.gate.judge import QUANTITY_NAMES, errors, in_numpy, integrate
 from tests.toys import Disc
 
 SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
@@ -30,6 +31,18 @@ def test_a_projection_leaves_the_joints_closed_and_the_motion_as_exact_as_before
     # One Newton step squares a gap of 1e-8 m; the twist is projected with the rows of the pose after it.
     assert max(projected["gap"], projected["slip"]) < 1e-12
     assert projected["angle"] < 3 * alone["angle"]
+
+
+def test_a_motion_that_is_lost_has_no_finite_error_and_is_not_stepped_to_its_end():
+    # A step of half a second is a quarter of a period: a projection of second order throws the bob off for good.
+    scene = PointPendulum()
+    assert errors(scene, 2, 1, project=True) == dict.fromkeys(QUANTITY_NAMES, np.inf)
+    with np.errstate(all="ignore"):
+        found = in_numpy(scene.mechanism(), scene.samples, scene.spacing, 2, 1, None, True)
+    finite = np.isfinite(found.pose).all(axis=(1, 2))
+    last = int(finite.argmin())
+    assert 0 < last < 100
+    assert np.isnan(found.pose[last + 1 :]).all()
 
 
 @dataclass(frozen=True)

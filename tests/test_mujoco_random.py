@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
+from engines.finer import Division
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.solver_check import _lost
@@ -111,6 +112,34 @@ def test_a_motion_that_becomes_fast_takes_more_steps() -> None:
     divided = present(miss(own))
     assert divided.angle < GOAL / 10
     assert divided.angle < 10 * divided.estimate
+
+
+def test_rough_runs_and_a_run_that_had_to_be_divided_are_part_of_the_stepping(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = mechanism(11, 0, HELD)
+    monkeypatch.setattr("engines.mujoco.engine.division", lambda *_, **__: Division(1, 7.0))
+    # A run that tells by its own estimate that its steps are short enough needs no rough one.
+    assert EXTENDED.build(own, STEP)(2, 100).stepping < 7.0
+    monkeypatch.setattr("engines.mujoco.running.tells_itself", lambda *_: False)
+    assert EXTENDED.build(own, STEP)(2, 100).stepping > 7.0
+    monkeypatch.setattr("engines.mujoco.engine.division", lambda *_, **__: Division(2, 0.0))
+    divided = EXTENDED.build(own, STEP)(2, 100)
+    plain = replace(EXTENDED.build(own, STEP / 2), divided=None)(2, 200)
+    assert np.array_equal(divided.pose, plain.pose)
+
+
+def test_an_estimate_above_1e_7_is_told_also_where_the_claim_is_looser(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = mechanism(11, 0, HELD)
+    quiet = EXTENDED.build(own, STEP)(2, 100)
+    assert quiet.warnings == ()
+    size = np.array([own.length_scale, own.length_scale, 1.0])
+    for share, told in ((0.9, False), (1.1, True)):
+        found = np.zeros_like(quiet.pose)
+        found[-1, 0] = share * GOAL * size
+        monkeypatch.setattr("engines.mujoco.running.claimed", lambda _m, _dt, t: np.full_like(t, 1e-6))
+        monkeypatch.setattr("engines.mujoco.running.MuJoCoRun._estimate", lambda *_, found=found: found)
+        motion = EXTENDED.build(own, STEP)(2, 100)
+        assert motion.unresolved_at is None
+        assert any("its own estimate is 1.1e-07 of a radian" in warning for warning in motion.warnings) == told
 
 
 def test_a_light_body_that_carries_a_heavy_one_makes_rows_softer_and_loses_nothing() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from engines import lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
+from engines.mujoco.methods import SLOTS
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
@@ -19,6 +20,7 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.person.one_foot import OneFoot
 from reference.person.two_feet import TwoFeet
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy
 
 FREE_COORDINATES = replace(EXTENDED, coordinates="free")
@@ -133,6 +135,19 @@ def test_by_public_settings_half_of_the_body_slides_and_is_welded_to_the_other(k
 
 
 HALVED = ((1e-3, 10), (5e-4, 20))
+
+
+def test_a_row_of_ours_needs_one_row_where_halves_need_six_and_two_coordinates_and_misses_less() -> None:
+    scene, found = SlottedLever(), {}
+    for engine in (TUNED, *SLOTS):
+        size = engine.build(scene.mechanism(), 1e-3).size
+        found[engine.variant] = (size.bodies, size.coordinates, size.solver_rows)
+    assert found == {"tuned": (3, 4, 6), "tuned, slots as rows": (2, 2, 1)}
+    coarse, fine = (error(SLOTS[0], scene, dt) for dt in (1e-3, 5e-4))
+    assert 3 < coarse / fine < 5  # the spring is tied to the step, as that of the weld
+    assert coarse < 0.6 * error(TUNED, scene, 1e-3)
+    slot = next(joint for joint in scene.mechanism().joints if isinstance(joint, Slot))
+    assert [each.holder(slot, scene.mechanism()) for each in (TUNED, *SLOTS)] == ["engine", "engine, our rows"]
 
 
 def test_two_slots_of_one_body_are_two_of_its_quarters_and_a_slot_may_carry_a_point_of_the_ground() -> None:

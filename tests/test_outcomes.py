@@ -36,7 +36,8 @@ def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
         (shifted(1, 0.99 * TORN * LENGTH), "finished", ""),
         (shifted(2, 1.01 * SATURATED), "saturated", f"wrong by {1.01 * SATURATED:.2g} rad within the horizon"),
         (shifted(2, 0.99 * SATURATED), "finished", ""),
-        (disc(unresolved_at=0.05), "unresolved", "its own estimate is"),
+        (disc(unresolved_at=0.05, estimate=np.full((21, 1, 3), 3e-5)), "unresolved", "its own estimate is 3e-05 rad"),
+        (disc(unresolved_at=0.0, estimate=np.full((21, 1, 3), np.nan)), "unresolved", "so it has no estimate"),
     ],
 )
 def test_each_outcome_has_its_bound_and_its_number(trajectory, outcome, telling):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
 from engines.lagrange.compiled_run import Machine, not_held
 from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, adaptive, runge_kutta, semi_implicit_euler
-from engines.lagrange.loading import installed
+from engines.lagrange.loading import compiled, installed
 from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
 from engines.motions import is_prescribed, over_three
 from reference.joints import Joint
@@ -75,6 +75,11 @@ class Lagrange(Valid):
     def in_machine_code(self) -> bool:
         """Whether runs are compiled."""
         return self.compiled and installed()
+
+    def prepare(self) -> None:
+        """Have the machine code read, or compiled where that is not done: ten seconds that belong to no model."""
+        if self.in_machine_code:
+            compiled()
 
     @property
     def family(self) -> str:

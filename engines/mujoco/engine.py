@@ -13,7 +13,7 @@ from typing import Literal
 import mujoco
 
 from engines import Holder, Promise, Size, Softness, Unpromised
-from engines.finer import steps_for_one
+from engines.finer import Division, division
 from engines.motions import over_three
 from engines.mujoco import theory
 from engines.mujoco.joints.drive import DriveBy
@@ -52,7 +52,7 @@ class MuJoCo(Valid):
     stages of the same stale row cost more and gain nothing. `estimates`: a second run with half as many steps tells
     the error of the first, if that falls with the fourth power of the step; where it is above what is claimed
     (`engines.mujoco.theory.claimed`), the run says so; and a motion that becomes faster than its start lets expect
-    takes more steps (`engines.finer`).
+    takes more steps (`engines.finer`), unless that estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -145,7 +145,7 @@ class MuJoCo(Valid):
             solver_rows=data.nefc,
         )
         promised = self.order(mechanism) if self.estimates else None
-        fourth = isinstance(promised, Promise) and promised.order >= 4
+        fourth = isinstance(promised, Promise) and promised.order >= theory.ORDER
         if not fourth:
             return MuJoCoRun(model, data, size)
 
@@ -154,9 +154,11 @@ class MuJoCo(Valid):
 
         if all(isinstance(joint, Roll) for joint in mechanism.joints):
             return MuJoCoRun(model, data, size, plain)  # how far a contact turns in a step is known, and told
-        return MuJoCoRun(
-            model, data, size, plain, lambda duration: steps_for_one(self, plain, mechanism, duration, 4.0, finest=64)
-        )
+
+        def divided(duration: float) -> Division:
+            return division(self, plain, mechanism, duration, theory.ORDER, finest=64)
+
+        return MuJoCoRun(model, data, size, plain, divided)
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:

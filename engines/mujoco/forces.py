@@ -10,7 +10,6 @@ its direction stays; both push by their bias alone, whatever the control.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import mujoco
@@ -21,19 +20,6 @@ from engines.mujoco.joints.rod_gear_weld import add_site
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 AUTOMATIC = -1.0  # a springlength that MuJoCo replaces by the length at the start
-
-
-def lighter(force: ForceElement, unit: float) -> ForceElement:
-    """The same element where masses are counted in this unit [kg]."""
-    match force:
-        case Spring() | TorsionSpring():
-            return replace(force, stiffness=force.stiffness / unit)
-        case Damper() | TorsionDamper():
-            return replace(force, damping=force.damping / unit)
-        case Torque():
-            return replace(force, torque=force.torque / unit)
-        case Force():
-            return replace(force, force=(force.force[0] / unit, force.force[1] / unit))
 
 
 def add_forces(building: Building) -> None:

@@ -1,7 +1,7 @@
 """Every method of MuJoCo as a value: the three variants, what lies between them, and each construction of a joint.
 
-METHODS are for every scene. SKATES and ROLLS hold one kind of joint in one way each, for a page that compares them;
-what each way is stands in `engines.mujoco.joints`.
+METHODS are for every scene. SKATES, ROLLS and SLOTS hold one kind of joint in one way each, for a page that compares
+them; what each way is stands in `engines.mujoco.joints`.
 """
 
 from __future__ import annotations
@@ -84,3 +84,6 @@ ROLLS = (
     ),
     replace(NEWTON, variant="contact, completed", rolls=CompletedContact()),
 )
+
+# A slot whose line moves as a row of ours. It is no setting of MuJoCo's, so it is not what `TUNED` itself takes.
+SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)

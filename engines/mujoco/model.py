@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import mujoco
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks, in_turn
-from engines.mujoco.forces import add_forces, lighter
+from engines.mujoco.forces import add_forces
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
 from engines.mujoco.joints.pin import add_pins
 from engines.mujoco.joints.rod_gear_weld import RodBy, add_gears, add_rods, add_welds
@@ -27,6 +26,7 @@ from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.row_callback import reserve_plan, row_callback
 from engines.mujoco.stiffness import Stiffness
+from engines.mujoco.unit_of_mass import lighter, unit_of_mass
 from engines.mujoco.written_model import Written, new_specification
 from engines.mujoco.written_rows import add_placeholders, installed
 from engines.tree import Tree, spanning_tree
@@ -107,8 +107,8 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    whole, unit = mechanism, 1.0 if settings.as_text else _unit_of_mass(mechanism)
-    mechanism = _lighter(mechanism, unit)
+    whole, unit = mechanism, 1.0 if settings.as_text else unit_of_mass(mechanism)
+    mechanism = lighter(mechanism, unit)
     drives: list[Drive] = []
     skating: list[Skate] = []
     rolling: list[Roll] = []
@@ -173,20 +173,6 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         tuple(building.halves),
         spec if settings.as_text else None,
     )
-
-
-def _unit_of_mass(mechanism: Mechanism) -> float:
-    """About the mechanism's mass [kg]: a regularisation below mjMINVAL (1e-15) is not taken, and that has a unit.
-
-    A power of two, so that no number is rounded for it.
-    """
-    return 2.0 ** round(math.log2(sum(body.mass for body in mechanism.bodies)))
-
-
-def _lighter(mechanism: Mechanism, unit: float) -> Mechanism:
-    """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
-    bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
-    return replace(mechanism, bodies=tuple(bodies), forces=tuple(lighter(force, unit) for force in mechanism.forces))
 
 
 def _spec(tree: Tree, dt: float, settings: Settings) -> Any:

@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import mujoco
@@ -17,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Size
+from engines.finer import Division, tells_itself
 from engines.mujoco.construction import in_turn
 from engines.mujoco.joints.roll.roll_warnings import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
-from engines.mujoco.theory import claimed, seen_order
+from engines.mujoco.theory import CLAIM, ORDER, claimed, seen_order
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
 
@@ -75,19 +75,30 @@ class MuJoCoRun:
     # Builds the same with another step [s], for an estimate of the error of RK4: None for none.
     other: Callable[[float], MuJoCoRun] | None = None
     # Into how many steps each is to be divided in a motion of so many seconds: None for never.
-    divided: Callable[[float], int] | None = None
+    divided: Callable[[float], Division] | None = None
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already."""
+        """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already.
+
+        `stepping` counts what the answer needed: with the rough runs, and the run whose steps had to be divided.
+        """
         self.model.mechanism.require_room(samples)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
+        step, found = self.model.compiled.opt.timestep, self._as_built(samples, every)
+        if not self.divided or not self.other or tells_itself(found, self.model.mechanism, step, ORDER):
+            return found
+        needed = self.divided(samples * every * step)
+        spent = found.stepping + needed.seconds
+        if needed.steps > 1:
+            found = self.other(step / needed.steps)(samples, every * needed.steps)
+            spent += found.stepping
+        return replace(found, stepping=spent)
+
+    def _as_built(self, samples: int, every: int) -> Trajectory:
+        """The motion by the steps of the model."""
         step = self.model.compiled.opt.timestep
-        finer = self.divided(samples * every * step) if self.divided and self.other else 1
-        if finer > 1 and self.other:
-            self.data.time = math.inf  # this one is over
-            return self.other(step / finer)(samples, every * finer)
         t = np.arange(samples + 1) * (every * step)
         with _listening(self.data) as complaints, self.model.hooked():
             position, velocity, clock, stepping = self._step(samples, every)
@@ -111,6 +122,8 @@ class MuJoCoRun:
         unresolved_at = None if estimate is None else self._unresolved_at(t, estimate)
         if unresolved_at is not None:
             warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim")
+        elif estimate is not None and (lost := float(np.nanmax(estimate / self._sizes))) > CLAIM:
+            warnings.append(f"ours: its own estimate is {lost:.1e} of a radian or of the mechanism's length")
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at, estimate, unresolved_at)
 
     def _estimate(self, samples: int, every: int, pose: Array) -> Array | None:

@@ -26,6 +26,7 @@ SPRUNG = Promise(1, gap=2)
 # The same in a motion that is prescribed, where a pose is wrong by its gap alone.
 SPRUNG_PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1)
 
+ORDER = 4  # of RK4, and so of every run with an estimate
 # Of a radian or of the mechanism's length: what a run with an estimate claims of its error, whatever the motion.
 CLAIM = 1e-7
 # The fourth order is seen where a step is at most this part of the motion's time scale. Measured in 475 random
@@ -36,7 +37,7 @@ SHORT = 1 / 25
 
 def seen_order(mechanism: Mechanism, dt: float) -> int:
     """The power of the step with which an estimate may reckon: that of RK4, or the first where steps are long."""
-    return 4 if dt <= SHORT * mechanism.time_scale else 1
+    return ORDER if dt <= SHORT * mechanism.time_scale else 1
 
 
 def claimed(mechanism: Mechanism, dt: float, t: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -46,9 +47,9 @@ def claimed(mechanism: Mechanism, dt: float, t: NDArray[np.float64]) -> NDArray[
     leaves as they are.
     """
     scale = mechanism.time_scale
-    if seen_order(mechanism, dt) < 4:
+    if seen_order(mechanism, dt) < ORDER:
         return np.full_like(t, CLAIM)
-    return np.maximum(CLAIM, FAST * (SHARE * dt / scale) ** 4 * np.maximum(1.0, t / scale))
+    return np.maximum(CLAIM, FAST * (SHARE * dt / scale) ** ORDER * np.maximum(1.0, t / scale))
 
 
 def promise(engine: MuJoCo, mechanism: Mechanism, tree: Tree) -> Promise | Unpromised:

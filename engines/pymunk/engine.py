@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,13 +17,11 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstructio
 from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
-from engines.pymunk.planned import planned
-from engines.pymunk.projection import COST, MOST_ROWS
+from engines.pymunk.projection import COST, DEAR, DEAR_AIMED, DEAR_ROLLING
 from engines.pymunk.running import UNSETTLED, PymunkRun
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.trajectory import Trajectory
 from reference.validation import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 
 
@@ -52,7 +49,8 @@ class Pymunk(Valid):
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
     more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
-    `projects`: where these sweeps don't converge, our code takes out what they leave (`engines.pymunk.projection`).
+    `projects`: where these sweeps don't converge, or take longer than a projection, our code takes out what a few leave
+    (`engines.pymunk.projection`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -107,7 +105,7 @@ class Pymunk(Valid):
 
     def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
         sweeps = SWEEP_COST * len(mechanism.joints) * swept.iterations
-        return STEP_COST * over_three(mechanism) + sweeps + (COST if swept.projected else 0.0)
+        return STEP_COST * over_three(mechanism) + sweeps + (COST * mechanism.row_count if swept.projected else 0.0)
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
@@ -136,14 +134,7 @@ class Pymunk(Valid):
             lambda duration: self.sweeping(mechanism, duration),
             self.leapfrog,
             self.settled,
-            lambda coarser, sweeping: self._planned(mechanism, coarser, sweeping),
         )
-
-    def _planned(self, mechanism: Mechanism, coarser: Trajectory, sweeping: Sweeping) -> Sequence[int] | None:
-        """Sweeps (samples,) between samples, where a coarser run tells that fewer will do than in the worst pose."""
-        if self.iterations != CONTRACTION or sweeping.projected or sweeping.gain < 1:
-            return None
-        return planned(mechanism, coarser, sweeping.iterations, self.fewest, self.work)
 
     @validated
     def sweeps(self, mechanism: Mechanism) -> int:
@@ -159,11 +150,17 @@ class Pymunk(Valid):
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
-        if self.projects and mechanism.row_count <= MOST_ROWS and (found.gain < 1 or found.unsettled > UNSETTLED):
+        if self.projects and (found.gain < 1 or found.unsettled > UNSETTLED or self._are_dear(mechanism, found)):
             return Sweeping(self.fewest, left=found.left, converged=self.fewest, projected=True)
         if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
             found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
         return found
+
+    def _are_dear(self, mechanism: Mechanism, found: Sweeping) -> bool:
+        """Whether a projection takes less than so many sweeps."""
+        rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
+        most = DEAR_ROLLING if rolling else DEAR_AIMED if theory.is_aimed(self, mechanism) else DEAR
+        return found.iterations * len(mechanism.joints) > most
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:

@@ -20,6 +20,7 @@ from engines.pymunk.joints.rod_gear_weld import gear, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
+from engines.pymunk.marching import Marching
 from engines.pymunk.projection import Projection
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
@@ -87,6 +88,12 @@ class Model:
                 each()
 
         return handled, space
+
+    @property
+    def marching(self) -> Marching | None:
+        """What steps this model in compiled code, where that can: nothing is done in Python between its steps."""
+        only = self.repairs[0] if len(self.repairs) == 1 and not self.aims else None
+        return only.marching if isinstance(only, Projection) else None
 
     def kick(self, dt: float) -> None:
         """Forces and joints of one step of dt [units] act on the velocities, and no body moves."""
@@ -157,7 +164,7 @@ class _Builder:
         unit = self.settings.unit
         if self.settings.projected:
             bodies = tuple(self.bodies.values())
-            self.repairs.append(Projection(self.mechanism, bodies, origins, self.settings.projected, unit))
+            self.repairs.append(Projection(self.mechanism, self.space, bodies, origins, self.settings.projected, unit))
         return Model(
             self.space, tuple(self.bodies.values()), origins, size, unit, tuple(self.aims), tuple(self.repairs)
         )

@@ -1,4 +1,4 @@
-"""What sweeps leave, taken out exactly: velocities projected after every step, where no number of sweeps would do.
+"""What sweeps leave, taken out exactly: velocities projected after every step, where sweeps won't do or take longer.
 
 A sweep leaves rho of its slowest mode, and where rows nearly depend on each other rho is so near 1 that a million of
 them change nothing (`engines.pymunk.contraction`). Impulses of joints move velocities only in the directions that the
@@ -6,14 +6,13 @@ rows span, so whatever the sweeps have done, what they would end at is the neare
 metric of the masses. It is found here in one go, and closes all of a gap in a step, as joints do with an error_bias of
 zero. The engine's own joints stay as they are, and their warm start is stable: it sees neither a gap nor a slip.
 
-Compiled (`engines.pymunk.compiled`) it is the same to rounding in a tenth of the time; numpy is its check, and does
+Compiled (`engines.pymunk.marching`) it is the same to rounding in a fiftieth of the time; numpy is its check, and does
 what is rare, rolling contacts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from importlib import import_module
+from collections.abc import Sequence
 from math import cos, sin
 from typing import Any
 
@@ -21,18 +20,23 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
+from scipy.linalg import cho_solve
 
-from engines.lagrange.flat import flat
-from engines.lagrange.loading import compiled, installed
-from engines.lagrange.rolls import CELL
+from engines.lagrange.loading import installed
+from engines.pymunk.marching import Marching
 from reference.joints import Drive, Roll
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 
-MOST_ROWS = 40  # least squares of more take longer than the sweeps that are too few
-COST = 2.5e-4  # s, of some ten rows
+COST = 1e-7  # s a row, compiled
+# A row of length one leaves this of itself to the pivot, the square of what it has of its own: below, the rounding of
+# the row system's product is felt in spite of corrections.
+NEARLY = 1e-9
+# Sweeps times joints: 6.5 us a step, three times what a projection takes. Where Python does something else before every
+# step the projection is called from there too, and takes 15 us; with rolling contacts all of it is numpy's, 400 us.
+DEAR, DEAR_AIMED, DEAR_ROLLING = 500, 2000, 40_000
 
 
 class Projection:
@@ -43,7 +47,13 @@ class Projection:
     """
 
     def __init__(
-        self, mechanism: Mechanism, bodies: Sequence[pymunk.Body], origins: Array, dt: float, unit: float
+        self,
+        mechanism: Mechanism,
+        space: pymunk.Space,
+        bodies: Sequence[pymunk.Body],
+        origins: Array,
+        dt: float,
+        unit: float,
     ) -> None:
         """`unit` [s] is the model's second."""
         self._rows, self._rate = mechanism.joint_rows, mechanism.rate
@@ -61,11 +71,18 @@ class Projection:
             if dynamic:
                 moved.append((index, body._body, bool(turns)))
         self._root, self._moved = root.reshape(-1), moved
-        self._compiled = _compiled(mechanism, self._closed, self._root) if installed() else None
+        # A contact's tables are not read there.
+        by_machine = installed() and not any(isinstance(joint, Roll) for joint in mechanism.joints)
+        self.marching = (
+            Marching(mechanism, space, bodies, origins, self._closed, self._root, unit) if by_machine else None
+        )
 
     def __call__(self) -> None:
+        if self.marching is not None:
+            self.marching.project()
+            return
         state = self._state()
-        change = (self._compiled or self._change)(state)
+        change = self._change(state)
         if change is None:
             return
         twist = (state[:, 3:] + change) * self._unit
@@ -85,8 +102,8 @@ class Projection:
         matrix *= self._root
         # Rows of equal length, so that no unit of theirs decides which of them depend on others.
         norm = np.sqrt(np.einsum("ij,ij->i", matrix, matrix))
-        scale = np.divide(1.0, norm, out=np.zeros_like(norm), where=norm > 0)
-        change, *_ = np.linalg.lstsq(matrix * scale[:, None], wanted * scale, rcond=RANK_TOLERANCE)
+        moved = norm > 0
+        change = _least_change(matrix[moved] / norm[moved, None], wanted[moved] / norm[moved])
         return (change * self._root).reshape(twist.shape)
 
     def _state(self) -> Array:
@@ -103,23 +120,21 @@ class Projection:
         return state
 
 
-def _entry() -> Any:
-    return import_module("engines.pymunk.compiled.entry")
+def _least_change(matrix: Array, wanted: Array) -> Array:
+    """The least x (columns,) with matrix (rows, columns) x = wanted (rows,), for rows of length one.
 
-
-def _compiled(mechanism: Mechanism, closed: Array, root: Array) -> Callable[[Array], Array | None] | None:
-    """`_change` in machine code; None where a contact rolls, whose tables are not read here."""
-    if any(isinstance(joint, Roll) for joint in mechanism.joints):
-        return None
-    arrays, run, out = flat(mechanism), compiled(_entry), np.zeros((len(mechanism.bodies), 3))
-    in_order = np.empty_like(closed)
-    in_order[arrays.rows] = closed
-    whole, real, cells, flat_out = arrays.whole, arrays.real, np.zeros((0, CELL), dtype=complex), out.reshape(-1)
-
-    def change(state: Array) -> Array | None:
-        return None if run(whole, real, cells, state, in_order, root, flat_out) else out
-
-    return change
+    By Cholesky's factor of the row system and one correction; where its pivots tell that rows nearly depend on others,
+    by singular values.
+    """
+    system = matrix @ matrix.T
+    try:
+        factor = np.linalg.cholesky(system)
+    except np.linalg.LinAlgError:
+        factor = np.zeros_like(system)
+    if not (np.diag(factor) ** 2 > NEARLY).all():
+        return np.asarray(np.linalg.lstsq(matrix, wanted, rcond=RANK_TOLERANCE)[0], dtype=np.float64)
+    out = matrix.T @ cho_solve((factor, True), wanted)
+    return out + matrix.T @ cho_solve((factor, True), wanted - matrix @ out)
 
 
 _START = np.asarray(0.0)  # s: only drives ask for the time, and their gap is not closed

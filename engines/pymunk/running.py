@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any
@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import ffi, lib
-from pymunk.batch import BodyFields, Buffer, get_space_bodies
+from pymunk._chipmunk_cffi import lib
 
 from engines import Size
+from engines.pymunk.batched import Recorder
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.read_reactions import reactions
@@ -24,57 +24,10 @@ from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
-VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
-STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
 # Steps at the beginning of a run with sweeps that leave nothing: what the cold start of the impulses leaves otherwise
 # falls by a fifth only in a step, and is felt in the reactions of the first samples.
 SETTLING = 4
 UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
-
-
-class Recorder:
-    """Copies the bodies of a space, in C, to the end of an array that is allocated before.
-
-    `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record: a quarter of a microsecond,
-    where reading attributes in Python takes more than one for every body.
-    """
-
-    def __init__(self, space: pymunk.Space, bodies: tuple[pymunk.Body, ...], states: int, velocities: int) -> None:
-        visited = _visited(space)
-        self._order = [visited.index(body.id) for body in bodies]
-        self._count = len(visited)
-        length = (6 * states + 3 * velocities) * self._count
-        # C grows an array a little before it is full, and this one is not its own to grow.
-        room = np.full(length + 64, np.nan)
-        self.values = room[:length]
-        floats = ffi.from_buffer("double[]", room)
-        integers = ffi.new("pmIntArray *")
-        target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
-        self._owned = (floats, integers, target)  # C holds bare pointers to these
-        self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
-        self.states, self.velocities = (
-            ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
-            for fields in (STATES, VELOCITIES)
-        )
-
-    def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
-        """States (samples + 1, bodies, 6) and the velocities one step before each (samples, bodies, 3).
-
-        In the array stands a state, then for every sample, if `with_velocities`, velocities and a state, else a state.
-        """
-        first, rest = np.split(self.values, [6 * self._count])
-        rest = rest.reshape(samples, -1)
-        split = 3 * self._count if with_velocities else 0
-        states = np.concatenate([first[None], rest[:, split:]]).reshape(samples + 1, self._count, 6)
-        before = rest[:, :split].reshape(samples, self._count, 3) if with_velocities else states[:-1, :, 3:]
-        return states[:, self._order], before[:, self._order]
-
-
-def _visited(space: pymunk.Space) -> list[int]:
-    """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
-    buffer = Buffer()
-    get_space_bodies(space, BodyFields.BODY_ID, buffer)
-    return list(memoryview(buffer.int_buf()).cast("P"))
 
 
 @dataclass(frozen=True)
@@ -95,11 +48,10 @@ def record(
     every: int,
     raw: bool,
     settling: int = 0,
-    planned: Sequence[int] | None = None,
 ) -> Recording:
     """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
 
-    With `settling`, the first SETTLING steps have so many iterations; `planned` (samples,) are those of all others.
+    With `settling`, the first SETTLING steps have so many iterations.
     """
     velocities = every > 1
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
@@ -111,7 +63,6 @@ def record(
     steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
-    iterations = repeat(own, samples) if planned is None else planned
     steps_left = SETTLING if settling else 0
 
     def settle(space: Any, dt: float) -> None:
@@ -122,12 +73,12 @@ def record(
         lib.cpSpaceSetIterations(pointer, own)
         steps_left -= 1
 
+    marching = model.marching if raw and settling <= own else None
     begin = time.process_time()
     try:
-        for wanted in iterations:
-            if wanted != own:
-                own = wanted
-                lib.cpSpaceSetIterations(pointer, own)
+        if marching is not None:
+            marching.march(dt, samples, every, recorder.values)
+        for _ in repeat(None, samples if marching is None else 0):
             move = settle if steps_left > 0 else step
             if velocities:
                 for _ in steps_between:
@@ -199,16 +150,9 @@ class PymunkRun:
         swept: Callable[[float], Sweeping],
         leapfrog: bool,
         settled: bool,
-        planned: Callable[[Trajectory, Sweeping], Sequence[int] | None],
     ) -> None:
-        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds.
-
-        `planned` tells how each interval between samples is, from a coarser run and what holds for the whole.
-        """
+        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds."""
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
-        self._planned = planned
-        self._plan: Sequence[int] | None = None
-        self._planning = 0.0  # s of CPU time
         self._leapfrog, self._settled, self._over = leapfrog, settled, False
         self.size: Size = make(swept(0.0)).size
 
@@ -222,12 +166,6 @@ class PymunkRun:
             model.space.iterations = sweeping.iterations
         return model
 
-    def follow(self, coarser: Trajectory) -> None:
-        """See `engines.extrapolated.Following`."""
-        begin = time.process_time()
-        self._plan = self._planned(coarser, self._swept(float(coarser.t[-1])))
-        self._planning = time.process_time() - begin
-
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
@@ -237,9 +175,9 @@ class PymunkRun:
         self._over = True
         begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
-        planning = self._planning + time.process_time() - begin
+        planning = time.process_time() - begin
         model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
-        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling, planned=self._plan)
+        recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         with np.errstate(all="ignore"):
@@ -283,5 +221,5 @@ class PymunkRun:
                 f"{sweeping.unsettled:.0e} of the slowest mode is left"
             )
         if sweeping.projected and not self._swept(0.0).projected:
-            return "ours: velocities are projected after every step, as sweeps don't converge on a part of the way"
+            return "ours: velocities are projected after every step, as sweeps are too many on a part of the way"
         return ""

@@ -10,6 +10,7 @@ from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.pymunk.joints.skate import along_blade
 from engines.pymunk.joints.slot import groove_is_exact
+from reference.forces import Force, Torque
 from reference.joints import Joint, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 
@@ -89,6 +90,15 @@ def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
         case Roll() if engine.roll != "contact":
             return "engine, our rows"
     return "engine"
+
+
+def is_aimed(engine: Pymunk, mechanism: Mechanism) -> bool:
+    """Whether Python does something before the engine's steps: aims a joint, or sets a force."""
+    joints = any(
+        isinstance(joint, Skate | Roll) or (engine.slot == "exact" and _is_rewritten(joint, mechanism))
+        for joint in mechanism.joints
+    )
+    return joints or any(isinstance(force, Force | Torque) for force in mechanism.forces)
 
 
 def _is_off_centre(joint: Joint) -> bool:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -25,7 +25,7 @@ from reference.andrews.dyad import Dyad, Moving, direction
 from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
-from reference.numerics.collocation import integrate
+from reference.numerics import windows
 from reference.plane import from_complex
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
@@ -38,7 +38,7 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-LONGEST_STEP = 0.25  # of a radian at the first rate; halved where that is too long
+TOLERANCE = windows.TOLERANCE / 10  # the last of the printed digits, which other methods confirm
 SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
 
 
@@ -178,18 +178,12 @@ class Andrews(Scene):
         inertia, change, slope = self._reduced(phi)
         return np.stack([rate, -(change * rate**2 / 2 + slope / self.rate_unit**2) / inertia], axis=-1)
 
-    @cached_property
-    def _known(self) -> dict[bytes, Array]:
-        return {}
-
     def _states(self, times: Array) -> Array:
-        """phi and phi' (times, 2) [rad, rad/s]; those of the last times that were asked for are kept."""
-        order, where = np.unique(times, return_inverse=True)
-        if order.tobytes() not in self._known:
-            self._known.clear()
-            states = integrate(self._rates, [self.angle, 0.0], order * self.rate_unit, LONGEST_STEP)
-            self._known[order.tobytes()] = states.astype(float) * [1.0, self.rate_unit]
-        return self._known[order.tobytes()][where]
+        """phi and phi' (times, 2) [rad, rad/s]."""
+        if not times.any():  # a mechanism needs no more than the start
+            return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
+        until = max(self.duration, float(times.max()))
+        return _integrated(self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
 
     def _placement(self, times: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 7, 3)."""
@@ -253,3 +247,15 @@ class Andrews(Scene):
         )
         held = [side * np.sin(first - second) for (first, second), side in zip(folds, SIDES, strict=True)]
         return np.where(np.min(held, axis=0) > 0, 1, -1)
+
+
+@lru_cache(maxsize=8)
+def _integrated(scene: Andrews, until: float) -> windows.Windows:
+    """Kept for all equal scenes, since samples of every number ask for it; of time in units of 1 / `rate_unit`."""
+
+    def accelerations(phi: Array, rate: Array) -> Array:
+        return scene._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
+
+    return windows.integrate(
+        accelerations, [scene.angle], [0.0], until * scene.rate_unit * (1 + 1e-15), 1.0, tolerance=TOLERANCE
+    )

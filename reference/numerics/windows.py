@@ -21,10 +21,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.numerics import integration
 from reference.numerics.collocation import Extended, Rule, legendre, rule_of
-from reference.numerics.integration import IntegrationFailed
+from reference.numerics.integration import COARSER, IntegrationFailed, Rates
 
 Array = NDArray[np.float64]
+Motion = Callable[[ArrayLike], Array]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
 
 STAGES = 24
@@ -38,6 +40,10 @@ FEW_REPETITIONS, MANY_REPETITIONS, MOST_REPETITIONS = 9, 12, 30
 LONGER, SHORTER, HALVED = 1.2, 1 / 1.15, 0.5
 GUESSED = 8  # Legendre coefficients of a window from which the accelerations of the next are guessed
 MOST_WINDOWS = 20_000  # a motion that needs more is creeping up to a singularity
+# Accelerations in double are too rough for windows next to a fast oscillation: from so many on an explicit method is
+# cheaper, a tenth of a second lost.
+FEW_WINDOWS = 200
+COARSE_STAGES = 16  # of the rule that shows the error of the other
 
 
 @dataclass(frozen=True)
@@ -76,11 +82,12 @@ def integrate(
     rate_unit: float,
     stages: int = STAGES,
     tolerance: float = TOLERANCE,
+    most: int = MOST_WINDOWS,
 ) -> Windows:
     """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the motion's own rate.
 
     A window is as short as it takes for its last Legendre coefficient, and for the last repetition, to change rates by
-    less than `tolerance`, in parts of the largest rate. Raises IntegrationFailed when windows vanish or don't end.
+    less than `tolerance`, in parts of the largest rate. Raises IntegrationFailed if windows vanish or exceed `most`.
     """
     rule = rule_of(stages)
     place, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
@@ -92,7 +99,7 @@ def integrate(
     guess, tries = np.broadcast_to(start, (stages, len(place))), 0
     while now < until:
         tries += 1
-        if tries > MOST_WINDOWS or not now + length > now:
+        if tries > most or not now + length > now:
             raise IntegrationFailed(f"the motion stops at t = {now:.6g} s: its steps become too small or too many")
         length = min(length, until - now)
         then = until if length == until - now else now + length
@@ -121,6 +128,49 @@ def integrate(
         ahead = legendre(GUESSED - 1, 1 + 2 * (length / float(exact)) * rule.matrix.sum(axis=1))
         guess = ahead.T @ slopes[-1][:GUESSED]
     return Windows(stages, np.array(times), np.array(states), slopes)
+
+
+@dataclass(frozen=True)
+class InDouble:
+    """Windows whose states are rounded to double."""
+
+    windows: Windows
+
+    def __call__(self, t: ArrayLike) -> Array:
+        return self.windows(t).astype(float)
+
+
+def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarser: float = 1.0) -> Motion:
+    """The motion up to `until` [s] of angles and then, as many, their rates (2 n,), whose `rates` are known in double:
+    times (times,) to states (times, 2 n). By few windows, else by the explicit method of `integration`.
+
+    unit (2 n,): as for `integration.integrate`. `coarser`: by another rule, and letting so many times as much pass.
+    Raises IntegrationFailed.
+    """
+    state = np.asarray(start, dtype=float)
+    half = len(state) // 2
+
+    def accelerations(angle: Extended, rate: Extended) -> Extended:
+        found = rates(np.concatenate([angle, rate], axis=-1).astype(float))[..., half:]
+        return found.astype(np.longdouble)
+
+    stages, pace = STAGES if coarser == 1 else COARSE_STAGES, float(np.asarray(unit)[-1])
+    try:
+        with np.errstate(all="ignore"):  # a first guess may lead to where no number is finite
+            by = integrate(
+                accelerations, state[:half], state[half:], until, pace, stages, coarser * TOLERANCE, FEW_WINDOWS
+            )
+    except IntegrationFailed:
+        return integration.integrate(rates, state, until, coarser * integration.TOLERANCE, unit)
+    return InDouble(by)
+
+
+def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
+    """A bound on the error of `motion` (times,): COARSER times how far it moves by a coarser rule, and rounding."""
+    times = np.atleast_1d(np.asarray(t, dtype=float))
+    until = max(float(times.max()), math.ulp(1.0))
+    fine, coarse = (motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER))
+    return np.asarray(COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine)).max(axis=-1))
 
 
 def _found(

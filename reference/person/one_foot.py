@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, error_of, integrate, units_of_motion
+from reference.numerics import windows
+from reference.numerics.integration import units_of_motion
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH, Segment
 from reference.scene import Scene
 from reference.trajectory import Trajectory
@@ -153,8 +154,8 @@ class OneFoot(Scene):
         return state[:, :half], state[:, half:]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) in u and u', by two tolerances."""
-        return error_of(self.rates, self._at_rest, self.times(t), unit=units_of_motion(self.rates, self._at_rest))
+        """A bound on the truth's own error (times,) in u and u', by two rules."""
+        return windows.error_of(self.rates, self._at_rest, self.times(t), units_of_motion(self.rates, self._at_rest))
 
     @property
     def _at_rest(self) -> Array:
@@ -201,6 +202,6 @@ class OneFoot(Scene):
 
 
 @lru_cache(maxsize=8)
-def _integrated(person: OneFoot, until: float) -> Integrated:
+def _integrated(person: OneFoot, until: float) -> windows.Motion:
     start = person._at_rest
-    return integrate(person.rates, start, until, unit=units_of_motion(person.rates, start))
+    return windows.motion(person.rates, start, until, units_of_motion(person.rates, start))

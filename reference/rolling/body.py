@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from reference.curves.curve import Array, Vector
-from reference.numerics.integration import Integrated, IntegrationFailed, error_of, integrate, units_of_motion
+from reference.numerics import windows
+from reference.numerics.integration import IntegrationFailed, units_of_motion
 from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
@@ -103,7 +104,7 @@ class RollingBody(Valid):
         return units_of_motion(self._rates, self.start)
 
     @cached_property
-    def _known(self) -> list[tuple[float, Integrated]]:
+    def _known(self) -> list[tuple[float, windows.Motion]]:
         return []
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
@@ -113,15 +114,15 @@ class RollingBody(Valid):
         # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
         if not self._known or self._known[0][0] < until:
             with self._rolling_on():
-                self._known[:] = [(until, integrate(self._rates, self.start, until, unit=self._units))]
+                self._known[:] = [(until, windows.motion(self._rates, self.start, until, self._units))]
         states = self._known[0][1](t)
         return states[:, 0], states[:, 1]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """How far theta or theta' moves (times,) with a coarser tolerance (see `integration`): a bound on the error."""
+        """A bound on the error of theta and theta' (times,) [rad, rad/s], from a coarser rule."""
         times = sample_times("rolling body", t)
         with self._rolling_on():
-            return error_of(self._rates, self.start, times, unit=self._units)
+            return windows.error_of(self._rates, self.start, times, self._units)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.numerics.integration import Integrated, Rates, error_of, integrate, units_of_motion
+from reference.numerics import windows
+from reference.numerics.integration import Rates, units_of_motion
 from reference.scene import Poses, Scene
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.trajectory import Trajectory
@@ -34,9 +35,9 @@ def _rates_of(moving: MovingSliderCrank) -> Rates:
 
 
 @lru_cache(maxsize=8)
-def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float, unit: float) -> Integrated:
+def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float, unit: float) -> windows.Motion:
     rates = _rates_of(moving)
-    return integrate(rates, [angle, rate], until, unit=units_of_motion(rates, [angle, rate], unit))
+    return windows.motion(rates, [angle, rate], until, units_of_motion(rates, [angle, rate], unit))
 
 
 @dataclass(frozen=True)
@@ -159,6 +160,6 @@ class FreeSliderCrank(DrivenSliderCrank):
         return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) [rad, rad/s], by two tolerances."""
+        """A bound on the truth's own error (times,) [rad, rad/s], by two rules."""
         rates, start = _rates_of(self.moving), [self.angle, self.rate]
-        return error_of(rates, start, self.times(t), unit=units_of_motion(rates, start, self.angle_unit))
+        return windows.error_of(rates, start, self.times(t), units_of_motion(rates, start, self.angle_unit))

@@ -111,4 +111,4 @@ def _map_cell(panel: Axes, column: int, line: int, row: Measurement, theme: Them
     label = outcome.letter
     if outcome.comparable and math.isfinite(row.angle) and row.angle > 0:
         label = f"{math.floor(math.log10(row.angle))}"
-    panel.text(column + 0.5, line + 0.5, label, ha="center", va="center", color=theme.ink, fontsize=8)
+    panel.text(column + 0.5, line + 0.5, label, ha="center", va="center", color=theme.ink, fontsize=8, in_layout=False)

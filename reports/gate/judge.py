@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,8 +61,7 @@ def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
     if not gives.all():
         rigid, soft = np.flatnonzero(~gives), np.flatnonzero(gives)
         coupled = matrix[np.ix_(rigid, soft)]
-        answer = np.linalg.lstsq(matrix[np.ix_(rigid, rigid)], coupled, rcond=RANK_TOLERANCE)[0]
-        out[soft] -= np.einsum("ij,ij->j", coupled, answer)
+        out[soft] -= np.einsum("ij,ij->j", coupled, solved(matrix[np.ix_(rigid, rigid)], coupled))
     # Of a row that others hold already nothing would be left; engines take an estimate that knows no others.
     return np.maximum(out, REDUNDANT * np.diag(matrix))
 
@@ -114,9 +114,12 @@ def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None
 def _compiled(
     mechanism: Mechanism, samples: int, spacing: float, order: int, every: int, soft: Softness | None, project: bool
 ) -> Trajectory | None:
-    """As `in_numpy`; None where rows depend on each other, a motion is lost, or what is soft is to be projected too."""
+    """As `in_numpy`; None where rows depend on each other, a motion is lost, or what is soft is to be projected too.
+
+    Rows that depend on each other at the start are told apart by their compliances, if they give way.
+    """
     machine = Machine.of(mechanism)
-    if machine is None or machine.dependent or (soft is not None and project):
+    if machine is None or (project if soft is not None else machine.dependent):
         return None
     if soft is not None:
         machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
@@ -161,7 +164,15 @@ def in_numpy(
         twist = twist + dt * np.tensordot(weights, acceleration, 1)
         if project:
             pose, twist = projected(mechanism, pose, twist, t + dt)
+        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):
+            break
     return Trajectory(np.arange(samples + 1, dtype=np.float64) * spacing, poses, twists, reactions)
+
+
+@lru_cache(maxsize=1)
+def _truth(scene: Scene, instants: bytes) -> Trajectory:
+    """The scene's motion at instants [s], as bytes: a dozen runs of a prediction are held against the same one."""
+    return scene.motion(np.frombuffer(instants))
 
 
 def errors(
@@ -172,7 +183,9 @@ def errors(
     try:
         with np.errstate(all="ignore"):
             found = integrate(scene, order, every, soft, project)
-            truth = scene.motion(found.t)
+            if not np.isfinite(found.pose).all():
+                return dict.fromkeys(QUANTITY_NAMES, math.inf)
+            truth = _truth(scene, found.t.tobytes())
             told = constraint_errors(mechanism, found) | motion_errors(scene, mechanism, truth, found)
     except (ValueError, np.linalg.LinAlgError):
         return dict.fromkeys(QUANTITY_NAMES, math.inf)

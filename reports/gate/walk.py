@@ -14,11 +14,12 @@ from reports.gate.checks import Check, complaints, nearest
 from reports.gate.nudged import nudged_cells
 from reports.gate.prediction import Kind, Prediction, prediction
 from reports.gate.verdicts import Case, checks, predictions
-from reports.grid.cells import Cell, mechanism_of
+from reports.grid.cells import Cell
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss
 from reports.grid.pool import run_cells
 from reports.grid.supervisor import Answer, Supervise, supervise
+from reports.grid.waiting import kin_of
 
 # The judge's largest scenes take this long [s] on a busy machine.
 JUDGE_LIMIT = 600.0
@@ -57,6 +58,11 @@ class Foretold:
     soft: frozenset[Kind]
 
     @property
+    def kin(self) -> Scene:
+        """As a cell's: what is worked out once a process of a scene's exact motion serves both."""
+        return self.scene
+
+    @property
     def label(self) -> str:
         return f"the judge on {self.scene.name}"
 
@@ -73,7 +79,7 @@ class Either:
 
 @dataclass(frozen=True)
 class Judging:
-    """As `supervise`, with the judge's own work beside that of the cells: it begins first, since some of it is long.
+    """As `supervise`, with the judge's own work beside that of the cells: first of each scene's, scenes as they come.
 
     found: what the judge said, as it is known. Raises RuntimeError where it fails.
     """
@@ -84,7 +90,9 @@ class Judging:
     def __call__(
         self, function: Callable[[Any], Any], items: Iterable[Any], limit: float, *terms: Any
     ) -> Iterator[Answer]:
-        jobs = [*sorted(self.asked, key=lambda item: -len(mechanism_of(item.scene).bodies)), *items]
+        items = tuple(items)
+        place = {kin: number for number, kin in enumerate(dict.fromkeys(map(kin_of, items)))}
+        jobs = [*sorted(self.asked, key=lambda item: place.get(item.scene, len(place))), *items]
         for item, result, note in supervise(Either(function), jobs, max(limit, JUDGE_LIMIT), *terms):
             if not isinstance(item, Foretold):
                 yield item, result, note

@@ -139,6 +139,8 @@ def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Meas
     with np.errstate(all="ignore"):
         try:
             mechanism = mechanism_of(cell.scene)
+            with spending("preparing engines"):
+                getattr(cell.engine, "prepare", lambda: None)()
             with spending("building"):
                 build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
             row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
@@ -195,8 +197,8 @@ def compare(
         errors["flips"] = branch_flips(cell.scene, truth, finite)
     except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it
         note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
-    if trajectory.estimate is not None:
-        errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2]), initial=0.0))
+    if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():
+        errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2])))
     errors["reaction_rows"] = int(np.isfinite(trajectory.reaction).any(axis=0).sum())
     row = replace(row, **errors)
     outcome, sentence = classify(row, mechanism, trajectory, count)
@@ -243,6 +245,8 @@ def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, cou
     if row.angle > SATURATED:
         return Outcome.SATURATED, f"an angle is wrong by {row.angle:.2g} rad within the horizon"
     if trajectory.unresolved_at is not None:
+        if np.isnan(row.estimate):
+            return Outcome.UNRESOLVED, "its coarser run was lost, so it has no estimate"
         return Outcome.UNRESOLVED, f"its own estimate is {row.estimate:.2g} rad"
     if row.angle_duration > SATURATED:
         return Outcome.FINISHED, f"beyond the horizon an angle is wrong by {row.angle_duration:.2g} rad"

@@ -5,6 +5,10 @@
 - "halves": MuJoCo's own parts alone. The second body is cut into two halves of the same centre of mass; one of them
   slides and turns in the first body by joints of the tree, and a `weld` holds it to the other.
 - "rows": the slot's own row, written by a callback in every stage.
+
+Beside halves a row saves a body, two coordinates, five of six rows of the solver (three of a weld's are empty in the
+plane) and a fifth of a step's time. By the settings of TUNED and steps of about 1e-3 s a slotted lever misses 2.8e-7
+rad with its row and 6.2e-7 with halves, an arm and a block in free coordinates 4.4e-6 and 1.4e-6.
 """
 
 # pyright: reportAttributeAccessIssue=false
