@@ -125,13 +125,15 @@ def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers,
     assert len(killed) == kills
 
 
-def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers):
+def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers, monkeypatch):
+    monkeypatch.setattr(clusters, "MOST_TRIES", 2)  # each takes a foreman that has to start
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with cluster(two_workers.scheduler_address) as own:
         told = {cell.every: result for cell, result, _ in own.supervise(end_the_supervisor, cells, 60.0)}
     lost = told.pop(901)
     assert isinstance(lost, Loss)
     assert lost.outcome == Outcome.LOST
+    assert lost.sentence.startswith("2 times its worker ended")
     assert told == {1: "fine", 2: "fine"}
 
 
