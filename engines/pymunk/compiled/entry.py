@@ -188,4 +188,4 @@ def run(
     return DONE
 
 
-run = njit(SIGNATURE, cache=True, error_model="numpy")(run)
+run = njit(SIGNATURE, cache=True, nogil=True, error_model="numpy")(run)

@@ -154,7 +154,7 @@ FAILURES: tuple[Failure, ...] = (
             "about $1 / r$ of the error, where $r$ is the ratio of the masses, so even a thousand sweeps are too few. "
             "Ten sweeps, the number as shipped, are worse if they close all of the gap. At 1e-3 s and below pymunk "
             "finishes, as shipped and tuned. A thousand sweeps that close all of the gap fail at 1e-4 s. The extended "
-            "variant makes few sweeps and projects velocities after every step. It says of the largest step alone that "
+            "variant makes one sweep and projects velocities after every step. It says of the largest step alone that "
             "the error is not resolved. MuJoCo's PGS is a sweep too. In free "
             "coordinates the extended variant tears or starts anew with it at each step: it divides the regularisation "
             "by 1e8, far beyond what `solimp` admits, and stops after 100 sweeps. With the documented stiffness and "
