@@ -134,7 +134,7 @@ def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> No
     assert not [told for told in right if told.faults]
 
 
-@pytest.mark.parametrize("kind", ["pin", "slot", "rod", "inertia", *FORCES])
+@pytest.mark.parametrize("kind", ["pin", "slot", "rod", "weld", "inertia", *FORCES])
 def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str, monkeypatch: Any) -> None:
     """Ten times as large as elsewhere: of 60 mechanisms of pins an inertia off by 1e-3 is found in 26, by 1e-4 in 5."""
     engine = box2d.DEFAULT
