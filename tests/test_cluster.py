@@ -170,7 +170,7 @@ def test_what_has_other_source_files_behind_it_is_not_run():
 
 def test_a_file_that_is_not_at_the_worker_is_another_file(tmp_path, monkeypatch):
     def forgotten() -> None:
-        for cached in (fingerprint._place, fingerprint._closure, fingerprint._behind, digest_of):
+        for cached in (fingerprint._place, fingerprint._direct, fingerprint._closure, fingerprint._behind, digest_of):
             cached.cache_clear()
 
     (tmp_path / "a_file_of_somebody.py").write_text("TEN = 10\n")
