@@ -14,6 +14,7 @@ from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
 from reports.grid.cells import Cell
 from reports.grid.outcomes import Outcome
 from reports.grid.pool import run_cells
+from reports.grid.waiting import kin_of
 from tests.toys import Disc, FailingToy, Toy
 
 NO_KINDS: frozenset[Any] = frozenset()
@@ -48,7 +49,7 @@ def test_a_judge_that_fails_ends_the_gate_with_its_reason():
     assert judging.found == {}
 
 
-def test_the_judge_begins_with_the_largest_scene_and_has_its_own_time(monkeypatch):
+def test_the_judge_follows_the_scenes_of_the_cells_before_any_of_them_and_has_its_own_time(monkeypatch):
     given: list[tuple[list[Any], float, tuple[Any, ...]]] = []
     foretold = object()
 
@@ -58,13 +59,15 @@ def test_the_judge_begins_with_the_largest_scene_and_has_its_own_time(monkeypatc
             yield item, foretold if isinstance(item, Foretold) else Outcome.FINISHED, "a note"
 
     monkeypatch.setattr(walk, "supervise", supervise)
-    short, long = LinkPendulum(links=1), LinkPendulum(links=5)
-    judging = Judging((Foretold(short, NO_KINDS), Foretold(long, NO_KINDS)), {})
-    cell = Cell(Disc(), Toy(), 1)
-    assert list(judging(str, [cell], 60.0, 3, None)) == [(cell, Outcome.FINISHED, "a note")]
+    without, chain = LinkPendulum(links=1), LinkPendulum(links=5)  # no cell is of the first
+    asked = tuple(Foretold(scene, NO_KINDS) for scene in (without, Disc(), chain))
+    judging = Judging(asked, {})
+    cells = [Cell(chain, Toy(), 1), Cell(Disc(), Toy(), 1), Cell(chain, Toy(), 2)]
+    assert list(judging(str, cells, 60.0, 3, None)) == [(cell, Outcome.FINISHED, "a note") for cell in cells]
     items, limit, terms = given[0]
-    assert items == [Foretold(long, NO_KINDS), Foretold(short, NO_KINDS), cell]
+    assert items == [asked[2], asked[1], asked[0], *cells]
+    assert [kin_of(item) for item in items[:2]] == [chain, Disc()]  # each goes to the worker that has its cells
     assert (limit, terms) == (JUDGE_LIMIT, (3, None))
-    assert judging.found == {short: foretold, long: foretold}
+    assert judging.found == dict.fromkeys((without, Disc(), chain), foretold)
     list(judging(str, [], 2 * JUDGE_LIMIT))
     assert given[1][1] == 2 * JUDGE_LIMIT
