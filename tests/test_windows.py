@@ -69,6 +69,32 @@ def test_the_explicit_method_states_an_error_above_its_true_one():
     assert stated.max() > 5 * true.max() > 0
 
 
+@pytest.mark.parametrize("few", [windows.FEW_WINDOWS, 2], ids=["windows", "steps"])
+def test_a_motion_whose_rates_are_doubles_is_exact_by_windows_and_by_steps(monkeypatch, few):
+    monkeypatch.setattr(windows, "FEW_WINDOWS", few)
+    t = np.linspace(0, 30, 50)
+    found = windows.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
+    # The explicit method lets 3e-14 pass in each of some fifty steps; windows leave rounding, and that of every window
+    # where numpy.longdouble is the ordinary double.
+    allowed = 2e-12 if few == 2 else 5e-14
+    assert np.abs(found - np.stack([np.sin(t), np.cos(t)], axis=-1)).max() < allowed
+
+
+def test_the_error_stated_of_a_motion_by_few_windows_is_above_its_true_one():
+    t = np.linspace(1, 30, 30)
+    rates = lambda state: np.stack([state[..., 1], -np.sin(state[..., 0])], axis=-1)  # noqa: E731
+    found = windows.motion(rates, [3.0, 0.5], 30.0, np.ones(2))(t)
+    # A turning pendulum: twice as many stages, and a tenth of the tolerance.
+    exact = windows.integrate(
+        lambda angle, rate: -np.sin(angle), [3.0], [0.5], 30.0, 1.0, 32, 3e-18 if EXTENDED else 3e-15
+    )
+    stated = windows.error_of(rates, [3.0, 0.5], t, np.ones(2))
+    assert np.all(stated > np.abs(found - exact(t)).max(axis=-1))
+    # More than rounding ten times over: the coarser rule is another one.
+    assert stated.max() > 1.5 * windows.COARSER * np.finfo(float).eps * np.abs(found).max()
+    assert stated.max() < 1e-10
+
+
 def test_a_motion_that_does_not_last_is_refused():
     with pytest.raises(IntegrationFailed, match="the motion stops at t = 1 s"), np.errstate(all="ignore"):
         windows.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.checks import Check
@@ -38,9 +38,14 @@ ENOUGH = 2
 
 
 def terms(
-    quantity: str, prediction: Prediction, promise: Promise, softness: Softness | None, step: float
+    quantity: str,
+    prediction: Prediction,
+    promise: Promise,
+    softness: Softness | None,
+    step: float,
+    as_soft: Mapping[str, float] | None = None,
 ) -> tuple[float, float, float]:
-    """What step, softness and rounding cost in a quantity, before any room is given."""
+    """What step, softness and rounding cost in a quantity, before any room is given; `as_soft`: see `theory`."""
     rounding = ROUNDING["velocity" if quantity == "slip" else quantity]
     if quantity in ("rate", "velocity", "slip", "energy"):
         rounding *= promise.amplified
@@ -54,7 +59,7 @@ def terms(
     cost += prediction.closing(quantity, prediction.error("gap", promise.step("gap"), step), softness)
     if quantity == "reaction" and promise.differences:
         cost += prediction.differenced(promise.of(quantity), step)
-    return cost, prediction.give(quantity, softness), rounding
+    return cost, prediction.give(quantity, softness) if as_soft is None else as_soft[quantity], rounding
 
 
 def theory(
@@ -63,11 +68,13 @@ def theory(
     softness: Softness | None,
     row: Measurement,
     coarser: Sequence[Measurement] = (),
+    as_soft: Mapping[str, float] | None = None,
 ) -> tuple[Check, ...]:
     """The checks of one row, those whose quantity it knows; a run that can't be compared fails by its outcome alone.
 
     `coarser`: the same method's rows at larger steps. What they cost, scaled by the promised order, bounds the row too
     where they are ENOUGH, or where the judge itself has lost the motion.
+    `as_soft`: the judge's errors with this very softness, where no other tells of it in proportion.
     Where no order is promised the outcome alone is held.
     """
     outcome = Outcome(row.outcome)
@@ -82,7 +89,7 @@ def theory(
             measured = getattr(row, quantity)
             if math.isnan(measured):
                 continue
-            cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step)
+            cost, soft, rounding = terms(quantity, prediction, promise, softness, row.step, as_soft)
             cost, soft = ROOM * cost, ROOM_SOFT * soft
             order = promise.of(quantity)
             if order < EXACT and len(usable) >= (ENOUGH if math.isfinite(cost + soft) else 1):

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from engines import Engine, Promise, Unpromised
 from reference.scene import Scene
 from reports.gate.checks import Check, Deviation
+from reports.gate.judge import errors_as_soft
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.gate.theory import theory
 from reports.grid.cells import QUICK, Cell, mechanism_of, sweep_cells
 from reports.grid.measure import Measurement
+from reports.grid.outcomes import Outcome
 from reports.pages.page import Page
 
 # The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
@@ -74,5 +77,14 @@ def checks(case: Case, rows: Sequence[Measurement], judge: Prediction | None = N
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]
     softness = case.engine.softness(mechanism_of(case.scene), finest.step)
-    found = theory(judge, case.promise, softness, finest, rows[:-1])
+    as_soft = None
+    if (
+        softness is not None
+        and isinstance(case.promise, Promise)
+        and Outcome(finest.outcome).comparable
+        and not math.isfinite(judge.give("angle", softness))
+    ):
+        # Through singular positions nothing is in proportion to softness: only this one's own run tells what it costs.
+        as_soft = errors_as_soft(case.scene, softness)
+    found = theory(judge, case.promise, softness, finest, rows[:-1], as_soft)
     return (*found, *order(case.promise, rows)) if found else ()
