@@ -88,6 +88,14 @@ def test_a_bound_is_the_sum_of_the_terms_that_it_tells():
     assert [name for name, _ in check.terms] == ["step", "softness", "rounding"]
 
 
+def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
+    soft, tight = Softness(2500.0, 100.0, 0.01, (True, True)), [row(every=1), row(every=3)]
+    lost = replace(JUDGE, soft={((True, True), True): dict.fromkeys(NAMES, math.inf)})
+    own = dict.fromkeys(NAMES, 1e-5)
+    for error, passes in ((1.9e-5, True), (2.1e-5, False)):  # ROOM_SOFT
+        assert of(theory(lost, Promise(2), soft, row(angle=error), tight, own), "angle").passed is passes
+
+
 def test_softness_costs_in_proportion_to_compliance_over_stiffness():
     soft = Softness(2500.0, 100.0, 0.01, (True, True))
     assert JUDGE.give("angle", soft) == pytest.approx(1e-3, rel=1e-12)

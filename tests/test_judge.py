@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from engines import Softness
+from engines.lagrange.loading import installed
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.n_four_bar import NFourBar
 from reference.pendulum.link import PointPendulum
 from reference.pendulum.scenes import LinkPendulum
-from reports.gate.judge import QUANTITY_NAMES, errors, in_numpy, integrate
+from reports.gate import judge
+from reports.gate.judge import QUANTITY_NAMES, errors, errors_as_soft, in_numpy, integrate, refined
 from tests.toys import Disc
 
 SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
@@ -87,3 +90,45 @@ def test_a_joint_without_the_term_of_velocities_gives_way_to_what_turns_on_it(co
     # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2, and without it the spring of 2500 s^-2 has to give.
     # Its damper resists too, as the gap turns with the disc: 2 rad/s * 100 s^-1 is 8 %, at right angles.
     assert opened == pytest.approx(0.0 if complete else 0.4 / np.hypot(2500, 200), rel=1e-2, abs=1e-7)
+
+
+compiled = pytest.mark.skipif(not installed(), reason="numba, the extra 'fast', is not installed")
+
+
+@compiled
+def test_refined_steps_end_where_short_ones_of_one_length_do():
+    soft = Softness(2500.0, 100.0, 0.01, (True,) * 4)
+    found = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
+    assert found is not None
+    by_short = integrate(SWINGING, 4, 60, soft)
+    # A third of the step changes a tenth of a sample by less than 1e-6, so what is kept is wrong by an eightieth of it.
+    assert np.abs(found.pose - by_short.pose).max() < 1e-6
+    assert np.abs(found.reaction - by_short.reaction).max() < 1e-4 * np.abs(by_short.reaction).max()
+
+
+THROUGH = NFourBar(duration=1.0, horizon=1.0)  # the cranks lie along the couplers once, after 0.714 s
+
+
+def spring(mechanism: Mechanism) -> Softness:
+    """As an engine closes loops with pins of the first loop: the others hold."""
+    gives = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
+    return Softness(4e4, 400.0, 1e-4, gives)
+
+
+@compiled
+def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_little(monkeypatch):
+    soft = spring(THROUGH.mechanism())
+    assert 0 < sum(soft.rows) < len(soft.rows)
+    found = errors_as_soft(THROUGH, soft)
+    assert 1e-6 < found["angle"] < 1e-5  # 5.4e-6, as by steps of 1e-4 s throughout
+    monkeypatch.setattr(judge, "SAME", judge.SAME / 10)
+    finer = errors_as_soft(THROUGH, soft)
+    assert dict(finer) == pytest.approx(dict(found), rel=0.1)
+    # Steps of one length, with which the springs are stable, are thrown off there.
+    assert errors(THROUGH, 4, 2, soft)["reaction"] > 100 * finer["reaction"]
+
+
+@compiled
+def test_a_soft_motion_that_takes_too_many_steps_is_lost(monkeypatch):
+    monkeypatch.setattr(judge, "MOST", 100)
+    assert errors_as_soft(THROUGH, spring(THROUGH.mechanism())) == dict.fromkeys(QUANTITY_NAMES, np.inf)
