@@ -126,16 +126,6 @@ def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Arra
         return tree.motion(position, velocity, acceleration)
 
 
-def pushes(tree: Tree, position: Array, velocity: Array) -> Array:
-    """What force elements do to bodies (bodies, 3) [N, N, N m] at tree coordinates and rates (coordinates,).
-
-    For engines that have no springs, or springs of another law: users of these work forces out by themselves too.
-    """
-    still = np.zeros((1, tree.coordinates))
-    pose, twist, _ = tree_states(tree, position[None], velocity[None], still)
-    return np.asarray(tree.mechanism.applied.on(pose[0], twist[0]), dtype=np.float64)
-
-
 def differences(twist: Array, before: Array, dt: float) -> Array:
     """Accelerations (samples + 1, bodies, 3) as changes of velocity over the last step; NaN at t = 0."""
     out = np.full_like(twist, np.nan)

@@ -12,7 +12,7 @@ import importlib
 import inspect
 import pkgutil
 import typing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -137,24 +137,20 @@ def _meant(value: Any, annotation: Any) -> bool:
     return isinstance(annotation, type) and isinstance(value, annotation)
 
 
+GOOD = (
+    *((float, 0.5), (int, 1), (bool, False), (str, "b"), (ArrayLike, 0.5), (Any, 0.5), (NoneType, None)),
+    *((Sign, 1), (Signs, 1), (Name, "b"), (Complexes, 0.5), (AnyComplexes, 0.5)),
+)
+
+
 def good(annotation: Any) -> Any:
     """A valid value."""
     origin, arguments = get_origin(annotation), get_args(annotation)
-    simple = {
-        float: 0.5,
-        int: 1,
-        bool: False,
-        str: "b",
-        ArrayLike: 0.5,
-        Any: 0.5,
-        NoneType: None,
-        Floats: np.array([0.5]),
-    }
-    for each, value in ((Sign, 1), (Signs, 1), (Name, "b"), (Complexes, 0.5), (AnyComplexes, 0.5)):
+    if annotation == Floats:
+        return np.array([0.5])
+    for each, value in GOOD:
         if annotation == each:
             return value
-    if annotation in simple:
-        return simple[annotation]
     if origin is Annotated:
         arrays = (np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 3)), np.ones((1, 1)))
         for value in (good(arguments[0]), 3, *arrays):
@@ -252,7 +248,13 @@ def _of_function(function: Callable[..., Any], owner: Any) -> Iterator[Trial]:
     for name in parameters:
         if hints[name] is Any:
             continue
+        others = {each: hints[each] for each in parameters if each != name}
+        called = function if owner is None else functools.partial(function, owner)
         for value in bad(hints[name]):
-            given = {each: good(hints[each]) for each in parameters} | {name: value}
-            called = function if owner is None else functools.partial(function, owner)
-            yield Trial(function.__qualname__, name, value, functools.partial(called, **given))
+            call = functools.partial(_with_good_others, called, others, {name: value})
+            yield Trial(function.__qualname__, name, value, call)
+
+
+def _with_good_others(function: Callable[..., Any], others: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+    """The call itself; values are made when it is tried, since a few of all trials are."""
+    return function(**{name: good(hint) for name, hint in others.items()}, **given)

@@ -13,7 +13,10 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The longest, each of which would keep one worker busy after the others have ended.
-FIRST = ("third_party", "site_in_browser", "wrong_models", "any_rows", "wheel", "lagrange_compiled")
+FIRST = (
+    *("third_party", "site_in_browser", "cluster", "wrong_models", "any_rows", "wheel", "lagrange_compiled"),
+    *("other_elements", "other_engines", "conformance", "without_engines"),
+)
 
 # The one file whose tests are marked `crosscheck`, which a test there holds.
 GRID = "test_crosscheck.py"

@@ -62,6 +62,21 @@ def test_an_account_changes_no_row_and_counts_every_item():
         account.seconds - account.parts[STARTING] - account.parts[BETWEEN]
     )
     assert len(account.longest) == 4
+    # One worker at a time, and another one after the abort: there was work for it until the end.
+    assert len(account.last) > 1
+    assert account.tail(1) == 0.0
+
+
+def test_the_time_without_work_for_all_leaves_out_workers_that_were_replaced():
+    # Two at a time: the first was replaced at 4 s, the second had nothing to do from 9 s on, the third ended at 10 s.
+    account = Account(first={1: 0.0, 2: 0.0, 3: 4.5}, last={1: 4.0, 2: 9.0, 3: 10.0})
+    assert account.tail(2) == 1.0
+    assert account.tail(1) == 0.0
+    assert account.tail(3) == 10.0  # there were never three
+    # The last one is replaced when nothing waits for the other worker any more.
+    late = Account(first={1: 0.0, 2: 0.0, 3: 8.5}, last={1: 5.0, 2: 8.0, 3: 9.0})
+    assert late.tail(2) == 4.0
+    assert Account().tail(2) == 0.0
 
 
 def test_the_timings_of_one_worker_and_of_all_are_of_the_same_cells():

@@ -52,10 +52,12 @@ def make():
 """
 
 
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
+@pytest.fixture(scope="module", autouse=True)
+def _quick():
     """Few settings are tried: what is asked here is whether they are told rightly."""
-    monkeypatch.setattr(settings, "PATIENCE", 0.4)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(settings, "PATIENCE", 0.4)
+        yield
 
 
 def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
@@ -63,8 +65,14 @@ def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tol
     return check(read(word, folder, (), "", step), name, duration, tolerance)
 
 
-def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path):
-    found = found_in(tmp_path, FOUR_BAR)
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    """What is found in the four-bar as MuJoCo is shipped: several tests read it."""
+    return found_in(tmp_path_factory.mktemp("shipped"), FOUR_BAR)
+
+
+def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path, shipped):
+    found = shipped
     assert not found.met
     # The soft loop's share is told by a law that knows no step: it explains most of the error, the step the rest.
     parts = found.parts
@@ -85,8 +93,8 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert "Your settings meet the tolerance" in verdict(again)
 
 
-def test_lines_pasted_as_they_are_printed_do_what_was_promised(tmp_path):
-    found = found_in(tmp_path, FOUR_BAR)
+def test_lines_pasted_as_they_are_printed_do_what_was_promised(tmp_path, shipped):
+    found = shipped
     printed = "\n".join(sections(found)[0].code)
     again = found_in(tmp_path, FOUR_BAR.replace("</mujoco>", f"{printed}</mujoco>"))
     assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)  # type: ignore[union-attr]
@@ -142,9 +150,9 @@ def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
     assert any("taken as driven at 10 rad/s" in note.reason for note in found.reading.notes)
 
 
-def test_drawings_of_an_html_report_share_no_names(tmp_path):
+def test_drawings_of_an_html_report_share_no_names(shipped):
     """As elements of one page the second would be clipped by the first's frame."""
-    found = found_in(tmp_path, FOUR_BAR)
+    found = shipped
     page = rendering.html("four bar", sections(found, pictures(shown_of(found))))
     assert page.count("data:image/svg+xml;base64,") == 2
     assert "<svg" not in page
@@ -230,8 +238,8 @@ def test_chaos_ends_the_horizon_and_a_single_pendulum_has_none():
     assert chaotic.horizon < chaotic.trajectory.t[-1]
 
 
-def test_the_report_can_be_read_by_people_and_programs(tmp_path):
-    found = found_in(tmp_path, FOUR_BAR)
+def test_the_report_can_be_read_by_people_and_programs(shipped):
+    found = shipped
     drawn = pictures(from_text(shown_of(found).as_text()))
     told = sections(found, drawn)
     text = rendering.plain(told)
@@ -256,8 +264,8 @@ def test_a_model_at_rest_says_that_nothing_moves(tmp_path):
     assert "A tenth of that error" not in text
 
 
-def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(tmp_path):
-    found = found_in(tmp_path, FOUR_BAR)
+def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(shipped):
+    found = shipped
     allowed = [each for each in found.table if each.error <= 1e-3]
     chosen = cheapest(found.table, 1e-3)
     assert chosen is not None

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -125,13 +126,15 @@ def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers,
     assert len(killed) == kills
 
 
-def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers):
+def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers, monkeypatch):
+    monkeypatch.setattr(clusters, "MOST_TRIES", 2)  # each takes a foreman that has to start
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with cluster(two_workers.scheduler_address) as own:
         told = {cell.every: result for cell, result, _ in own.supervise(end_the_supervisor, cells, 60.0)}
     lost = told.pop(901)
     assert isinstance(lost, Loss)
     assert lost.outcome == Outcome.LOST
+    assert lost.sentence.startswith("2 times its worker ended")
     assert told == {1: "fine", 2: "fine"}
 
 
@@ -170,7 +173,7 @@ def test_what_has_other_source_files_behind_it_is_not_run():
 
 def test_a_file_that_is_not_at_the_worker_is_another_file(tmp_path, monkeypatch):
     def forgotten() -> None:
-        for cached in (fingerprint._place, fingerprint._closure, fingerprint._behind, digest_of):
+        for cached in (fingerprint._place, fingerprint._direct, fingerprint._closure, fingerprint._behind, digest_of):
             cached.cache_clear()
 
     (tmp_path / "a_file_of_somebody.py").write_text("TEN = 10\n")
@@ -234,20 +237,52 @@ def test_chunks_keep_to_their_time(two_workers):
     assert sizes[-1] <= 2
 
 
-def test_nobody_is_left_when_a_cluster_is_closed():
-    before = set(_children())
-    with cluster("local:1") as own:
-        assert list(own.supervise(end_the_supervisor, [Cell(Disc(), Toy(), 1)], 60.0))
+def test_no_foreman_is_left_when_a_cluster_is_closed():
+    before = set(_processes())
+    start: Any = distributed.LocalCluster
+    with (
+        start(
+            n_workers=1, threads_per_worker=1, dashboard_address=NOWHERE, memory_limit=None, silence_logs=50
+        ) as there,
+        cluster(there.scheduler_address) as own,
+    ):
+        assert list(run_cells([Cell(Disc(), Toy(), 1)], supervised=own.supervise))
+        assert _foremen(before)
+    assert _none_soon(lambda: _foremen(before))
+
+
+def test_no_worker_is_left_when_a_local_cluster_is_closed_at_work():
+    before = set(_processes())
+    slow = [Cell(Disc(), SlowToy(seconds=30.0, factor=float(number)), 1) for number in range(4)]
+    with cluster("local:2") as own:
+        rows = run_cells([Cell(Disc(), Toy(), 1), *slow], timed=False, supervised=own.supervise)
+        assert next(rows).variant == Toy().variant  # the others are at work, or wait
+        assert _workers(before)
+    assert _none_soon(lambda: _workers(before))
+    with cluster("local:1") as own:  # and the next one begins anew
+        [row] = run_cells([Cell(Disc(), Toy(), 2)], timed=False, supervised=own.supervise)
+    assert row.outcome == Outcome.FINISHED
+
+
+def _none_soon(found: Callable[[], list[int]]) -> bool:
     deadline = time.monotonic() + 30
-    while (left := _foremen(before)) and time.monotonic() < deadline:
+    while found() and time.monotonic() < deadline:
         time.sleep(0.1)
-    assert not left
+    return not found()
 
 
-def _children() -> list[int]:
+def _processes() -> list[int]:
     import psutil  # comes with Dask
 
     return [process.pid for process in psutil.process_iter()]
+
+
+def _workers(before: set[int]) -> list[int]:
+    """Of this process's new processes those that a fork server has started."""
+    import psutil
+
+    servers = [child for child in psutil.Process().children() if "forkserver" in " ".join(child.cmdline())]
+    return [worker.pid for server in servers for worker in server.children() if worker.pid not in before]
 
 
 def _foremen(before: set[int]) -> list[int]:

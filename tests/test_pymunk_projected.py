@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pymunk
 import pytest
@@ -13,9 +15,11 @@ from engines.pymunk.contraction import Sweeping, contraction_at, contractions
 from engines.pymunk.methods import SETTLED, SKATE_GROOVE_EXTRAPOLATED
 from engines.pymunk.projection import Projection
 from engines.pymunk.running import record
+from reference.forces import Torque
 from reference.four_bar.scenes import FreeFourBar
 from reference.four_bar.singular_cases import Parallelogram
 from reference.n_four_bar import NFourBar
+from reference.pendulum.scenes import TenLinks
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.wheels.car_and_trailer import CarAndTrailer
@@ -79,8 +83,9 @@ def test_compiled_and_numpys_projection_are_the_same():
 
 
 @pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
-def test_a_projected_motion_is_the_same_without_numba(monkeypatch):
-    own = Parallelogram().mechanism()
+@pytest.mark.parametrize("scene", [Parallelogram(), NEAR, NFourBar(loops=3)])
+def test_a_projected_motion_is_the_same_without_numba(scene, monkeypatch):
+    own = scene.mechanism()
     swept = Sweeping(5, projected=True)
     compiled = record(SETTLED.swept_model(own, 1e-3, swept), 1e-3, 20, 5, raw=True)
     monkeypatch.setattr("engines.pymunk.projection.installed", lambda: False)
@@ -108,6 +113,25 @@ def test_a_motion_that_is_projected_on_a_part_of_its_way_only_says_so():
     run = SETTLED.build(own, scene.duration / 120)(10, 12)
     assert any("projected" in words for words in run.warnings)
     assert not SETTLED.build(FreeFourBar().mechanism(), 1e-2)(10, 10).warnings
+
+
+def test_a_singular_position_is_passed_where_sweeps_would_be_too_many():
+    # 83 sweeps left enough there for an angle to be wrong by 1e-4 rad at this step, and by 500 rad at 1e-4 s.
+    scene = NFourBar(duration=1.2, horizon=1.2)
+    own = scene.mechanism()
+    run = EXTENDED.build(own, 1e-2)(24, 5)
+    assert run.unresolved_at is None
+    assert np.abs(run.pose - scene.motion(run.t).pose).max() < 1e-9
+    assert SETTLED.sweeping(own, scene.duration).projected
+    assert not replace(SETTLED, projects=False).sweeping(own, scene.duration).projected
+
+
+def test_sweeps_are_left_alone_where_python_would_have_to_project():
+    # A torque is set from Python before every step: a projection takes longer there, and so may the sweeps.
+    free = TenLinks().mechanism()
+    pushed = replace(free, forces=(Torque("push", None, free.bodies[0].name, 1.0),))
+    assert SETTLED.sweeping(free).projected
+    assert not SETTLED.sweeping(pushed).projected
 
 
 def test_a_blade_that_is_aimed_closes_no_gap_and_so_adds_no_noise():

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from engines.contract import Size, Unsupported
-from engines.single_run import Recorded, differences, pushes, quiet, tree_states
+from engines.pushes import pushes
+from engines.single_run import Recorded, differences, quiet, tree_states
 from engines.tree import Link, Tree, world_offset
 from reference.joints import Gear, Pin, Slot, Weld
 from reference.mechanism import Mechanism
@@ -146,7 +147,7 @@ class World:
         position, velocity = np.zeros((2, self.tree.coordinates))
         for link, (angle, rate, *_) in zip(self.tree.links, told, strict=True):
             position[link.columns], velocity[link.columns] = angle, rate
-        pushed = pushes(self.tree, position, velocity)
+        _, pushed = pushes(self.tree, position, velocity)
         for link, index in zip(self.tree.links, self.links, strict=True):
             x, y, torque = pushed[link.body]
             at = self.bullet.getLinkState(self.body, index, computeForwardKinematics=True, **own)[0]

@@ -51,8 +51,9 @@ class MuJoCo(Valid):
     `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the integrator otherwise, since four
     stages of the same stale row cost more and gain nothing. `estimates`: a second run with half as many steps tells
     the error of the first, if that falls with the fourth power of the step; where it is above what is claimed
-    (`engines.mujoco.theory.claimed`), the run says so; and a motion that becomes faster than its start lets expect
-    takes more steps (`engines.finer`), unless that estimate shows that it needs none.
+    (`engines.mujoco.theory.claimed`), the run says so, and it warns of any above 1e-7 of a radian or of the mechanism's
+    length; a motion that becomes faster than its start lets expect takes more steps (`engines.finer`), unless its
+    estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.contract import Size
-from engines.single_run import Recorded, pushes, tree_states
+from engines.pushes import pushes
+from engines.single_run import Recorded, tree_states
 from engines.tree import Link, Tree, world_offset
 from reference.joints import Drive, Pin, Slot, Weld
 from reference.mechanism import Mechanism
@@ -50,6 +51,7 @@ class Model:
         for row, drive in zip(self.driven, drives, strict=True):
             for column, sign in tree.turning(drive.first, drive.second).items():
                 row[self.address[column]] = sign
+        self._own = [self.joints[body] for body in range(len(mechanism.bodies))]
         rows = sum(joint.size for joint in tree.loops) + len(drives)
         spatial = sum(6 if isinstance(joint, Weld) else 3 for joint in tree.loops)
         self.size = Size(len(mechanism.bodies), tree.coordinates, rows, spatial)
@@ -121,15 +123,12 @@ class Model:
         if not self.mechanism.forces:
             return np.zeros(self.tree.coordinates)
         pin = self.pin
-        places = position[self.address]
-        pose, *_ = tree_states(self.tree, places[None], *np.zeros((2, 1, len(places))))
+        pose, pushed = pushes(self.tree, position[self.address], velocity[self.address])
         pin.forwardKinematics(self.model, self.data, position)
         external = pin.StdVec_Force()
         external.extend([pin.Force.Zero() for _ in range(self.model.njoints)])
-        for body, (x, y, torque) in enumerate(pushes(self.tree, places, velocity[self.address])):
-            arm_x, arm_y, _ = pose[0, body]
+        for joint, (arm_x, arm_y, _), (x, y, torque) in zip(self._own, pose.tolist(), pushed.tolist(), strict=True):
             about_origin = pin.Force(np.array([x, y, 0.0]), np.array([0.0, 0.0, torque + arm_x * y - arm_y * x]))
-            joint = self.joints[body]
             external[joint] = external[joint] + self.data.oMi[joint].actInv(about_origin)
         loaded = pin.computeStaticTorque(self.model, self.data, position, external)
         return np.array(pin.computeGeneralizedGravity(self.model, self.data, position)) - loaded
@@ -159,10 +158,9 @@ class Model:
 
     def _inertias(self) -> Array:
         """What the model holds, back in the order of bodies; NaN of welded ones, of which it holds only the sum."""
-        joints = [self.joints[body] for body in range(len(self.mechanism.bodies))]
-        held = [self.model.inertias[joint] for joint in joints]
+        held = [self.model.inertias[joint] for joint in self._own]
         told = np.array([(each.mass, each.mass, each.inertia[2, 2]) for each in held])
-        told[[joints.count(joint) > 1 or joint == 0 for joint in joints]] = np.nan
+        told[[self._own.count(joint) > 1 or joint == 0 for joint in self._own]] = np.nan
         return told
 
     def _euler(self, q: Array, v: Array, dt: float) -> tuple[Array, Array]:

@@ -49,7 +49,7 @@ class Pymunk(Valid):
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
     more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
-    `projects`: where these sweeps don't converge, or take longer than a projection, our code takes out what a few leave
+    `projects`: where these sweeps don't converge, or take longer than a projection, our code takes out what one leaves
     (`engines.pymunk.projection`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
@@ -151,7 +151,8 @@ class Pymunk(Valid):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
         if self.projects and (found.gain < 1 or found.unsettled > UNSETTLED or self._are_dear(mechanism, found)):
-            return Sweeping(self.fewest, left=found.left, converged=self.fewest, projected=True)
+            # Whatever sweeps do, a projection ends at the same velocities.
+            return Sweeping(1, left=found.left, converged=1, projected=True)
         if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
             found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
         return found

@@ -40,7 +40,6 @@ class Marching:
         """`closed` (rows) [1/s] as they close their gaps, `root` (columns) of the inverse inertias that take part."""
         visited = visited_bodies(space)
         arrays, calls = flat(mechanism), import_module("engines.pymunk.compiled.calls")
-        entry = _entry()
         mobility = int(arrays.whole[MOBILITY])
         arrays.real[mobility : mobility + len(root)] = root**2
         in_order = np.empty_like(closed)
@@ -59,8 +58,8 @@ class Marching:
             *(arrays.whole, arrays.real, np.zeros((0, CELL), dtype=complex), in_order, int((~felt).sum())),
             np.array([visited.index(body.id) for body in bodies], dtype=np.int64),
             *(np.ascontiguousarray(origins, dtype=float), unit),
-            calls.Called(_address(ffi.addressof(lib, "cpSpaceStep")), entry.STEP),
-            calls.Called(_address(ffi.addressof(lib, "cpSpaceEachBody")), entry.VISIT),
+            calls.Called(_address(ffi.addressof(lib, "cpSpaceStep")), calls.STEP),
+            calls.Called(_address(ffi.addressof(lib, "cpSpaceEachBody")), calls.VISIT),
             np.array([_address(each) for each in data], dtype=np.int64),
             *(state, velocities, read, written),
         )

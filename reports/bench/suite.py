@@ -22,10 +22,13 @@ NEARLY = 0.1  # relative: timings that differ by less count as the same
 
 @dataclass(frozen=True)
 class Spent:
-    """Of one item: the process that worked on it, CPU seconds of that process since its last item, and by part."""
+    """Of one item: the process that worked on it, CPU seconds of that process since its last item, and by part; and
+    for how long it worked on the item, `wall` seconds.
+    """
 
     process: int
     before: float
+    wall: float
     parts: dict[str, float]
 
 
@@ -41,13 +44,13 @@ class Counted:
     def __call__(self, item: Any) -> tuple[Any, Spent]:
         global _ended
         taken()
-        begin = time.process_time()
+        begin, clock = time.process_time(), time.monotonic()
         result = self.function(item)
         end = time.process_time()
         before, _ended = begin - _ended, end
         parts = dict(taken())
         parts[OTHER] = end - begin - sum(parts.values())
-        return result, Spent(os.getpid(), before, parts)
+        return result, Spent(os.getpid(), before, time.monotonic() - clock, parts)
 
 
 @dataclass
@@ -59,6 +62,7 @@ class Account:
     scenes: dict[str, float] = field(default_factory=dict)
     longest: list[tuple[float, str]] = field(default_factory=list)
     wall: float = 0.0
+    first: dict[int, float] = field(default_factory=dict)  # when each process began its first item
     last: dict[int, float] = field(default_factory=dict)  # when each process gave its last answer
     lost: int = 0
 
@@ -66,10 +70,19 @@ class Account:
     def seconds(self) -> float:
         return sum(self.parts.values())
 
-    @property
-    def tail(self) -> float:
-        """Seconds between the last answers of the first worker to run out of work and of the last one."""
-        return max(self.last.values()) - min(self.last.values()) if self.last else 0.0
+    def tail(self, workers: int) -> float:
+        """Seconds from when fewer than so many processes were left at work, until the last answer.
+
+        A process that was replaced ended early, and another one worked in its place: it does not count.
+        """
+        if not self.last:
+            return 0.0
+        enough = [
+            end
+            for end in self.last.values()
+            if sum(self.first[one] < end <= other for one, other in self.last.items()) >= workers
+        ]
+        return max(self.last.values()) - max(enough, default=min(self.first.values()))
 
     def supervise(self, function: Callable[[Any], Any], items: Iterable[Any], *terms: Any) -> Iterator[Answer]:
         """As `reports.grid.supervisor.supervise`, and count."""
@@ -83,7 +96,9 @@ class Account:
             own, spent = result
             self._count(item, spent, spent.process not in seen)
             seen.add(spent.process)
-            self.last[spent.process] = time.monotonic()
+            now = time.monotonic()
+            self.first.setdefault(spent.process, now - spent.wall)
+            self.last[spent.process] = now
             yield item, own, note
         self.wall += time.monotonic() - begin
 

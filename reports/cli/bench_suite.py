@@ -89,7 +89,8 @@ def print_account(terminal: Terminal, account: Account, parts: dict[str, float],
     table("By scene", dict(account.scenes))
     table("The longest", {label: seconds for seconds, label in account.longest})
     busy = account.seconds / (workers * account.wall) if account.wall else float("nan")
+    tail = account.tail(min(workers, len(account.last)))
     terminal.say(
         f"{account.wall:.1f} s with {workers} workers, whose processes were at work for {100 * busy:.0f} % of it; "
-        f"{account.lost} items without an answer; in the last {account.tail:.1f} s there was not work for all."
+        f"{account.lost} items without an answer; in the last {tail:.1f} s there was not work for all."
     )

@@ -1,24 +1,24 @@
 """Pages rendered by workers, one on each processor: pictures are nearly all of what a report takes.
 
-A worker reads the store for itself, since a page holds functions, which can't be sent; what it is sent is a name.
+A page holds functions, which can't be sent; what a worker is sent is its name, with what is stored of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import gc
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.known import Known, registered, with_remembered
 from reports.cli.selection import shown_cells
-from reports.grid.imports import recall
 from reports.grid.outcomes import Loss
 from reports.grid.pool import worker_count
 from reports.grid.store import Store
 from reports.grid.supervisor import WorkersLost, supervise
-from reports.grid.truths import FOLDER
 from reports.pages.page import Material, Page
 from reports.text.rendering import render_page
 
@@ -39,39 +39,64 @@ def material_of(page: Page, store: Store) -> Material:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a worker does with a page's name. store: the file; truths: the folder with what sources import."""
+    """What a worker does with (a page's name, what is stored of it). words: what the store remembers, if it is told."""
 
-    store: Path
-    truths: Path
-    publish: bool
+    words: tuple[str, ...]
     command: str
 
-    def __call__(self, name: str) -> dict[str, str]:
-        pages = _pages(self)
-        with Store.read(self.store) as store:
-            return render_page(pages[name], material_of(pages[name], store), self.command)
+    def __call__(self, asked: tuple[str, Material]) -> dict[str, str]:
+        name, material = asked
+        pages = _pages(self.words)
+        gc.disable()  # it would look through all that was imported; what one page leaves is little
+        try:
+            return render_page(pages[name], material, self.command)
+        finally:
+            gc.enable()
+            gc.collect()
 
 
 @lru_cache(maxsize=1)
-def _pages(drawing: Drawing) -> dict[str, Page]:
-    recall(drawing.truths)
-    with Store.read(drawing.store) as store:
-        return {page.name: page for page in known_to(store, drawing.publish).pages}
+def _pages(words: tuple[str, ...]) -> dict[str, Page]:
+    pages = {page.name: page for page in with_remembered(registered(), words).pages}
+    gc.freeze()
+    return pages
 
 
-def drawn(store: Store, publish: bool, command: str, pages: Iterable[Page], order: Path) -> dict[str, dict[str, str]]:
+def drawn(
+    material: Mapping[Page, Material], words: Iterable[str], command: str, order: Path
+) -> dict[str, dict[str, str]]:
     """The files of pages by their names, of those that a worker could render: what is wrong with another is told where
     it is rendered again.
 
-    order: a folder with a report, of which those pages begin that have the largest pictures.
+    words: those that the store remembers, of a report that tells of them. order: a folder with a report, of which those
+    pages begin that have the largest pictures.
     """
-    names = sorted((page.name for page in pages), key=lambda name: -_size(order, name))
-    work = Drawing(store.copied, (store.path.parent / FOLDER).resolve(), publish, command)
+    asked = sorted(((page.name, given) for page, given in material.items()), key=lambda pair: -_size(order, pair[0]))
+    work = Drawing(tuple(words), command)
     found: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for name, result, _ in supervise(work, names, LIMIT, worker_count(timed=False)):
+        for (name, _), result, _ in supervise(work, asked, LIMIT, worker_count(timed=False)):
             if not isinstance(result, Loss):
                 found[name] = result
+    return found
+
+
+def made_of(
+    material: Mapping[Page, Material], words: Iterable[str], command: str, order: Path, folder: Path
+) -> dict[str, Mapping[str, str]]:
+    """The files of all pages by their names: as they are kept in a folder, or drawn, and then kept there.
+
+    Raises what `render_page` raises.
+    """
+    words = tuple(words)
+    digests = {page: digest(page, given, command, words) for page, given in material.items()}
+    found = {page.name: files for page, told in digests.items() if (files := kept(folder, page.name, told)) is not None}
+    left = {page: given for page, given in material.items() if page.name not in found}
+    by_workers = drawn(left, words, command, order) if sum(len(given.rows) for given in left.values()) > MANY else {}
+    for page, given in left.items():
+        made = by_workers[page.name] if page.name in by_workers else render_page(page, given, command)
+        keep(folder, page.name, digests[page], made)
+        found[page.name] = made
     return found
 
 

@@ -15,6 +15,8 @@ from reports.grid.ending import BadInput
 from reports.grid.files import write_whole
 
 CHECKOUT = Path(__file__).parents[2]
+KEPT = "pages"  # the folder of files that need not be drawn again (`reports.cli.kept_pages`)
+LARGE = 2**20  # bytes of a store: smaller ones have too few rows for workers (`reports.cli.drawing`)
 
 
 def report(
@@ -35,7 +37,12 @@ def report(
         line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
-    from reports.cli.drawing import MANY, drawn, known_to, material_of
+    if (results / STORE).stat().st_size > LARGE and not (results / KEPT).exists():
+        from reports.grid.worker_process import start_early
+
+        # Beside what is imported here; by the time that workers are wanted, they can be there.
+        start_early("reports.cli.drawing")
+    from reports.cli.drawing import MANY, known_to, made_of, material_of
     from reports.cli.selection import page_cells, page_tasks
     from reports.grid.running import missing
     from reports.grid.store import Store
@@ -61,7 +68,8 @@ def report(
             raise BadInput(f"nothing is published, {grid}")
         command = "make report" if publish else "crosscheck report"
         many = sum(len(given.rows) for given in material.values()) > MANY
-        made = drawn(store, publish, command, material, published()) if many else {}
+        words = () if publish else store.remembered()
+    made = made_of(material, words, command, published(), results / KEPT) if many else {}
     files = render_all(material, command, searched, made)
     texts = {folder / name: text for name, text in files.items()}
     if publish:

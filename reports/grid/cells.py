@@ -12,7 +12,7 @@ from engines import Engine
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.validation import Count, Valid
-from reports.grid.fingerprint import digest_of, fingerprint, modules_behind
+from reports.grid.fingerprint import digest_of, modules_behind, modules_of
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
@@ -73,16 +73,26 @@ class Cell(Valid):
             self.every,
             self.sample_count,
             self.purpose,
-            fingerprint(self.scene, self.engine),
+            digest_of(_modules(self.scene, self.engine)),
         )
         return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
 
     @cached_property
     def truth(self) -> str:
         """A digest of all that the scene's exact motion depends on, but for the instants (`reports.grid.truths`)."""
-        sources = digest_of(frozenset(modules_behind(self.scene)))
+        sources = digest_of(_modules_of_truth(self.scene))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+
+
+@lru_cache(maxsize=4096)  # a scene in an engine has a cell for every step
+def _modules(scene: Scene, engine: Engine) -> frozenset[str]:
+    return modules_of(scene, engine)
+
+
+@lru_cache(maxsize=512)
+def _modules_of_truth(scene: Scene) -> frozenset[str]:
+    return frozenset(modules_behind(scene))
 
 
 def estimated_cost(cell: Cell) -> float:

@@ -18,7 +18,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
@@ -84,7 +84,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                     where = stack.enter_context(
                         distributed.LocalCluster(
                             n_workers=int(local[1]),
-                            processes=False,  # each has a foreman, which is one
+                            processes=False,  # cells have processes of their own (`foreman.Inside`)
                             threads_per_worker=1,
                             dashboard_address="127.0.0.1:0",  # any free port, seen from this machine alone
                             memory_limit=None,  # cells have processes of their own, which it would not see
@@ -99,14 +99,14 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                     f"({said}); start one with: dask scheduler"
                 ) from None
         stack.callback(foreman.dismiss)  # those of workers in this process
-        yield Cluster(client, scheduler)
+        yield Cluster(client, scheduler, inside=bool(local))
 
 
 class Cluster:
     """A client of a scheduler."""
 
-    def __init__(self, client: Any, name: str) -> None:
-        self._client, self._name = client, name
+    def __init__(self, client: Any, name: str, inside: bool = False) -> None:
+        self._client, self._name, self._inside = client, name, inside
         self._looked, self._threads, self._seen = -1.0, 0, time.monotonic()
         self._numbers = count()
 
@@ -148,7 +148,8 @@ class Cluster:
         """
         wall = wall_limit(limit) if wall is None else wall
         paths = tuple(path for path in sys.path if path)
-        send = _Sender(self._client, pickle.dumps(function), limit, wall, paths, self._numbers)
+        terms = foreman.Request(pickle.dumps(function), (), frozenset(), limit, wall, paths, self._inside)
+        send = _Sender(self._client, terms, self._numbers)
         waiting = deque(items)
         costs = deque(expected_seconds(item) for item in waiting)
         left, slowness = sum(costs), 1.0  # seconds by estimate; what one of them takes
@@ -198,11 +199,8 @@ class Cluster:
 class _Sender:
     """Chunks on their way, by the future of each."""
 
-    def __init__(
-        self, client: Any, function: bytes, limit: float, wall: float, paths: tuple[str, ...], numbers: Iterator[int]
-    ) -> None:
-        self._client, self._function, self._limit, self._wall, self._paths = client, function, limit, wall, paths
-        self._numbers = numbers
+    def __init__(self, client: Any, terms: foreman.Request, numbers: Iterator[int]) -> None:
+        self._client, self._terms, self._numbers = client, terms, numbers
         self._ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self.running: dict[Any, Chunk] = {}
 
@@ -212,7 +210,7 @@ class _Sender:
             modules_of(item.scene, item.engine) if isinstance(item, Cell) else modules_of(item) for item in chunk.items
         }
         sources = frozenset((modules, digest_of(modules)) for modules in behind)
-        request = foreman.Request(self._function, packed, sources, self._limit, self._wall, self._paths)
+        request = replace(self._terms, items=packed, sources=sources)
         # A number in the key: the same chunk sent again is another task, not the answer that was lost.
         key = f"chunk-{id(self)}-{next(self._numbers)}-{time.time_ns()}"
         future = self._client.submit(foreman.answered, pickle.dumps(request), key=key, pure=False)

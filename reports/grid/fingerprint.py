@@ -68,6 +68,21 @@ def _data(folder: Path, strings: frozenset[str]) -> set[Path]:
 
 
 @cache
+def _direct(module: str) -> tuple[Path | None, frozenset[str], frozenset[tuple[str, Path]]]:
+    """(a module's file; the modules that it imports; the data that it names, by the names of both).
+
+    None and nothing of what counts by its version.
+    """
+    path = _source(module)
+    if path is None or path.suffix != ".py":
+        return path, frozenset(), frozenset()
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    imported, strings = named_in(path.read_bytes(), package)
+    data = ((f"{module}: {file.relative_to(path.parent)}", file) for file in _data(path.parent, strings))
+    return path, imported, frozenset(data)
+
+
+@cache
 def _closure(module: str) -> tuple[frozenset[tuple[str, Path]], frozenset[str]]:
     """(files by the names of their modules, other packages' top-level names) behind a module, itself included.
 
@@ -82,17 +97,14 @@ def _closure(module: str) -> tuple[frozenset[tuple[str, Path]], frozenset[str]]:
         if not name or name in seen:
             continue
         seen.add(name)
-        parent = name.rpartition(".")[0]
-        waiting.append(parent)
-        path = _source(name)
+        waiting.append(name.rpartition(".")[0])
+        path, imported, data = _direct(name)
         if path is None:
             packages.add(name.split(".")[0])
-            continue
-        files.add((name, path))
-        if path.suffix == ".py":
-            imported, strings = named_in(path.read_bytes(), name if path.name == "__init__.py" else parent)
+        else:
+            files.add((name, path))
+            files.update(data)
             waiting.extend(imported)
-            files.update((f"{name}: {file.relative_to(path.parent)}", file) for file in _data(path.parent, strings))
     followed = {name.split(".")[0] for name, _ in files}
     return frozenset(files), frozenset(packages - followed - set(sys.stdlib_module_names))
 

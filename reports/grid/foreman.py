@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -24,7 +24,7 @@ from reports.grid.fingerprint import ROOT, digest_of, versions_of
 from reports.grid.supervisor import Crew, Watch, crew
 
 _own = threading.local()  # a worker with several threads runs as many chunks at a time
-_all: set[Foreman] = set()
+_all: set[Foreman | Inside] = set()
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,11 @@ class Request:
     limit: float
     wall: float
     paths: tuple[str, ...] = ()
+    inside: bool = False
+
+    @property
+    def terms(self) -> tuple[float, float, tuple[str, ...]]:
+        return self.limit, self.wall, self.paths
 
 
 @dataclass(frozen=True)
@@ -66,7 +71,7 @@ class Foreman:
     """The process, as a worker sees it."""
 
     def __init__(self, request: Request) -> None:
-        self.terms = (request.limit, request.wall, request.paths)
+        self.terms = request.terms
         paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH", ""))))
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "reports.grid.foreman"],
@@ -97,6 +102,37 @@ class Foreman:
         _write(self._process.stdin, data)
 
 
+class Inside:
+    """What a foreman does, in a thread of the client: its process may have children, and they share one fork server.
+
+    A foreman of its own would import all engines once more for each worker.
+    """
+
+    def __init__(self, request: Request) -> None:
+        self.terms = request.terms
+        self._stack = ExitStack()
+        self._crew = self._stack.enter_context(crew(request.limit, 1, request.wall))
+        self._at_work = threading.Lock()
+        self._ended = False
+        _all.add(self)
+
+    def answered(self, data: bytes) -> bytes:
+        """The pickled reply to a pickled request. Raises EOFError if it is ended meanwhile."""
+        with self._at_work:
+            self._watch([])
+            return pickle.dumps(reply(self._crew, pickle.loads(data), self._watch))
+
+    def end(self) -> None:
+        _all.discard(self)
+        self._ended = True
+        with self._at_work:  # its thread sees that within a moment
+            self._stack.close()
+
+    def _watch(self, running: list[Any]) -> None:
+        if self._ended:
+            raise EOFError("nobody waits for this any more")
+
+
 @dataclass(frozen=True)
 class Unpacked:
     """A function of an item, of the item's place and bytes."""
@@ -115,13 +151,13 @@ def answered(data: bytes) -> bytes:
     request: Request = pickle.loads(data)
     if refusal := refused(request):
         return pickle.dumps(refusal)
-    foreman: Foreman | None = getattr(_own, "foreman", None)
-    if foreman is not None and foreman.terms != (request.limit, request.wall, request.paths):
+    foreman: Foreman | Inside | None = getattr(_own, "foreman", None)
+    if foreman is not None and foreman.terms != request.terms:
         foreman.end()
         foreman = None
     try:
         if foreman is None:
-            foreman = _own.foreman = Foreman(request)
+            foreman = _own.foreman = Inside(request) if request.inside else Foreman(request)
         return foreman.answered(data)
     except (EOFError, OSError):
         if foreman is not None:

@@ -79,15 +79,7 @@ def _told(item: Cell | Task, result: Any, note: str, limit: float) -> Measuremen
     return Answer(result.outcome, result.sentence, limit=spent)
 
 
-def run_cells(
-    cells: Iterable[Cell],
-    limit: float = TIME_LIMIT,
-    workers: int | None = None,
-    watch: Watch | None = None,
-    timed: bool = True,
-    wall: float | None = None,
-    supervised: Supervise = supervise,
-) -> Iterator[Measurement]:
-    """Yield the measurement of every cell as it is done; see `run_items`."""
-    for _, row in run_items(cells, limit, workers, watch, timed, wall, supervised):
+def run_cells(cells: Iterable[Cell], **terms: Any) -> Iterator[Measurement]:
+    """Yield the measurement of every cell as it is done; terms: those of `run_items`, by their names."""
+    for _, row in run_items(cells, **terms):
         yield row

@@ -18,8 +18,6 @@ is whole.
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import os
 import pickle
 import tempfile
 import time
@@ -35,7 +33,15 @@ from reports.grid.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.grid.processors import apart
 from reports.grid.waiting import Waiting
 from reports.grid.worker import READY, SPENT, cpu_time, describe, timed_out
-from reports.grid.worker_process import Job, Worker, interrupts_held, last_words, start_worker
+from reports.grid.worker_process import (
+    Job,
+    Worker,
+    interrupts_held,
+    last_words,
+    one_thread_each,
+    start_method,
+    start_worker,
+)
 
 TICK = 0.2  # s between two looks at the clock
 IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
@@ -83,9 +89,7 @@ def supervise(
 @contextmanager
 def crew(limit: float, workers: int, wall: float | None = None, alone: bool = False) -> Iterator[Crew]:
     """Workers for one function after another; see `supervise`. Leaving it ends them."""
-    # CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting.
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+    one_thread_each()
     with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
         wall = wall_limit(limit) if wall is None else wall
         own = Crew(limit, wall, min(workers, MOST_WORKERS), Path(folder), apart() if alone else ())
@@ -106,10 +110,7 @@ class Crew:
         self._again: deque[Job] = deque()  # each for a worker that has run nothing yet
         self._workers: list[Worker] = []
         self._failed_starts = 0
-        methods = multiprocessing.get_all_start_methods()
-        self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        if "forkserver" in methods:
-            self._context.set_forkserver_preload(["reports.grid.measure", "engines.registry"])
+        self._context = start_method()
 
     def give(self, function: Callable[[Any], Any], items: Iterable[Any]) -> None:
         """What `answers` will answer; only when it has answered all that was given before."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
+import os
 import signal
 import warnings
 from collections.abc import Hashable, Iterator
@@ -15,6 +17,7 @@ from typing import Any
 
 from reports.grid.worker import cpu_time, work
 
+IMPORTED_ONCE = ("reports.grid.measure", "engines.registry")  # by the fork server, for all workers
 PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 
 
@@ -56,6 +59,34 @@ class Worker:
         self.connection.close()
         if self.process.exitcode is not None:
             self.process.close()
+
+
+def start_method(*modules: str) -> Any:
+    """How worker processes start: by a fork server, which imports these modules once for all, where there is one."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
+    return context
+
+
+def start_early(*modules: str) -> None:
+    """Have the fork server import these modules too, while the caller does something else.
+
+    Where there is none, or it can't be started now, workers import for themselves: only time is lost.
+    """
+    if start_method(*modules).get_start_method() == "forkserver":
+        from multiprocessing import forkserver
+
+        one_thread_each()
+        with interrupts_held(), contextlib.suppress(OSError):
+            forkserver.ensure_running()
+
+
+def one_thread_each() -> None:
+    """CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting."""
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
 
 
 def start_worker(context: Any, folder: str, limit: float, wall: float, processor: int | None) -> Worker:

@@ -1,10 +1,14 @@
-"""Functions of C as arguments of compiled code."""
+"""Functions of C as arguments of compiled code, and those that it calls."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from numba import types
+
+# cpSpaceStep(space, dt), and cpSpaceEachBody(space, visitor, data); pointers are whole numbers.
+STEP = types.FunctionType(types.void(types.intp, types.float64))
+VISIT = types.FunctionType(types.void(types.intp, types.intp, types.intp))
 
 
 class Called(types.WrapperAddressProtocol):

@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numba import njit, types
 
-from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.inner import inner, straight
 from engines.lagrange.compiled.rows import rows
 from engines.lagrange.compiled.system import ALL, along, solved
 from engines.lagrange.flat import (
@@ -33,14 +33,13 @@ from engines.lagrange.flat import (
     TWIST,
     WHICH,
 )
+from engines.pymunk.compiled.calls import STEP, VISIT
 from engines.pymunk.projection import NEARLY
 from reference.row_system import RANK_TOLERANCE
 
 DONE, BLOWN_UP = range(2)
 STATE = 6  # of a body, as C copies it: place, angle, velocity, rate
 LIST, TABLE, WHOLE = types.float64[::1], types.float64[:, ::1], types.int64[::1]
-STEP = types.FunctionType(types.void(types.intp, types.float64))
-VISIT = types.FunctionType(types.void(types.intp, types.intp, types.intp))
 COUNT = types.int32[::1]
 SIGNATURE = types.int64(
     *(WHOLE, LIST, types.complex128[:, ::1], LIST, types.int64, WHOLE, TABLE, types.float64),
@@ -166,6 +165,7 @@ def run(
     `velocities`: what these read and write; `read` and `written`: how many numbers of them. `values` get a state, then
     for each sample velocities one step before, if there is more than one step, and a state.
     """
+    whole, real = straight(whole), straight(real)
     space, getter, get_data, setter, set_data = pointers[0], pointers[1], pointers[2], pointers[3], pointers[4]
     read[0] = 0
     visit(space, getter, get_data)
@@ -188,4 +188,4 @@ def run(
     return DONE
 
 
-run = njit(SIGNATURE, cache=True, error_model="numpy")(run)
+run = njit(SIGNATURE, cache=True, nogil=True, error_model="numpy")(run)

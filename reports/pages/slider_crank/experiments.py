@@ -108,12 +108,13 @@ FAILURES: tuple[Failure, ...] = (
             "at the smallest one{% endfilter %}. With all of the gap closed in each step it holds, at order 1 instead "
             "of 2. The other rows of pymunk hold the slot by a pin joint from far away, which is right. What the joint "
             "computes, and in which cases it is right: [faults of released engines]"
-            "(faults.md#pymunk-groovejoint-drives-the-wrong-velocity-to-zero). MuJoCo has no slot. By its own parts "
-            "alone half of the crank slides and turns in the lever, and is welded to the other half. In the row "
-            "'tuned, slots as rows' the slot is an equation of ours{% filter if_measured %}: "
-            "{{ at('mujoco tuned, slots as rows', 1e-4).solver_rows }} row of the solver instead of "
-            "{{ at('mujoco tuned', 1e-4).solver_rows }}, and {{ at('mujoco tuned, slots as rows', 1e-4).angle | number "
-            "}} rad instead of {{ at('mujoco tuned', 1e-4).angle | number }} at the smallest step{% endfilter %}."
+            "(faults.md#pymunk-groovejoint-drives-the-wrong-velocity-to-zero). MuJoCo has slides for slots of a tree, "
+            "and nothing for one that closes a loop. By its own parts alone half of the crank slides and turns in the "
+            "lever, and is welded to the other half. In the row 'tuned, slots as rows' the slot is an equation of ours"
+            "{% filter if_measured %}: {{ at('mujoco tuned, slots as rows', 1e-4).solver_rows }} row of the solver "
+            "instead of {{ at('mujoco tuned', 1e-4).solver_rows }}, and "
+            "{{ at('mujoco tuned, slots as rows', 1e-4).angle | number }} rad instead of "
+            "{{ at('mujoco tuned', 1e-4).angle | number }} at the smallest step{% endfilter %}."
         ),
     ),
     Failure(

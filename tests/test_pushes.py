@@ -1,0 +1,49 @@
+"""Places at one instant, in plain floats, against those of the tree's arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engines.pushes import instant, pushes
+from engines.tree import spanning_tree
+from reference.andrews.scene import Andrews
+from reference.scenes import SCENES
+from reports.search.mechanisms import EVERY
+from reports.search.mechanisms import mechanism as random_mechanism
+
+# Random ones with every joint, and those of the scenes, where a slot's drive of rate zero keeps its block from turning.
+MECHANISMS = (*(random_mechanism(21, number, EVERY) for number in range(12)), *(scene.mechanism() for scene in SCENES))
+
+
+def test_the_mechanisms_have_every_kind_of_link():
+    links = [link for mechanism in MECHANISMS for link in spanning_tree(mechanism).links]
+    assert {(link.kind, link.turns) for link in links} == {
+        ("free", True),
+        ("hinge", True),
+        ("hinge", False),
+        ("slot", True),
+        ("slot", False),
+    }
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=range(len(MECHANISMS)))
+def test_places_and_rates_at_an_instant_are_those_of_the_trees_arrays(mechanism):
+    tree = spanning_tree(mechanism)
+    way, rate = np.random.default_rng(5).normal(size=(2, tree.coordinates))
+    pose, twist, _ = tree.motion(way[None], rate[None], np.zeros((1, tree.coordinates)))
+    for found, expected in zip(instant(tree, way, rate), (pose[0], twist[0]), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+
+
+def test_what_is_pushed_is_what_the_force_elements_do_there_and_nothing_where_a_coordinate_is_none():
+    mechanism = Andrews().mechanism()
+    tree = spanning_tree(mechanism)
+    way, rate = np.zeros(tree.coordinates), tree.start_rates()
+    pose, pushed = pushes(tree, way, rate)
+    np.testing.assert_allclose(pose, mechanism.pose, rtol=0, atol=1e-15 * mechanism.length_scale)
+    expected = mechanism.applied.on(mechanism.pose, mechanism.twist)
+    np.testing.assert_allclose(pushed, expected, rtol=1e-14, atol=1e-14 * np.abs(expected).max())
+    assert np.abs(pushed).max() > 0
+    way[0] = np.inf
+    assert np.isnan(pushes(tree, way, rate)[0]).all()
