@@ -38,6 +38,7 @@ NOT_MADE_BY_USERS = {
     *("reference.joint_rows.JointGroup", "reference.joint_rows.JointRows"),
     *("reference.applied_forces.ForceGroup", "reference.applied_forces.AppliedForces"),
     *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.numerics.windows.Windows"),
+    "reference.numerics.windows.InDouble",
     *("reference.pendulum.double_pendulum.TwoPoints", "reference.pendulum.joint_forces.JointForces"),
     *("engines.altered.Altered", "engines.contract.Size"),
     "engines.pymunk.contraction.Sweeping",
