@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from reports.cli import drawing, kept_pages
@@ -73,7 +74,7 @@ def test_a_page_of_which_nothing_has_changed_is_not_drawn_again(tmp_path, monkey
 def test_all_that_a_page_is_made_from_counts(monkeypatch):
     row, motion = MATERIAL.rows[CELL], Motion(CELL)
     answers = [
-        Answer(Outcome.FINISHED, values={"angle": angle, "why": why})
+        Answer(Outcome.FINISHED, values={"angle": np.array(angle), "why": why})
         for angle, why in (((1.0, 2.0), "so"), ((1.0, 2.5), "so"), (((1.0,), (2.0,)), "so"), ((1.0, 2.0), "not so"))
     ]
     other = Cell(CELL.scene, CELL.engine, CELL.every + 1)

@@ -83,6 +83,23 @@ def test_compiled_and_numpys_projection_are_the_same():
 
 
 @pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+def test_near_a_singular_position_both_are_least_squares_by_singular_values():
+    # Rows that are nearly dependent: the row system has the square of their condition, and its factor too few digits.
+    scene = NFourBar()
+    time = scene.singular_times(2.0)[0]
+    for away in (0.0, 1e-8, 1e-6):
+        model = disturbed(scene.mechanism())
+        pose = scene.motion(np.array([time - away])).pose[0]
+        for body, (x, y, angle) in zip(model.bodies, pose.tolist(), strict=True):
+            body.position, body.angle = (x, y), angle
+        projection = projection_of(model)
+        change, before = present(projection._change(projection._state())), twists(model)
+        assert present(projection.marching).project()
+        # Rounding over a smallest singular value of 1e-8.
+        assert np.abs(twists(model) - before - change).max() < 1e-6 * np.abs(change).max()
+
+
+@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
 @pytest.mark.parametrize("scene", [Parallelogram(), NEAR, NFourBar(loops=3)])
 def test_a_projected_motion_is_the_same_without_numba(scene, monkeypatch):
     own = scene.mechanism()

@@ -143,7 +143,8 @@ def _look(entry: Entry, theme: Theme) -> tuple[str, str | None, str]:
 
 def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
     colour, hatch, letters = _look(entry, theme)
-    panel.add_patch(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1, hatch=hatch))
+    # No patch: the limits are given, and need not follow each of some thousand cells.
+    panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1, hatch=hatch))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=theme.ink, fontsize=7, in_layout=False)
 
 
