@@ -122,6 +122,7 @@ def test_a_soft_motion_passes_a_singular_position_and_shorter_steps_change_it_li
     found = errors_as_soft(THROUGH, soft)
     assert 1e-6 < found["angle"] < 1e-5  # 5.4e-6, as by steps of 1e-4 s throughout
     monkeypatch.setattr(judge, "SAME", judge.SAME / 10)
+    monkeypatch.setattr(judge, "PARTS", 1)  # pieces of 0.01 s, which a third of does not pass
     finer = errors_as_soft(THROUGH, soft)
     assert dict(finer) == pytest.approx(dict(found), rel=0.1)
     # Steps of one length, with which the springs are stable, are thrown off there.
