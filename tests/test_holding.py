@@ -13,6 +13,7 @@ from engines.pymunk import methods as pymunk_methods
 from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Drive, Joint, Slot
 from reference.mechanism import Mechanism
+from reference.n_four_bar import NFourBar
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse
 from reference.skate.sleigh import ChaplyginSleigh
@@ -100,3 +101,15 @@ def test_joints_of_one_kind_that_differ_are_told_by_name():
 
 def test_free_bodies_have_no_joints_to_hold():
     assert held_by(pymunk.DEFAULT, Mechanism(SKATE.bodies, ())) == "no joints"
+
+
+def test_joints_are_ours_where_a_motion_is_projected_that_the_start_tells_nothing_of():
+    mechanism = NFourBar().mechanism()  # singular after 0.71 s
+    assert [held_by(pymunk.EXTENDED, mechanism, duration) for duration in (0.0, 0.1, 1.0)] == [
+        "engine",
+        "engine",
+        "ours",
+    ]
+    assert [held_by(pymunk.TUNED, mechanism, duration) for duration in (0.0, 1.0)] == ["engine", "engine"]
+    told = pymunk.EXTENDED.build(mechanism, 0.01)(10, 10).warnings
+    assert any("velocities are projected" in warning for warning in told)

@@ -112,6 +112,11 @@ class Pymunk(Valid):
         """See `engines.pymunk.theory`."""
         return theory.holder(self, joint, mechanism)
 
+    @validated
+    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
+        """The same in a motion of `duration` [s], swept for its worst pose."""
+        return theory.holder(self, joint, mechanism, duration)
+
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
 

@@ -52,6 +52,11 @@ class Extended(Valid):
         """That of the chosen engine."""
         return self.chosen(mechanism).holder(joint, mechanism)
 
+    @validated
+    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
+        """That of the chosen engine, in a motion of `duration` [s]."""
+        return self.chosen(mechanism).holder_within(joint, mechanism, duration)
+
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """That of the chosen engine."""
         return self.chosen(mechanism).softness(mechanism, dt)

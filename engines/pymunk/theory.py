@@ -73,12 +73,13 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
     return FROM_REST if starts_at_rest(mechanism) else CLOSING
 
 
-def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
+def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism, duration: float = 0.0) -> Holder:
     """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared.
 
-    Where velocities are projected after every step, what the engine's joints did decides nothing.
+    Where velocities are projected after every step, in a motion of `duration` [s] that may meet worse poses than the
+    start, what the engine's joints did decides nothing.
     """
-    if engine.sweeping(mechanism).projected:
+    if engine.sweeping(mechanism, duration).projected:
         return "ours"
     match joint:
         case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):

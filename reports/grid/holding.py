@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 from engines import Engine, Holder
+from engines.contract import holder_within
+from reference.joints import Joint
 from reference.mechanism import Mechanism
 
 NOTHING_HELD = "no joints"
 
 
-def held_by(engine: Engine, mechanism: Mechanism) -> str:
-    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
+def held_by(engine: Engine, mechanism: Mechanism, duration: float = 0.0) -> str:
+    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones, in so many seconds.
 
     Joints are named by kind; where those of one kind differ, by their own names.
     """
     found: dict[Holder, list[str]] = {}
     kinds: dict[str, set[Holder]] = {}
-    for joint in mechanism.joints:
-        holder = engine.holder(joint, mechanism)
+    holders: list[Holder] = [_holder(engine, joint, mechanism, duration) for joint in mechanism.joints]
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
         kinds.setdefault(_kind(joint), set()).add(holder)
         found.setdefault(holder, [])
     if len(found) <= 1:
         return next(iter(found), NOTHING_HELD)
-    for joint in mechanism.joints:
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
         name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
-        holders = found[engine.holder(joint, mechanism)]
-        if name not in holders:
-            holders.append(name)
+        if name not in found[holder]:
+            found[holder].append(name)
     others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
     return "; ".join(["engine", *others] if "engine" in found else others)
+
+
+def _holder(engine: Engine, joint: Joint, mechanism: Mechanism, duration: float) -> Holder:
+    return holder_within(engine, joint, mechanism, duration) if duration > 0 else engine.holder(joint, mechanism)
 
 
 def _kind(joint: object) -> str:
