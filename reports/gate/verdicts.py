@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from engines import Engine, Promise, Unpromised
+from engines import Engine, Promise, Softness, Unpromised
 from reference.scene import Scene
 from reports.gate.checks import Check, Deviation
 from reports.gate.judge import errors_as_soft
@@ -68,23 +68,32 @@ def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
     return {scene: kinds(scene, engines) for scene, engines in by_scene.items()}
 
 
-def checks(case: Case, rows: Sequence[Measurement], judge: Prediction | None = None) -> tuple[Check, ...]:
+def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Softness | None:
+    """The softness of a case whose cost no other softness tells of, so that the judge has to run with it; else None.
+
+    Through singular positions nothing is in proportion to softness.
+    """
+    softness = case.engine.softness(mechanism_of(case.scene), rows[-1].step)
+    wanted = isinstance(case.promise, Promise) and Outcome(rows[-1].outcome).comparable
+    return softness if wanted and not math.isfinite(judge.give("angle", softness)) else None
+
+
+def checks(
+    case: Case,
+    rows: Sequence[Measurement],
+    judge: Prediction | None = None,
+    as_soft: Mapping[str, float] | None = None,
+) -> tuple[Check, ...]:
     """Theory at the finest step and the order over all, of a case's rows from coarse to fine; none if unsupported.
 
-    `judge`: the scene's prediction, worked out here unless it is given.
+    `judge`: the scene's prediction, `as_soft`: its errors with `own_softness`; worked out here unless they are given.
     """
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]
     softness = case.engine.softness(mechanism_of(case.scene), finest.step)
-    as_soft = None
-    if (
-        softness is not None
-        and isinstance(case.promise, Promise)
-        and Outcome(finest.outcome).comparable
-        and not math.isfinite(judge.give("angle", softness))
-    ):
-        # Through singular positions nothing is in proportion to softness: only this one's own run tells what it costs.
-        as_soft = errors_as_soft(case.scene, softness)
+    own = own_softness(case, rows, judge)
+    if own is not None and as_soft is None:
+        as_soft = errors_as_soft(case.scene, own)
     found = theory(judge, case.promise, softness, finest, rows[:-1], as_soft)
     return (*found, *order(case.promise, rows)) if found else ()

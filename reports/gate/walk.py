@@ -7,14 +7,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from engines import Softness
 from reference.scene import Scene
 from reports.gate.baseline import Baseline, identity
 from reports.gate.change import change, drift, moved
 from reports.gate.checks import Check, complaints, nearest
+from reports.gate.judge import errors_as_soft
 from reports.gate.nudged import nudged_cells
 from reports.gate.prediction import Kind, Prediction, prediction
-from reports.gate.verdicts import Case, checks, predictions
-from reports.grid.cells import Cell
+from reports.gate.verdicts import Case, checks, own_softness, predictions
+from reports.grid.cells import Cell, mechanism_of
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Loss
 from reports.grid.pool import run_cells
@@ -102,6 +104,32 @@ class Judging:
                 self.found[item.scene] = result
 
 
+@dataclass(frozen=True)
+class Soft:
+    """What the judge is asked of a scene with a case's own softness."""
+
+    scene: Scene
+    softness: Softness
+
+    @property
+    def label(self) -> str:
+        return f"the judge on {self.scene.name}, as soft as a method"
+
+
+def _run(item: Soft) -> Mapping[str, float]:
+    return errors_as_soft(item.scene, item.softness)
+
+
+def _as_soft(asked: Iterable[Soft], workers: int) -> Mapping[Soft, Mapping[str, float]]:
+    """The judge's errors, in as many processes; many bodies, which take longest, begin first."""
+    items = sorted(set(asked), key=lambda item: -len(mechanism_of(item.scene).bodies))
+    told = {item: result for item, result, _ in supervise(_run, items, JUDGE_LIMIT, workers)}
+    for item, result in told.items():
+        if isinstance(result, Loss):
+            raise RuntimeError(f"{item.label}: {result.sentence}")
+    return told
+
+
 def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None) -> dict[Case, Verdict]:
     """Run what these cases need, in as many processes as there are processors, and check it.
 
@@ -119,9 +147,16 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
         if baseline.same_versions and (key := identity(rows[cell])) in old and moved(rows[cell], old[key])
     ]
     nudged = _measured((other for cell in doubtful for other in nudged_cells(cell)), workers)
+    finished = {case: tuple(rows[cell] for cell in own) for case, own in cells.items()}
+    own_soft = {
+        case: Soft(case.scene, softness)
+        for case, own in finished.items()
+        if (softness := own_softness(case, own, judging.found[case.scene])) is not None
+    }
+    soft = _as_soft(own_soft.values(), workers)
     out: dict[Case, Verdict] = {}
     for case, own in cells.items():
-        measured = tuple(rows[cell] for cell in own)
+        measured = finished[case]
         changed: list[Check] = []
         for cell, row in zip(own, measured, strict=True):
             before = old.get(identity(row))
@@ -131,7 +166,8 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
             elif before is not None:
                 changed += drift(row, before)
         new = sum(identity(row) not in old for row in measured)
-        out[case] = Verdict(case, measured, checks(case, measured, judging.found[case.scene]), tuple(changed), new)
+        told = checks(case, measured, judging.found[case.scene], soft.get(own_soft[case]) if case in own_soft else None)
+        out[case] = Verdict(case, measured, told, tuple(changed), new)
     return out
 
 
