@@ -80,7 +80,7 @@ def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_the_smallest_st
     assert stays(found["mujoco default"])
     assert max(row.angle for row in found["mujoco extended"]) < 1e-6
     assert not falls(found["mujoco extended"], 1.0)
-    assert outcomes(found["pymunk extended"]) == [Outcome.UNRESOLVED, Outcome.SATURATED, Outcome.SATURATED]
+    assert max(row.angle for row in found["pymunk extended"]) < 1e-10
     assert all(row.estimate > row.angle for row in found["pymunk extended"])
 
 
@@ -98,7 +98,7 @@ def test_sweeps_on_a_heavy_tip() -> None:
     found = methods(pendulum_failures.FAILURES, "A light chain with a heavy tip")
     closing = found["pymunk 10 sweeps, all of the gap"]
     assert all(row.angle > shipped.angle for row, shipped in zip(closing, found["pymunk default"], strict=True))
-    assert outcomes(found["pymunk extended"])[:2] == [Outcome.UNRESOLVED] * 2
+    assert outcomes(found["pymunk extended"]) == [Outcome.UNRESOLVED, Outcome.FINISHED, Outcome.FINISHED]
     for name in ("pymunk default", "pymunk tuned", "pymunk 10 sweeps, all of the gap"):
         assert comparable(found[name]) == [False, True, True]
     assert comparable(found["pymunk 1000 sweeps, all of the gap"]) == [False, True, False]

@@ -98,6 +98,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                     f"--scheduler is {scheduler!r}: no Dask scheduler answers there within {ANSWERS_WITHIN:g} s "
                     f"({said}); start one with: dask scheduler"
                 ) from None
+        foreman.admit()
         stack.callback(foreman.dismiss)  # those of workers in this process
         yield Cluster(client, scheduler, inside=bool(local))
 

@@ -25,6 +25,8 @@ from reports.grid.supervisor import Crew, Watch, crew
 
 _own = threading.local()  # a worker with several threads runs as many chunks at a time
 _all: set[Foreman | Inside] = set()
+_door = threading.Lock()  # held while somebody comes into `_all`, or finds that nobody may any more
+_admitted = False  # whether foremen inside this process may begin
 
 
 @dataclass(frozen=True)
@@ -109,18 +111,25 @@ class Inside:
     """
 
     def __init__(self, request: Request) -> None:
+        """Raises EOFError once they are dismissed: a thread may have begun with what nobody waits for."""
         self.terms = request.terms
         self._stack = ExitStack()
-        self._crew = self._stack.enter_context(crew(request.limit, 1, request.wall))
+        self._crew: Crew | None = None
         self._at_work = threading.Lock()
         self._ended = False
-        _all.add(self)
+        with _door:
+            self._ended = not _admitted
+            self._watch([])
+            _all.add(self)
 
     def answered(self, data: bytes) -> bytes:
         """The pickled reply to a pickled request. Raises EOFError if it is ended meanwhile."""
         with self._at_work:
             self._watch([])
-            return pickle.dumps(reply(self._crew, pickle.loads(data), self._watch))
+            request: Request = pickle.loads(data)
+            if self._crew is None:
+                self._crew = self._stack.enter_context(crew(request.limit, 1, request.wall))
+            return pickle.dumps(reply(self._crew, request, self._watch))
 
     def end(self) -> None:
         _all.discard(self)
@@ -180,8 +189,18 @@ def add_paths(paths: Sequence[str]) -> None:
     sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
 
 
+def admit() -> None:
+    """Foremen inside this process may begin, until `dismiss`."""
+    global _admitted
+    with _door:
+        _admitted = True
+
+
 def dismiss() -> None:
-    """End all foremen of this process, in whatever threads they were started."""
+    """End all foremen of this process, in whatever threads they were started; none inside it begins any more."""
+    global _admitted
+    with _door:
+        _admitted = False
     while _all:
         _all.pop().end()
 
