@@ -10,8 +10,9 @@ import pytest
 from pymunk._chipmunk_cffi import lib
 
 from engines.lagrange import loading
-from engines.pymunk import EXTENDED
+from engines.pymunk import EXTENDED, bare_loop
 from engines.pymunk.contraction import Sweeping, contraction_at, contractions
+from engines.pymunk.marching import Marching
 from engines.pymunk.methods import SETTLED, SKATE_GROOVE_EXTRAPOLATED
 from engines.pymunk.projection import Projection
 from engines.pymunk.running import record
@@ -159,3 +160,18 @@ def test_a_blade_that_is_aimed_closes_no_gap_and_so_adds_no_noise():
     right = scene.motion(run.t)
     assert np.abs(run.reaction - right.reaction).max() < 1e-8
     assert np.abs(run.twist - right.twist).max() < 1e-11
+
+
+@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+def test_the_bare_loop_takes_the_steps_of_a_run_in_compiled_code_too(monkeypatch):
+    taken: list[int] = []
+    march = Marching.march
+
+    def counted(self, dt, samples, every, values):
+        taken.append(samples * every)
+        march(self, dt, samples, every, values)
+        assert np.isfinite(values[-6 * 10 :]).all()  # the state after the last step, of ten links
+
+    monkeypatch.setattr(Marching, "march", counted)
+    assert bare_loop(EXTENDED, TenLinks().mechanism(), 1e-3, 7) > 0
+    assert taken == [7 * level for level in EXTENDED.pins.levels]
