@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,7 +26,6 @@ from reference.numerics.collocation import Extended, Rule, legendre, rule_of
 from reference.numerics.integration import COARSER, IntegrationFailed, Rates
 
 Array = NDArray[np.float64]
-Motion = Callable[[ArrayLike], Array]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
 
 STAGES = 24
@@ -44,6 +43,16 @@ MOST_WINDOWS = 20_000  # a motion that needs more is creeping up to a singularit
 # cheaper, a tenth of a second lost.
 FEW_WINDOWS = 200
 COARSE_STAGES = 16  # of the rule that shows the error of the other
+
+
+class Motion(Protocol):
+    """A motion in steps: call it with times (times,) [s] for states (times, states) in double."""
+
+    @property
+    def times(self) -> Array:
+        """The ends of the steps (steps + 1,) [s]."""
+
+    def __call__(self, t: ArrayLike, /) -> Array: ...
 
 
 @dataclass(frozen=True)
@@ -135,6 +144,11 @@ class InDouble:
     """Windows whose states are rounded to double."""
 
     windows: Windows
+
+    @property
+    def times(self) -> Array:
+        """The ends of the windows (windows + 1,) [s]."""
+        return self.windows.times
 
     def __call__(self, t: ArrayLike) -> Array:
         return self.windows(t).astype(float)

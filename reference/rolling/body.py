@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from reference.curves.curve import Array, Vector
 from reference.numerics import windows
+from reference.numerics.events import first_below, root
 from reference.numerics.integration import IntegrationFailed, units_of_motion
+from reference.plane import rotation_acceleration
+from reference.rolling.contact import Contact
 from reference.rolling.kinematics import Rolling
 from reference.validation import InvalidMechanism, Positive, Valid, sample_times, validated
 
 GRAVITY = 9.81
-# N and friction are looked at this often for a change of sign, in radians at the start's fastest rate, and the instant
-# is then found to rounding. Not in seconds: a clock of another unit must not make it a billion looks, or none.
-WATCH = 8e-3
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-15, rtol=np.float64(1e-14)))  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -53,13 +48,15 @@ class RollingBody(Valid):
     @validated
     def angular_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
         """theta'' (...) [rad/s^2] at rotations [rad] and rates [rad/s] (...)."""
-        contact = self.rolling.contact(theta)
+        return self._angular_acceleration(self.rolling.contact(theta), np.asarray(rate))
+
+    def _angular_acceleration(self, contact: Contact, rate: Array) -> Array:
         arm = contact.arm
         inertia = self.inertia + self.mass * np.sum(arm**2, axis=-1)
         # M'/2 = m r r', and r r' = -s' r . e_t: turning keeps r, only the advance of the contact changes it.
         half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
-        return (pull - half_slope * np.asarray(rate) ** 2) / inertia
+        return (pull - half_slope * rate**2) / inertia
 
     @validated
     def energy(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -126,12 +123,19 @@ class RollingBody(Valid):
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
         """T along e_t and N along e_n (times,) [N], on the body at the contact."""
+        tangent, normal, _ = self._forces(t)
+        return tangent, normal
+
+    def _forces(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """`forces`, and the sum of the sizes of the terms of which they are made (times,) [N]."""
         theta, rate = self.states(t)
         contact = self.rolling.contact(theta)
-        force = self.mass * (
-            self.rolling.acceleration(theta, rate, self.angular_acceleration(theta, rate)) - np.asarray(self.gravity)
-        )
-        return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1)
+        turning = self._angular_acceleration(contact, rate)
+        centre = rotation_acceleration(rate, turning, contact.arm) + (rate**2 * contact.rate)[:, None] * contact.normal
+        force = self.mass * (centre - np.asarray(self.gravity))
+        arm, advance = np.linalg.norm(contact.arm, axis=-1), np.abs(contact.rate)
+        size = self.mass * (np.abs(turning) * arm + rate**2 * (arm + advance) + math.hypot(*self.gravity))
+        return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1), size
 
     def required_friction(self, t: ArrayLike) -> Array:
         """|T| / N (times,): the friction coefficient that rolling needs; infinite where the contact must pull."""
@@ -142,28 +146,52 @@ class RollingBody(Valid):
     @validated
     def hop(self, until: Positive) -> float | None:
         """The first instant [s] before `until` at which the contact would have to pull (N = 0), or None."""
-        return self._first(lambda t: self.forces(t)[1], until)
+        return self._first(((0.0, 1.0),), until)
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
         """The first instant [s] before `until` at which |T| exceeds friction N, or None; at a hop at the latest."""
+        return self._first(((-1.0, friction), (1.0, friction)), until)
 
-        def spare(t: ArrayLike) -> Array:
-            tangent, normal = self.forces(t)
-            return friction * normal - np.abs(tangent)
+    def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:
+        """The first instant at which one of some sums of parts of T and of N falls below zero.
 
-        return self._first(spare, until)
+        The motion is followed piece by piece, each as long as all before it: a body that parts soon is not followed
+        until a late `until`. Forces follow from the angle by energy: a body that has turned back twice, or once round
+        on level ground, has shown all of them.
+        """
 
-    def _first(self, spare: Callable[[ArrayLike], Array], until: float) -> float | None:
-        pull = abs(float(self.angular_acceleration(*self.start)))
-        fastest = max(abs(self.start_rate), math.sqrt(pull))  # rad/s; where it rests there is nothing to look for
-        times = np.linspace(0.0, until, max(2, math.ceil(until * fastest / WATCH)) + 1)
-        below = np.flatnonzero(spare(times) < 0)
-        if below.size == 0:
-            return None
-        if below[0] == 0:
-            return 0.0
-        return _root(lambda t: float(spare(t)[0]), float(times[below[0] - 1]), float(times[below[0]]))
+        def spare(t: Array) -> tuple[Array, Array]:
+            tangent, normal, size = self._forces(t)
+            sums = np.stack([along * tangent + across * normal for along, across in parts])
+            return sums, size * max(abs(part) for each in parts for part in each)
+
+        seen, reach = 0.0, min(until, self._short)
+        while True:
+            self.states(reach)
+            motion = self._known[0][1]
+            found = first_below(spare, np.unique(np.clip(motion.times, seen, reach)))
+            if found is not None:
+                return found[0]
+            angle, rate = motion(motion.times).T
+            turned_back = int(np.count_nonzero(rate[1:] * rate[:-1] < 0)) + (rate[0] == 0)
+            if reach >= until or turned_back > 1 or (self._level and np.ptp(angle) >= 2 * math.pi):
+                return None
+            seen, reach = reach, min(until, 2 * reach)
+
+    @property
+    def _level(self) -> bool:
+        ground = self.rolling.ground
+        along = np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent
+        return ground.curvature_range == (0.0, 0.0) and along == 0
+
+    @property
+    def _short(self) -> float:
+        """A time in which the start changes little [s]: of its rate, its acceleration, and a fall from a balance."""
+        theta, rate = self.start
+        mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
+        falling = math.sqrt(abs(float(self.stiffness(theta))) / mass)
+        return 1 / (max(abs(rate), math.sqrt(abs(float(self.angular_acceleration(theta, rate)))), falling) or 1.0)
 
     @validated
     def equilibrium(self, near: float, within: Positive = 0.5) -> float:
@@ -178,7 +206,7 @@ class RollingBody(Valid):
                 f"rolling body: gravity doesn't change its sense between {low:.6g} and {high:.6g} rad, so it "
                 "can't rest there"
             )
-        return _root(pull, low, high)
+        return root(pull, low, high)
 
     @validated
     def stiffness(self, theta: ArrayLike) -> Array:
