@@ -20,6 +20,7 @@ from reference.body import Body
 from reference.forces import ForceElement
 from reference.joint_rows import JointRows
 from reference.joints import Joint, Vector
+from reference.kept import kept
 from reference.kinds import Floats
 from reference.memory import require_room
 from reference.row_system import rank, reactions
@@ -72,7 +73,7 @@ class Mechanism(Valid):
     def _index(self) -> dict[str | None, int]:
         return {**{body.name: index for index, body in enumerate(self.bodies)}, None: len(self.bodies)}
 
-    @cached_property
+    @kept
     def joint_rows(self) -> JointRows:
         """The joints, ready to be evaluated; unchecked, for loops that ask at every step."""
         return JointRows.of(self.joints, self._index)
@@ -93,7 +94,7 @@ class Mechanism(Valid):
         """One name a row, 'B x' for the x row of joint B; reactions stand in this order."""
         return tuple(f"{joint.name} {label}" for joint in self.joints for label in joint.labels)
 
-    @cached_property
+    @kept
     def turning(self) -> NDArray[np.bool_]:
         """Which rows are rotations [rad, rad/s, N m] and not lengths [m, m/s, N] (rows,)."""
         return np.array([label == "torque" for joint in self.joints for label in joint.labels], dtype=bool)
@@ -102,27 +103,27 @@ class Mechanism(Valid):
     def row_count(self) -> int:
         return sum(joint.size for joint in self.joints)
 
-    @cached_property
+    @kept
     def pose(self) -> NDArray[np.float64]:
         """Poses at t = 0 (bodies, 3) [m, m, rad]."""
         return np.array([body.pose for body in self.bodies], dtype=float)
 
-    @cached_property
+    @kept
     def twist(self) -> NDArray[np.float64]:
         """Twists at t = 0 (bodies, 3) [m/s, m/s, rad/s]."""
         return np.array([body.twist for body in self.bodies], dtype=float)
 
-    @cached_property
+    @kept
     def inertias(self) -> NDArray[np.float64]:
         """The diagonal of the mass matrix (bodies, 3) [kg, kg, kg m^2]."""
         return np.array([(body.mass, body.mass, body.inertia) for body in self.bodies], dtype=float)
 
-    @cached_property
+    @kept
     def free_fall(self) -> NDArray[np.float64]:
         """Accelerations by gravity alone (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
         return np.array([(*self.gravity, 0.0)] * len(self.bodies), dtype=float)
 
-    @cached_property
+    @kept
     def applied(self) -> AppliedForces:
         """The force elements, ready to be evaluated; unchecked, for loops that ask at every step."""
         return AppliedForces.of(self.forces, self._index)
@@ -140,12 +141,12 @@ class Mechanism(Valid):
         fallen = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return fallen + self.applied.potential(pose) if self.forces else fallen
 
-    @cached_property
+    @kept
     def rate(self) -> NDArray[np.float64]:
         """The prescribed right-hand side of J v = rate (rows,), zero but for drives."""
         return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
 
-    @cached_property
+    @kept
     def holonomic(self) -> NDArray[np.bool_]:
         """Which rows are derivatives of a position (rows,)."""
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)

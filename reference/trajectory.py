@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ class Trajectory(Valid):
     The truth and every engine give one of these, the first sample at t = 0. An engine also says what it cost
     (`stepping`), what it warned of, whether it reset itself, and its own estimate of its error if its method has one.
     """
+
+    _copies: ClassVar[bool] = False  # nothing is kept that follows from its arrays, and they may be large
 
     t: Annotated[Array, of_shape("times")]  # (times,) s
     pose: Annotated[Numbers, of_shape("times", "bodies", 3)]  # (times, bodies, 3) m, m, rad; angles not wrapped

@@ -14,11 +14,12 @@ import typing
 from collections.abc import Callable
 from dataclasses import fields
 from functools import wraps
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.kept import fixed
 from reference.kinds import COMPLEX, NOT_FINITE, NOT_TAKEN, Floats, Kind, Rule, from_to, kind_of
 
 MOST_LETTERS = 80  # of a value in a message
@@ -73,8 +74,11 @@ def _plan(cls: type) -> tuple[tuple[str, Callable[[Any], Any], Kind], ...]:
 class Valid:
     """The base of a frozen dataclass whose fields are checked: what more a class has to check follows this.
 
-    A class with a `__post_init__` of its own begins it with `super().__post_init__()`.
+    A class with a `__post_init__` of its own begins it with `super().__post_init__()`. An array becomes a copy that
+    can't be written, since what is worked out from it is kept.
     """
+
+    _copies: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         cls = type(self)
@@ -87,6 +91,8 @@ class Valid:
             taken = take(value)
             if taken is NOT_TAKEN:
                 raise refusal(self._owner(), name, value, kind.words)
+            if cls._copies and isinstance(taken, np.ndarray) and taken.flags.writeable:
+                taken = fixed(taken.copy())
             if taken is not value:
                 own[name] = taken
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.curves.curve import Array, Curve, along
+from reference.kept import kept
 from reference.numerics.monotone import solve_increasing
 from reference.validation import InvalidMechanism, Positive
 
@@ -42,7 +43,7 @@ class Cam(Curve):
                 "radius + sum (1 - k^2) c_k stays positive"
             )
 
-    @cached_property
+    @kept
     def _harmonics(self) -> tuple[Array, Array, Array]:
         count = max(len(self.cosines), len(self.sines))
         cosines, sines = np.zeros(count), np.zeros(count)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipeinc, elliprd, elliprf
 
 from reference.curves.curve import Array, Curve, Vector, along
+from reference.kept import kept
 from reference.numerics.monotone import solve_increasing
 from reference.validation import InvalidMechanism, Positive
 
@@ -85,7 +86,7 @@ class Ellipse(Curve):
         root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
         return root + half_turns * math.pi
 
-    @cached_property
+    @kept
     def _half_turn(self) -> tuple[Array, Array, Array]:
         """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for guesses."""
         u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)

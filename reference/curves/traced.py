@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
 from reference.curves.curve import Array, Curve, along, within
+from reference.kept import kept
 from reference.kinds import of_shape
 from reference.numerics.monotone import solve_increasing
 from reference.validation import InvalidMechanism
@@ -77,7 +78,7 @@ class Traced(Curve):
     def _tangents(self, p: Array) -> Array:
         return self._splines[1](p)
 
-    @cached_property
+    @kept
     def _knots(self) -> tuple[Array, Array]:
         """Arcs and unwrapped tangent angles at the points."""
         start, width = self.parameters[:-1, None], np.diff(self.parameters)[:, None]

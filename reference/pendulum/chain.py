@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
+from reference.kept import kept
 from reference.memory import require_room
 from reference.numerics import windows
 from reference.numerics.integration import error_of, integrate, units_of_motion
@@ -54,15 +55,15 @@ class Chain(Valid):
     def links(self) -> int:
         return len(self.lengths)
 
-    @cached_property
+    @kept
     def _length(self) -> Array:
         return np.array(self.lengths, dtype=float)
 
-    @cached_property
+    @kept
     def _mass(self) -> Array:
         return np.array(self.masses, dtype=float)
 
-    @cached_property
+    @kept
     def inertia(self) -> Array:
         """About the centres of mass (links,) [kg m^2]."""
         return self._mass * self._length**2 / 12
@@ -132,7 +133,7 @@ class Chain(Valid):
         angles, rates = state[:, : self.links], state[:, self.links :]
         return angles, rates, self._accelerations(angles, rates).astype(float)
 
-    @cached_property
+    @kept
     def inertia_matrix(self) -> Array:
         """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
 
@@ -146,7 +147,7 @@ class Chain(Valid):
         np.fill_diagonal(matrix, self._length**2 * (self._mass / 3 + below))
         return matrix
 
-    @cached_property
+    @kept
     def stiffness(self) -> Array:
         """The weights K_i of the potential energy -sum K_i cos(angle_i) (links,) [N m]."""
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])

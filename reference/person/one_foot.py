@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Joint, Pin
+from reference.kept import kept
 from reference.mechanism import Body, Mechanism
 from reference.numerics import windows
 from reference.numerics.integration import units_of_motion
@@ -75,24 +76,24 @@ class OneFoot(Scene):
             self.right_shank + down,
         )
 
-    @cached_property
+    @kept
     def lengths(self) -> Array:
         """(5,) [m]."""
         return np.array([segment.length * self.height for segment in self.segments])
 
-    @cached_property
+    @kept
     def _behind(self) -> Array:
         """(5,) [m] from each body's joint nearer to the left ankle to its centre of mass, along its x axis."""
         centres = np.array([segment.centre for segment in self.segments])
         centres[:2] = 1 - centres[:2]  # the left leg is walked upwards, from its lower ends
         return centres * self.lengths
 
-    @cached_property
+    @kept
     def masses(self) -> Array:
         """(5,) [kg]."""
         return np.array([segment.mass * self.mass for segment in self.segments])
 
-    @cached_property
+    @kept
     def inertias(self) -> Array:
         """(5,) [kg m^2] about the centres of mass."""
         gyration = np.array([segment.gyration for segment in self.segments]) * self.lengths

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.curves.curve import Array, Vector
+from reference.kept import kept
 from reference.numerics import windows
 from reference.numerics.events import first_below, root
 from reference.numerics.integration import IntegrationFailed, units_of_motion
@@ -96,9 +97,11 @@ class RollingBody(Valid):
                 self.rolling.contact(self._beyond[0])
             raise
 
-    @cached_property
+    @kept
     def _units(self) -> Array:
-        return units_of_motion(self._rates, self.start)
+        """Next to a balance, a start that hardly moves is known no better than its angle's rounding lets it fall."""
+        unknown = np.finfo(float).eps * max(0.0, self._leaving) / windows.TOLERANCE
+        return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
 
     @cached_property
     def _known(self) -> list[tuple[float, windows.Motion]]:
@@ -189,9 +192,16 @@ class RollingBody(Valid):
     def _short(self) -> float:
         """A time in which the start changes little [s]: of its rate, its acceleration, and a fall from a balance."""
         theta, rate = self.start
+        pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
+        return 1 / (max(abs(rate), pull, abs(self._leaving)) or 1.0)
+
+    @property
+    def _leaving(self) -> float:
+        """The rate [1/s] at which a body at rest at the start leaves a balance there; negative: at which it swings."""
+        theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
-        falling = math.sqrt(abs(float(self.stiffness(theta))) / mass)
-        return 1 / (max(abs(rate), math.sqrt(abs(float(self.angular_acceleration(theta, rate)))), falling) or 1.0)
+        stiffness = float(self.stiffness(theta))
+        return -math.copysign(math.sqrt(abs(stiffness) / mass), stiffness)
 
     @validated
     def equilibrium(self, near: float, within: Positive = 0.5) -> float:

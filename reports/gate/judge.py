@@ -20,6 +20,7 @@ from engines.lagrange.compiled_run import Machine
 from engines.lagrange.flat import SMALLEST
 from engines.lagrange.loading import installed
 from engines.lagrange.tableaus import Tableau
+from reference.kept import fixed
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
 from reference.scene import Scene
@@ -221,7 +222,7 @@ def in_numpy(
 @lru_cache(maxsize=1)
 def _truth(scene: Scene, instants: bytes) -> Trajectory:
     """The scene's motion at instants [s], as bytes: a dozen runs of a prediction are held against the same one."""
-    return scene.motion(np.frombuffer(instants))
+    return fixed(scene.motion(np.frombuffer(instants)))
 
 
 def errors(

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from engines import Unsupported
+from reference.kept import fixed
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.scene import Scene
@@ -122,7 +123,7 @@ def _truth(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
 
 @lru_cache(maxsize=128)
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
-    return kept_motion(scene, np.frombuffer(instants), name, folder)
+    return fixed(kept_motion(scene, np.frombuffer(instants), name, folder))
 
 
 @lru_cache(maxsize=128)

@@ -12,6 +12,7 @@ import numpy as np
 from engines.registry import VARIANTS
 from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
 from reference.four_bar.scenes import DrivenFourBar
+from reference.kept import fixed
 from reference.trajectory import Trajectory
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
@@ -39,7 +40,7 @@ def times(count: int) -> np.ndarray:
 @cache
 def exact() -> tuple[Trajectory, Centrodes]:
     """The motion over the arc and both curves of the coupler."""
-    truth = DrivenFourBar().motion(times(SAMPLES))
+    truth = fixed(DrivenFourBar().motion(times(SAMPLES)))
     return truth, centrodes(truth.t, truth.pose[:, COUPLER], truth.twist[:, COUPLER])
 
 
