@@ -80,13 +80,13 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
     """The motions, those that are not stored run by the pool first."""
     from engines.registry import method
     from reports.cli.run import run_interruptible
-    from reports.grid.store import Store
+    from reports.cli.terminal import opened
     from reports.site.embed import shown
     from reports.site.lessons import take_like
 
     take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))
     motions = tuple(take.motions().values())
-    with Store(results / STORE) as store:
+    with opened(results / STORE) as store:
         run_interruptible(Terminal(140), store, motions, fresh=False, limit=60.0)
         return shown(take, dict(store.answers(motions)))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
@@ -51,8 +50,7 @@ def run(
     from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
-    from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
+    from reports.cli.terminal import Terminal, opened
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
@@ -63,9 +61,7 @@ def run(
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     console = Terminal(140)
-    with elsewhere(scheduler) as crew, Store(results / STORE) as store:
-        if store.notice:
-            print(f"crosscheck: {store.notice}", file=sys.stderr)
+    with elsewhere(scheduler) as crew, opened(results / STORE) as store:
         store.remember(each.text() for each in known.given)
         count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
         print_summary(console, list(store.get(cells).values()))
