@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
-import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -17,6 +16,7 @@ from reports.grid.files import folder_for
 from reports.grid.measure import Measurement
 from reports.grid.stored_text import answer_of, row_of, text_of_answer, text_of_row
 from reports.grid.tasks import Answer, Task
+from reports.grid.temporary import temporary_folder
 
 # The file's `user_version`; 0 in a new one and in those of the first versions. Up to 1 nothing was remembered.
 SCHEMA = 2
@@ -52,8 +52,9 @@ class Store:
     A context manager. What is put outlives this program, however it ends, when `put` returns; should the machine itself
     stop at once, the last of it may be missing, and runs again.
 
-    A damaged file is put aside, with what lies beside it, and a new one begun; `notice` says so (empty otherwise). A row
-    whose text alone is damaged is missing, and the others are there. `copied`: the file that is read, which is a copy of `path` in a store that is only read.
+    A damaged file is put aside, with what lies beside it, and a new one begun; `notice` says so (empty otherwise). Where
+    the text of a row alone is damaged, that row is missing. `copied`: the file that is read, which is a copy of `path` in
+    a store that is only read.
     Raises FileTrouble, here and in every method, where the file can't be used.
     """
 
@@ -76,8 +77,8 @@ class Store:
 
         Raises FileTrouble where there is none or it can't be read.
         """
-        with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
-            copy = Path(folder) / "copy.sqlite"
+        with temporary_folder() as folder:
+            copy = folder / "copy.sqlite"
             store = cls.__new__(cls)
             store.path, store.notice, store.copied = path, "", copy
             with _sentences(path):
