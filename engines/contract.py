@@ -35,7 +35,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, Protocol, runtime_checkable
+from typing import Any, Literal, Protocol, runtime_checkable
+
+import numpy as np
 
 from reference.joints import Joint
 from reference.mechanism import Mechanism
@@ -164,3 +166,48 @@ def holder_within(engine: Engine, joint: Joint, mechanism: Mechanism, duration: 
     if isinstance(engine, HoldingWithin):
         return engine.holder_within(joint, mechanism, duration)
     return engine.holder(joint, mechanism)
+
+
+# Of a step: far below the half step by which a state can belong to another instant, far above what products round.
+OFF = 1e-6
+
+Flaw = tuple[str, str]  # what was found; what was expected
+
+
+def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
+    """What of a run's answer is no Trajectory of samples + 1 poses, twists and reactions; None if nothing is."""
+    if not isinstance(run, Trajectory):
+        return f"a {type(run).__name__}", "a Trajectory"
+    bodies, rows, count = len(mechanism.bodies), mechanism.row_count, samples + 1
+    motion = (count, bodies, 3)
+    for name, shape in (("t", (count,)), ("pose", motion), ("twist", motion), ("reaction", (count, rows))):
+        if (found := np.shape(getattr(run, name))) != shape:
+            return f"{name} of the shape {found}", f"{shape}"
+    for name, kind in (("warnings", tuple), ("reset_at", float), ("estimate", np.ndarray), ("unresolved_at", float)):
+        value = getattr(run, name)
+        if not isinstance(value, kind) and (value is not None or kind is tuple):
+            return f"{name} of the type {type(value).__name__}", "what Trajectory says"
+    return None
+
+
+def flaw_of_times(run: Trajectory, dt: float, samples: int, every: int) -> Flaw | None:
+    """How far a run's instants, of the right number, are from every `every` times dt [s] from 0 on; None if not."""
+    exact = np.arange(samples + 1) * (every * dt)
+    off = float(np.max(np.abs(run.t - exact)))
+    summed = (samples * every) ** 2 * np.finfo(float).eps  # what a sum of n steps rounds n times, of a step
+    if not off <= max(OFF, summed) * dt:
+        return f"an instant that is {off:.3g} s off with {every} steps a sample", f"multiples of {every * dt:g} s"
+    return None
+
+
+def flaw_of_stepping(run: Trajectory) -> Flaw | None:
+    """What a run tells as its CPU time, if it is no time; None if it may be one."""
+    if math.isfinite(run.stepping) and run.stepping >= 0:
+        return None
+    return f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"
+
+
+def flaw(run: Any, mechanism: Mechanism, dt: float, samples: int, every: int) -> str:
+    """What of a run's answer is not as sentences 4 and 5 ask, one sentence; empty if nothing is."""
+    found = flaw_of_shapes(run, mechanism, samples) or flaw_of_times(run, dt, samples, every) or flaw_of_stepping(run)
+    return f"its run gave {found[0]}; the contract of engines asks for {found[1]}" if found else ""

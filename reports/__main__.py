@@ -15,15 +15,15 @@ def main(arguments: list[str] | None = None) -> None:
     program = arguments is None
     status = 130
     try:
-        from contextlib import suppress
-
         from reports.cli.interruption import ending_at_once, from_now_on_ignored
 
         with ending_at_once():  # commands that have something to say of Ctrl-C keep it for themselves
             if program:
                 _open_streams()
-            with suppress(KeyboardInterrupt):
+            try:
                 status = _ended(sys.argv[1:] if arguments is None else arguments)
+            except KeyboardInterrupt as interruption:
+                status = getattr(interruption, "status", status)
             if program:
                 _leave_streams()
                 from_now_on_ignored()

@@ -206,7 +206,7 @@ def is_log(number: int) -> bool:
 def probe() -> list[str]:
     """What is not as it should be in the process of a worker."""
     wrong = []
-    if not Path.cwd().name.startswith("crosscheck-"):
+    if not Path.cwd().name.startswith(".crosscheck-"):
         wrong.append("folder")
     if sys.stdout.closed or not all(map(is_log, (1, 2))):
         wrong.append("streams")

@@ -109,7 +109,6 @@ def test_a_scene_of_a_lesson_is_drawn_as_there():
     ("words", "told"),
     [
         (["free_four_bar", "--to", "bmp"], "--to is 'bmp'; there are svg, gif, mp4"),
-        (["free_four_bar", "--every", "0"], "--every is 0; give a whole number from 1 on"),
         (["free_four_bar", "--engines", "pymunk defautl"], "did you mean 'pymunk default'"),
         (["four_bar"], "'four_bar' names 3 scenes; give one of"),
     ],

@@ -46,6 +46,38 @@ def test_each_outcome_has_its_bound_and_its_number(trajectory, outcome, telling)
     assert found[1] == telling if not telling else telling in found[1]
 
 
+def cut(count):
+    exact = disc()
+    return Trajectory(exact.t[:count], exact.pose[:count], exact.twist[:count], exact.reaction[:count], 0.0)
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "found", "expected"),
+    [
+        (None, "a NoneType", "a Trajectory"),
+        (cut(0), "t of the shape (0,)", "(21,)"),
+        (cut(1), "t of the shape (1,)", "(21,)"),
+        (cut(18), "t of the shape (18,)", "(21,)"),
+        (disc(t=TIMES + 1000.0), "an instant that is 1e+03 s off", "multiples of 0.01 s"),
+        (disc(t=-TIMES), "an instant that is 0.4 s off", "multiples of 0.01 s"),
+        (disc(t=TIMES + 0.005), "an instant that is 0.005 s off", "multiples of 0.01 s"),
+        (disc(pose=np.zeros((21, 2, 3)), twist=np.zeros((21, 2, 3))), "pose of the shape (21, 2, 3)", "(21, 1, 3)"),
+        (disc(reaction=np.zeros((21, 3))), "reaction of the shape (21, 3)", "(21, 2)"),
+        (disc(stepping=-1.0), "stepping = -1.0 s", "CPU seconds from 0 on"),
+        (disc(stepping=math.nan), "stepping = nan s", "CPU seconds from 0 on"),
+    ],
+)
+def test_what_is_no_motion_at_the_instants_asked_for_has_no_errors_and_a_sentence(trajectory, found, expected):
+    row = measure(Cell(DISC, Given(trajectory), 1), repeat=False)
+    assert (row.outcome, row.sentence) == (
+        "failed",
+        f"its run gave {found}{' with 1 steps a sample' * ('instant' in found)}; the contract of engines asks for "
+        f"{expected}",
+    )
+    assert math.isnan(row.angle)
+    assert math.isnan(row.cpu)
+
+
 def test_beyond_the_horizon_a_wrong_angle_is_told_and_is_no_failure():
     scene = Disc(horizon=0.1)
     outcome, sentence = outcome_of(shifted(2, 0.75, 15), scene)
@@ -55,12 +87,12 @@ def test_beyond_the_horizon_a_wrong_angle_is_told_and_is_no_failure():
 def test_a_drive_that_falls_behind_is_torn():
     t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
     for lag, outcome in ((1.01 * SATURATED, "torn"), (0.99 * SATURATED, "finished")):
-        late = SCENE.motion(t)
+        late = replace(SCENE.motion(t), stepping=0.0)
         late.pose[:, 0, 2] -= lag * t / t[-1]
         found = measure(Cell(Pair(horizon=0.01), Given(late), 1), repeat=False)
         assert found.outcome == outcome
         assert found.drive_gap == pytest.approx(lag)
-    late = SCENE.motion(t)
+    late = replace(SCENE.motion(t), stepping=0.0)
     late.pose[:, 0, 2] -= t / t[-1]
     found = measure(Cell(SCENE, Given(late), 1), repeat=False)
     assert (found.outcome, found.sentence) == ("torn", "the drive fell behind by 1 rad")

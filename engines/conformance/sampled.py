@@ -11,10 +11,10 @@ import numpy as np
 from engines import Size
 from engines.conformance.check import SAMPLES, STEP, Check, Fails, Subject, finite, stepped
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
-from reference.trajectory import Trajectory
+from engines.contract import flaw_of_shapes, flaw_of_stepping, flaw_of_times
 
 # Of a coordinate's size: what placing a body, and taking its place back from the engine's own coordinates, may take.
-ROUNDING = 1e-12
+PLACING = 1e-12
 GRAIN = 1e-4  # s, of another clock of CPU time than ours
 SELDOM = (2, 3)  # samples, and steps between them
 # The same steps are taken, so rounding is all that may differ; extrapolation weighs it with up to a hundred.
@@ -27,31 +27,8 @@ def _largest(values: np.ndarray) -> float:
 
 def has_the_right_shapes(subject: Subject, world: World) -> None:
     """A run gives a Trajectory of samples + 1 poses, twists and reactions, in the order of bodies and rows."""
-    run = subject.run(world.mechanism)
-    if not isinstance(run, Trajectory):
-        raise Fails(f"a {type(run).__name__}", "a Trajectory", "the run gives the engine's own arrays")
-    bodies, rows = len(world.mechanism.bodies), world.mechanism.row_count
-    for name, shape in (
-        ("t", (SAMPLES + 1,)),
-        ("pose", (SAMPLES + 1, bodies, 3)),
-        ("twist", (SAMPLES + 1, bodies, 3)),
-        ("reaction", (SAMPLES + 1, rows)),
-    ):
-        found = np.shape(getattr(run, name))
-        if found != shape:
-            raise Fails(
-                f"{name} of the shape {found}", f"{shape}", "the first sample, the start, is left out or counted twice"
-            )
-    for name, value, kinds in (
-        ("warnings", run.warnings, tuple),
-        ("reset_at", run.reset_at, (float, type(None))),
-        ("estimate", run.estimate, (np.ndarray, type(None))),
-        ("unresolved_at", run.unresolved_at, (float, type(None))),
-    ):
-        if not isinstance(value, kinds):
-            raise Fails(
-                f"{name} of the type {type(value).__name__}", "what Trajectory says", "a field is filled by place"
-            )
+    if flaw := flaw_of_shapes(subject.run(world.mechanism), world.mechanism, SAMPLES):
+        raise Fails(*flaw, "the start is left out or counted twice, or a field is filled by place")
 
 
 def tells_the_size_of_its_model(subject: Subject, world: World) -> None:
@@ -69,24 +46,19 @@ def samples_at_the_right_times(subject: Subject, world: World) -> None:
     """Sample k stands at k times `every` times dt, beginning with t = 0."""
     for samples, every in ((SAMPLES, 1), SELDOM):
         run = subject.run(world.mechanism, STEP, samples, every)
-        late = _largest(run.t - np.arange(samples + 1) * every * STEP)
-        if not late <= ROUNDING:
-            raise Fails(
-                f"an instant that is {late:.3g} s off with {every} steps a sample",
-                f"multiples of {every * STEP:g} s",
-                "`every` is left out, or time is counted from the first step on",
-            )
+        if flaw := flaw_of_times(run, STEP, samples, every):
+            raise Fails(*flaw, "`every` is left out, or time is counted from the first step on")
 
 
 def tells_the_cpu_time_of_stepping(subject: Subject, world: World) -> None:
     """`stepping` is CPU time of this process: not below zero, and not more than it used during the run."""
     run = subject.build(world.mechanism)
     begin = time.process_time()
-    stepping = stepped(run, SAMPLES, 1).stepping
+    told = stepped(run, SAMPLES, 1)
     used = time.process_time() - begin
-    if not (math.isfinite(stepping) and 0 <= stepping <= used + GRAIN):
+    if flaw_of_stepping(told) or told.stepping > used + GRAIN:
         raise Fails(
-            f"stepping = {stepping!r} s",
+            f"stepping = {told.stepping!r} s",
             f"from 0 to the {used:.3g} s of CPU time that the whole call took",
             "the wall's clock is read, or milliseconds, or nothing",
         )
@@ -104,11 +76,11 @@ def first_twist_is_the_start(subject: Subject, world: World) -> None:
 
 def _starts(found: np.ndarray, start: np.ndarray, what: str) -> None:
     off = _largest(found - start)
-    if not off <= ROUNDING * (1 + _largest(start)):
+    if not off <= PLACING * (1 + _largest(start)):
         body, place = np.unravel_index(int(np.argmax(np.abs(found - start))), start.shape)
         raise Fails(
             f"a {what} that is {off:.3g} off in {('x', 'y', 'the angle')[place]} of body {body}",
-            f"the start to {ROUNDING:g} of its size",
+            f"the start to {PLACING:g} of its size",
             "the first sample is taken after the first step, or the engine's own frame is not the centre of mass",
         )
 

@@ -27,7 +27,7 @@ def animate(
         typer.Option(help="Methods by name, such as 'mujoco tuned,pymunk tuned'; those as shipped unless given."),
     ] = None,
     to: Annotated[str, typer.Option(help="svg (moves without a script), gif, or mp4 (needs ffmpeg).")] = "svg",
-    every: Annotated[int, typer.Option(help="Steps between samples.")] = 1,
+    every: Annotated[int, typer.Option(min=1, max=2**31 - 1, help="Steps between samples.")] = 1,
     output: Annotated[Path | None, typer.Option(help="The file; SCENE.svg, .gif or .mp4 unless given.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
     settings: Settings = None,
@@ -36,8 +36,6 @@ def animate(
     """Write a picture that moves: the exact motion, what engines make of it, and how their errors grow."""
     if to not in KINDS:
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
-    if every < 1:
-        raise BadInput(f"--every is {every}; give a whole number from 1 on")
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
     from reports.grid.files import folder_for
@@ -80,19 +78,20 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
     """The motions, those that are not stored run by the pool first."""
     from engines.registry import method
     from reports.cli.run import run_interruptible
-    from reports.grid.store import Store
+    from reports.cli.terminal import opened
     from reports.site.embed import shown
     from reports.site.lessons import take_like
 
     take = take_like(scene, tuple((method(engine), engine, every) for engine in engines))
     motions = tuple(take.motions().values())
-    with Store(results / STORE) as store:
+    with opened(results / STORE) as store:
         run_interruptible(Terminal(140), store, motions, fresh=False, limit=60.0)
         return shown(take, dict(store.answers(motions)))
 
 
 def _write(shown: Shown, kind: str, path: Path) -> None:
     from reports.grid.files import folder_for, write_whole
+    from reports.grid.temporary import temporary_folder
     from reports.site.animated import animation
     from reports.site.film import film
     from reports.text.tables import number
@@ -105,12 +104,9 @@ def _write(shown: Shown, kind: str, path: Path) -> None:
     if kind == "svg":
         write_whole({path: animation(shown, title)}, "give another --output")
         return
-    folder_for(path.absolute().parent, "give another --output")
-    aside = path.with_name(f".part-{path.stem}.{kind}")
     try:
-        film(shown, title, aside)
-        aside.replace(path)
+        with temporary_folder(folder_for(path.absolute().parent, "give another --output")) as aside:
+            film(shown, title, aside / path.name)
+            (aside / path.name).replace(path)
     except OSError as reason:
         raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): give another --output") from None
-    finally:
-        aside.unlink(missing_ok=True)

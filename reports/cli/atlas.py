@@ -45,8 +45,7 @@ def atlas(
     from engines.registry import VARIANTS
     from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.report import published, refuse_outside_a_checkout, write_files
-    from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
+    from reports.cli.terminal import Terminal, opened
     from reports.pages.atlas.column import Column
     from reports.pages.atlas.table import CELLS, COSTS, Costs, as_csv, costs_as_csv, read, read_costs
     from reports.text.provenance import machine, today, versions
@@ -64,7 +63,7 @@ def atlas(
     }
     terminal = Terminal(140)
     folder = results / ATLAS
-    with elsewhere(scheduler) as cluster, Store(folder / STORE) as store:
+    with elsewhere(scheduler) as cluster, opened(folder / STORE) as store:
         crew, begin = cluster or pool(workers), monotonic()
         run = run_columns(terminal, store, list(columns.values()), crew)
         wall = monotonic() - begin if run == len(columns) else 0.0

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -29,6 +27,7 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
     from reports.grid.expected import expected_seconds
     from reports.grid.pool import TIMED, worker_count
     from reports.grid.store import Store
+    from reports.grid.temporary import temporary_folder
     from reports.text.provenance import machine, versions
 
     parts = {"importing": time.process_time() - begin}
@@ -49,7 +48,7 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
         _ = item.key
     passed("fingerprints")
     terminal, account, crew = Terminal(140), Account(), pool(workers)
-    with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder, Store(Path(folder) / "cells.sqlite") as store:
+    with temporary_folder() as folder, Store(folder / "cells.sqlite") as store:
         run_interruptible(terminal, store, items, False, 60.0, Pool(crew.threads, account.supervise))
         passed("supervising and storing")
     print_account(terminal, account, parts, len(items), crew.threads)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import sys
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic
@@ -53,6 +52,9 @@ def check(
             raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
     if step is not None and not 0 < step <= duration:
         raise BadInput(f"--step is {step:g}; it must be greater than zero and at most the duration, {duration:g}")
+    for name, path in (("html", html), ("markdown", markdown)):
+        if path is not None and (not path.name or path.is_dir()):
+            raise BadInput(f"--{name} is {str(path)!r}, which is a folder; give a file")
     from reports.check.request import Request
 
     pictures = html is not None or markdown is not None
@@ -71,9 +73,10 @@ def asked(request: Any, limit: float) -> Answer:
     from reports.check.request import Refused, answered
     from reports.grid.outcomes import Loss, Outcome
     from reports.grid.supervisor import supervise
+    from reports.grid.temporary import temporary_folder
 
-    with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
-        notes = Path(folder, "progress")
+    with temporary_folder() as folder:
+        notes = folder / "progress"
         tell = _Progress(notes)
         items = [replace(request, notes=str(notes))]
         try:

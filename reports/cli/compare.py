@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -57,6 +56,7 @@ def compare(
     from reports.cli.selection import nearest
     from reports.cli.terminal import Terminal
     from reports.cli.versions import named_scenes
+    from reports.grid.temporary import temporary_folder
     from reports.versions.comparison import compared
 
     engines = (*VARIANTS, *OTHERS) if engine is None else _named(engine)
@@ -73,8 +73,8 @@ def compare(
     own = [each for each in own if not variant or each.variant in variant]
     chosen = named_scenes(scenes or list(SCENES))
     console = Terminal(WIDTH)
-    with kept() as check, tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
-        stores = [(results if side.kept else Path(folder) / str(index)) / STORE for index, side in enumerate(sides)]
+    with kept() as check, temporary_folder() as folder:
+        stores = [(results if side.kept else folder / str(index)) / STORE for index, side in enumerate(sides)]
         columns = [_column(side, engine, own, chosen, store, check) for side, store in zip(sides, stores, strict=True)]
     for side, column in zip(sides, columns, strict=True):
         if told := column.trouble or column.mark:

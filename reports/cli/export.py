@@ -64,6 +64,8 @@ def view(
                 return
         except Unsupported as reason:
             print(f"no viewer: {reason}")
+        except ValueError as reason:
+            raise BadInput(f"{chosen.name}: {reason}") from None
         out = Path(f"{chosen.name}.svg")
     from reports.site.animated import animation
     from reports.site.embed import shown

@@ -1,60 +1,77 @@
-"""Ctrl-C ends the program with status 130 and without a traceback, whatever it is doing."""
+"""Ctrl-C, SIGTERM and SIGHUP end the program without a traceback and leave no folder, whatever it is doing.
+
+Its status is then 128 and the signal's number, as a shell expects it: 130 after Ctrl-C.
+"""
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-from reports.grid.ending import INTERRUPTED
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class Interrupted(KeyboardInterrupt):
+    """By this signal."""
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__()
+        self.status = 128 + number
 
 
 @contextmanager
 def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
-    """Inside, Ctrl-C calls the handler. Where Ctrl-C is ignored (a job in the background) it stays ignored."""
-    before = signal.getsignal(signal.SIGINT)
-    if before is signal.SIG_IGN or threading.current_thread() is not threading.main_thread():
+    """Inside, the signals call the handler. One that is ignored (a job in the background, nohup) stays ignored."""
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
-    signal.signal(signal.SIGINT, handler)
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    ours = [number for number, old in before.items() if old not in (signal.SIG_IGN, None)]
+    for number in ours:
+        signal.signal(number, handler)
     try:
         yield
     finally:
-        if signal.getsignal(signal.SIGINT) is handler:
-            signal.signal(signal.SIGINT, before)
+        for number in ours:
+            if signal.getsignal(number) is handler:
+                signal.signal(number, before[number])
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    # An exception would not do: while compiled modules are imported it comes out as another one, or is lost.
-    os._exit(INTERRUPTED)
+    # An exception would not do: while compiled modules are imported it comes out as another one, or is lost. What is
+    # not imported, or not yet whole, has nothing to be taken away.
+    for module, name in (("reports.grid.worker_process", "stop_all"), ("reports.grid.temporary", "remove_all")):
+        getattr(sys.modules.get(module), name, lambda: None)()
+    os._exit(128 + number)
 
 
 def ending_at_once() -> Any:
-    """A context in which Ctrl-C ends the process where it stands; for work that leaves nothing half done."""
+    """A context in which a signal ends the process where it stands; for work that leaves nothing half done."""
     return _handled(_end)
 
 
 @contextmanager
 def kept() -> Iterator[Callable[[], None]]:
-    """Inside, Ctrl-C is kept until the function given is called, which then raises KeyboardInterrupt.
+    """Inside, a signal is kept until the function given is called, which then raises Interrupted.
 
-    So work is left only where it can be left. The second Ctrl-C does not wait: it raises at once.
+    So work is left only where it can be left. The second signal does not wait: it raises at once.
     """
-    pressed = False
+    pressed: list[int] = []
 
     def keep(number: int, frame: FrameType | None) -> None:
-        nonlocal pressed
-        if pressed:
-            raise KeyboardInterrupt
-        pressed = True
+        pressed.append(number)
+        if len(pressed) > 1:
+            raise Interrupted(number)
 
     def check() -> None:
         if pressed:
-            raise KeyboardInterrupt
+            raise Interrupted(pressed[0])
 
     with _handled(keep):
         yield check

@@ -26,6 +26,9 @@ Settings = Annotated[
     typer.Option("--set", metavar="NAME=VALUE", help="Another value for a number of the scene (repeatable)."),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Processes; as many as processors if not given.")]
+Every = Annotated[
+    list[int] | None, typer.Option(min=1, max=2**31 - 1, help="Only this many steps between samples (repeatable).")
+]
 Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", help="Run on a Dask cluster: tcp://HOST:PORT of its scheduler, or local:N workers."),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
@@ -14,6 +13,7 @@ from reports.cli.options import (
     FOLDER,
     STORE,
     EngineName,
+    Every,
     Folder,
     Scenes,
     Scheduler,
@@ -40,7 +40,7 @@ def run(
     settings: Settings = None,
     full: Annotated[bool, typer.Option("--full/--quick", help="Fine steps and stability maps too.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
-    every: Annotated[list[int] | None, typer.Option(help="Only this many steps between samples (repeatable).")] = None,
+    every: Every = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
     limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
     workers: Workers = None,
@@ -51,8 +51,7 @@ def run(
     from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
-    from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
+    from reports.cli.terminal import Terminal, opened
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
@@ -63,9 +62,7 @@ def run(
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     console = Terminal(140)
-    with elsewhere(scheduler) as crew, Store(results / STORE) as store:
-        if store.notice:
-            print(f"crosscheck: {store.notice}", file=sys.stderr)
+    with elsewhere(scheduler) as crew, opened(results / STORE) as store:
         store.remember(each.text() for each in known.given)
         count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
         print_summary(console, list(store.get(cells).values()))

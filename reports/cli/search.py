@@ -57,8 +57,7 @@ def search(
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
     from reports.cli.elsewhere import elsewhere, pool
-    from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
+    from reports.cli.terminal import Terminal, opened
     from reports.search.chunk import as_words, asked, chunks
     from reports.search.subjects import ORACLES
 
@@ -71,7 +70,7 @@ def search(
     pieces = chunks(subjects, seed, cases, wanted, decades, listed("--oracles", oracles, ORACLES))
     folder = results / SEARCH
     terminal = Terminal(150)
-    with elsewhere(scheduler) as crew, Store(folder / STORE) as store:
+    with elsewhere(scheduler) as crew, opened(folder / STORE) as store:
         store.remember(as_words(piece) for piece in pieces)
         run_pieces(terminal, store, pieces, seconds, crew or pool(workers))
         told = list(asked(stored(store, pieces)))

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from engines import Engine
 from reference.scene import Scene
+from reference.validation import LARGEST_COUNT
 from reports.grid.cells import FULL, QUICK, Cell, beside_cells, sweep_cells
 from reports.grid.ending import BadInput
 from reports.grid.expected import expected_seconds
@@ -77,6 +78,8 @@ def steps_per_sample(scene: Scene, step: float) -> int:
     if not (math.isfinite(step) and step > 0):
         raise BadInput(f"step is {step!r} s; it must be a finite time greater than zero")
     ratio = scene.spacing / step
+    if not ratio <= LARGEST_COUNT:
+        raise BadInput(f"step is {step:g} s: {scene.name} would take {ratio:.3g} steps between two samples")
     every = max(1, round(ratio))
     # 1e-9: a step typed with ten digits or more is meant to divide.
     if abs(ratio - every) > 1e-9 * ratio:
@@ -126,9 +129,6 @@ def choose_cells(
     A quick run leaves out what would take long (`_quick`). `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
     """
-    for count in every:
-        if count < 1:
-            raise BadInput(f"--every is {count}; it must be a whole number greater than zero")
     if every or steps:
         chosen: dict[Cell, None] = {}
         for scene in scenes:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 KINDS = ("csv", "svg", "dxf")
 MOST_POINTS = 1_000_000  # far more than a workshop can cut, far less than memory can hold
+MOST_BYTES = 2**27  # of the table of poses, a hundred for each of a million
 # Of the shapes' size: above this the table is too coarse for what it describes, and the user must know.
 COARSE = 1e-3
 
@@ -92,7 +93,11 @@ def _one_line(reason: Exception) -> str:
 def _text(path: Path) -> str:
     """A file's text. Raises FileTrouble, saying why it can't be read."""
     try:
-        return path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise FileTrouble(f"{path} is longer than {MOST_BYTES} bytes: give fewer poses")
+        return data.decode("utf-8-sig")
     except OSError as reason:
         raise FileTrouble(f"{path} can't be read: {reason.strerror or reason}") from None
     except UnicodeDecodeError:

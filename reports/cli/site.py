@@ -83,11 +83,11 @@ def _contributing() -> str:
 def _answers(console: Terminal, results: Path) -> dict[Motion, Answer]:
     """The motions of the lessons; those that are not stored are run by the pool first."""
     from reports.cli.run import run_interruptible
-    from reports.grid.store import Store
+    from reports.cli.terminal import opened
     from reports.site.build import tasks
 
     wanted = tasks()
-    with Store(results / STORE) as store:
+    with opened(results / STORE) as store:
         run_interruptible(console, store, wanted, fresh=False, limit=60.0)
         found = store.answers(wanted)
     return {task: found[task] for task in wanted if task in found}

@@ -7,7 +7,6 @@ whether it can is one of the questions.
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -23,6 +22,7 @@ from reports.grid.ending import BadInput
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.pool import TIME_LIMIT
 from reports.grid.supervisor import supervise
+from reports.grid.temporary import temporary_folder
 
 MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
 
@@ -91,8 +91,8 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
 def _answers(named: Named, place: int, engine: Engine, limit: float) -> Iterator[tuple[Case, Result]]:
     every = tuple(cases(engine))
     names = [name for name, _ in groupby(case.check.name for case in every)]
-    with tempfile.TemporaryDirectory(prefix="crosscheck-") as notes:
-        questions = [Question(named, place, name, notes) for name in names]
+    with temporary_folder() as notes:
+        questions = [Question(named, place, name, str(notes)) for name in names]
         found: dict[str, list[tuple[Case, Result]]] = {}
         for question, results, earlier in supervise(ask, questions, limit, workers=1):
             own = _of_check(every, question.check)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.cells import cell_len
 from rich.console import Console
@@ -15,6 +16,9 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.grid.ending import FileTrouble
+
+if TYPE_CHECKING:
+    from reports.grid.store import Store
 
 PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 
@@ -50,6 +54,17 @@ def written() -> Iterator[None]:
         raise
     except OSError as reason:
         raise FileTrouble(f"the output can't be written: {reason.strerror or reason}") from None
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Store]:
+    """A store to be written; a line on stderr where the old one is put aside."""
+    from reports.grid.store import Store
+
+    with Store(path) as store:
+        if store.notice:
+            print(f"crosscheck: {store.notice}", file=sys.stderr)
+        yield store
 
 
 def print_table(console: Console, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:

@@ -29,6 +29,7 @@ from reports.grid.expected import expected_seconds
 from reports.grid.fingerprint import digest_of, modules_of, versions_of
 from reports.grid.outcomes import Loss, Outcome
 from reports.grid.supervisor import TICK, Answer, Watch, WorkersLost, wall_limit
+from reports.grid.temporary import temporary_folder
 from reports.grid.worker import describe
 from reports.grid.worker_process import interrupts_held
 
@@ -86,6 +87,7 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
                             n_workers=int(local[1]),
                             processes=False,  # cells have processes of their own (`foreman.Inside`)
                             threads_per_worker=1,
+                            local_directory=str(stack.enter_context(temporary_folder())),
                             dashboard_address="127.0.0.1:0",  # any free port, seen from this machine alone
                             memory_limit=None,  # cells have processes of their own, which it would not see
                             silence_logs=logging.CRITICAL,

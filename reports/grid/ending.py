@@ -12,7 +12,8 @@ UNREAD = 141  # what a shell shows of a program that writes into a pipe which no
 
 STATUSES = (
     f"Exit status: {FINE} fine; {BROKEN} something ran but is broken; {REFUSED} bad input or trouble with a file, and "
-    f"one line says what to do; {INTERRUPTED} Ctrl-C."
+    f"one line says what to do; {INTERRUPTED} Ctrl-C, "
+    "and 128 plus its number after SIGTERM or SIGHUP."
 )
 
 

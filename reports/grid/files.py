@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
 from reports.grid.ending import FileTrouble
+from reports.grid.temporary import temporary_folder
 
 
 def folder_for(path: Path, remedy: str) -> Path:
@@ -37,7 +37,7 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
                 if path.is_dir() and not path.is_symlink():
                     raise IsADirectoryError(None, "a folder has its name")
                 if folder not in asides:
-                    asides[folder] = Path(stack.enter_context(tempfile.TemporaryDirectory(".part", ".", folder)))
+                    asides[folder] = stack.enter_context(temporary_folder(folder))
                 complete[path] = asides[folder] / path.name
                 with complete[path].open("w", encoding="utf-8", newline="\n") as file:
                     file.write(text)

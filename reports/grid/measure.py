@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from engines import Unsupported
+from engines.contract import flaw
 from reference.kept import fixed
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
@@ -151,6 +152,8 @@ def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Meas
             return replace(row, outcome=Outcome.UNSUPPORTED, sentence=str(reason))
         except ValueError as reason:
             return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
+        if told := flaw(trajectory, mechanism, cell.step, cell.sample_count, cell.every):
+            return replace(row, outcome=Outcome.FAILED, sentence=told)
         with spending("comparing"):
             row = compare(cell, mechanism, trajectory, row, truths)
         if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:

@@ -61,7 +61,7 @@ MEANINGS = {
     Outcome.UNSUPPORTED: "the engine has no such constraint",
     Outcome.ABORTED: "native code ended the process",
     Outcome.TIMED_OUT: "did not end within its time limit",
-    Outcome.FAILED: "an unexpected exception",
+    Outcome.FAILED: "an unexpected exception, or an answer that is no motion at the instants asked for",
     Outcome.LOST: "its process was killed from outside, twice",
 }
 

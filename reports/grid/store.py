@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
-import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
@@ -17,6 +16,7 @@ from reports.grid.files import folder_for
 from reports.grid.measure import Measurement
 from reports.grid.stored_text import answer_of, row_of, text_of_answer, text_of_row
 from reports.grid.tasks import Answer, Task
+from reports.grid.temporary import temporary_folder
 
 # The file's `user_version`; 0 in a new one and in those of the first versions. Up to 1 nothing was remembered.
 SCHEMA = 2
@@ -35,7 +35,9 @@ REMEDIES = {
     sqlite3.SQLITE_CANTOPEN: "it must be a file that can be read and written; " + ELSEWHERE,
     sqlite3.SQLITE_PERM: "it must be a file that can be read and written; " + ELSEWHERE,
 }
-DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+# SQLITE_ERROR: what is asked of it is right, so that the file's own schema must be wrong.
+DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG)
+PUT_ASIDE = "crosscheck run puts it aside and begins anew"
 
 Keyed = TypeVar("Keyed", Cell, Task)
 
@@ -50,8 +52,9 @@ class Store:
     A context manager. What is put outlives this program, however it ends, when `put` returns; should the machine itself
     stop at once, the last of it may be missing, and runs again.
 
-    A damaged file is put aside, with what lies beside it, and its readable rows are taken over into a new one; `notice`
-    says so (empty otherwise). `copied`: the file that is read, which is a copy of `path` in a store that is only read.
+    A damaged file is put aside, with what lies beside it, and a new one begun; `notice` says so (empty otherwise). Where
+    the text of a row alone is damaged, that row is missing. `copied`: the file that is read, which is a copy of `path` in
+    a store that is only read.
     Raises FileTrouble, here and in every method, where the file can't be used.
     """
 
@@ -65,14 +68,7 @@ class Store:
             except Damaged as why:
                 aside = _put_aside(path)
                 self._connection = _connected(path)
-                rows, words = _readable(aside)
-                with self._connection:
-                    self._connection.executemany("insert or replace into results values (?, ?)", rows)
-                self.remember(words)
-                self.notice = (
-                    f"{path} is damaged ({why}): it is now {aside.name}, {len(rows)} of its rows could be read and are "
-                    "kept, the others run again"
-                )
+                self.notice = f"{path} is damaged ({why}): it is now {aside.name}, and all that it held runs again"
 
     @classmethod
     @contextmanager
@@ -81,8 +77,8 @@ class Store:
 
         Raises FileTrouble where there is none or it can't be read.
         """
-        with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
-            copy = Path(folder) / "copy.sqlite"
+        with temporary_folder() as folder:
+            copy = folder / "copy.sqlite"
             store = cls.__new__(cls)
             store.path, store.notice, store.copied = path, "", copy
             with _sentences(path):
@@ -92,7 +88,7 @@ class Store:
                 try:
                     store._connection = _connected(copy)
                 except Damaged as why:
-                    raise FileTrouble(f"{path} is damaged ({why}): crosscheck run puts it aside and goes on") from None
+                    raise FileTrouble(f"{path} is damaged ({why}): {PUT_ASIDE}") from None
             with store:
                 yield store
 
@@ -159,7 +155,7 @@ def _sentences(path: Path) -> Iterator[None]:
         code = getattr(error, "sqlite_errorcode", 0) & 0xFF
         remedy = REMEDIES.get(code, ELSEWHERE)
         if code in DAMAGE:
-            remedy = "crosscheck run puts it aside and goes on"
+            remedy = PUT_ASIDE
         raise FileTrouble(f"{path}: {error}: {remedy}") from None
     except OSError as error:
         raise FileTrouble(f"{path}: {error.strerror or error}: {ELSEWHERE}") from None
@@ -175,6 +171,9 @@ def _connected(path: Path) -> sqlite3.Connection:
     try:
         # To wait for the disk at every row took 5 to 10 ms of each, in which no worker is given anything.
         connection.execute("pragma synchronous=normal")
+        wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
+        if wrong != "ok":
+            raise Damaged(" ".join(wrong.split()))
         version = connection.execute("pragma user_version").fetchone()[0]
         tables = {name for (name,) in connection.execute("select name from sqlite_master where type = 'table'")}
         columns = {
@@ -188,9 +187,6 @@ def _connected(path: Path) -> sqlite3.Connection:
             )
         if tables and ("results" not in tables or not tables <= TABLES.keys() or not columns.items() <= TABLES.items()):
             raise FileTrouble(f"{path} is an SQLite file of another program, with other tables; {ELSEWHERE}")
-        wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
-        if wrong != "ok":
-            raise Damaged(" ".join(wrong.split()))
         if version < SCHEMA or not tables:
             connection.execute("pragma journal_mode=wal")
             connection.execute("create table if not exists results (key text primary key, row text not null)")
@@ -198,6 +194,8 @@ def _connected(path: Path) -> sqlite3.Connection:
             connection.execute(f"pragma user_version={SCHEMA}")
     except BaseException as error:
         connection.close()
+        if isinstance(error, UnicodeError):  # SQLite's own message, with what stands in the file
+            raise Damaged("its tables have names that can't be read") from None
         if isinstance(error, sqlite3.DatabaseError) and getattr(error, "sqlite_errorcode", 0) & 0xFF in DAMAGE:
             raise Damaged(str(error)) from None
         raise
@@ -235,25 +233,3 @@ def _put_aside(path: Path) -> Path:
         with suppress(FileNotFoundError):
             path.with_name(path.name + end).rename(f"{aside}{end}")
     return aside
-
-
-def _readable(aside: Path) -> tuple[list[tuple[str, str]], list[str]]:
-    """((key, text) of every whole row, what was remembered) that SQLite finds in a damaged file, left as it is."""
-    found: dict[str, str] = {}
-    words: dict[str, None] = {}
-    with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder:
-        copy = Path(folder) / "copy.sqlite"
-        _copy(aside, copy)
-        with closing(sqlite3.connect(copy)) as connection:
-            connection.text_factory = _decoded
-            connection.execute("pragma writable_schema=on")  # else a file that is too short is not read at all
-            # From both ends, since reading stops where the damage is.
-            for order in ("", " desc"):
-                with suppress(sqlite3.Error):
-                    for key, text in connection.execute(f"select key, row from results order by rowid{order}"):
-                        if row_of(key, text) is not None or answer_of(key, text) is not None:
-                            found[key] = text
-                with suppress(sqlite3.Error):
-                    for (text,) in connection.execute(f"select words from given order by rowid{order}"):
-                        words[text] = None
-    return list(found.items()), list(words)

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import contextlib
 import pickle
-import tempfile
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -31,6 +30,7 @@ from typing import Any
 from reports.grid.ending import Broken
 from reports.grid.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.grid.processors import apart
+from reports.grid.temporary import temporary_folder
 from reports.grid.waiting import Waiting
 from reports.grid.worker import READY, SPENT, cpu_time, describe, timed_out
 from reports.grid.worker_process import (
@@ -90,9 +90,9 @@ def supervise(
 def crew(limit: float, workers: int, wall: float | None = None, alone: bool = False) -> Iterator[Crew]:
     """Workers for one function after another; see `supervise`. Leaving it ends them."""
     one_thread_each()
-    with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
+    with temporary_folder() as folder:
         wall = wall_limit(limit) if wall is None else wall
-        own = Crew(limit, wall, min(workers, MOST_WORKERS), Path(folder), apart() if alone else ())
+        own = Crew(limit, wall, min(workers, MOST_WORKERS), folder, apart() if alone else ())
         try:
             yield own
         finally:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Unsupported
+from engines.contract import flaw
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell, estimated_cost
 from reports.grid.fingerprint import fingerprint
@@ -113,8 +114,10 @@ class Motion(Task):
         return self.cell.kin
 
     def run(self) -> Values:
-        cell = self.cell
-        run = cell.engine.build(cell.scene.mechanism(), cell.step)(cell.sample_count, cell.every)
+        cell, mechanism = self.cell, self.cell.scene.mechanism()
+        run = cell.engine.build(mechanism, cell.step)(cell.sample_count, cell.every)
+        if told := flaw(run, mechanism, cell.step, cell.sample_count, cell.every):
+            raise ValueError(told)
         return {"t": run.t, "pose": run.pose, "twist": run.twist, "reaction": run.reaction}
 
 

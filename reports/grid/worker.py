@@ -11,6 +11,7 @@ import os
 import pickle
 import signal
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -61,6 +62,8 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
     ends it; after twice as many it ends itself, should the parent be gone. `processor`: where it stays; None: anywhere.
     """
     _ignore_interrupts()
+    if hasattr(os, "setpgid"):
+        os.setpgid(0, 0)  # with all that jobs start, so that it can be ended as one
     stay_on(processor)
     _end_with_the_parent()
     try:
@@ -70,7 +73,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
     clock = Clock()
     threading.Thread(target=_watch, args=(clock,), daemon=True).start()
     connection.send_bytes(READY)
-    stays = True
+    stays, own = True, os.getpid()
     while stays:
         try:
             job = connection.recv_bytes()
@@ -78,6 +81,8 @@ def work(connection: Connection, folder: str, limit: float, wall: float, process
             break
         os.ftruncate(2, 0)  # what native code says last is then about this job
         stays, answer = _answer(job, clock, limit, wall)
+        if os.getpid() != own:  # a child that a job has forked: its parent answers
+            os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
     # Not sys.exit: threads that a job has left running must not keep the process.
     os._exit(0)
@@ -109,6 +114,8 @@ def _redirect(folder: Path) -> None:
     """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    # What an engine makes elsewhere goes with this folder too, however the worker ends.
+    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.close(log)

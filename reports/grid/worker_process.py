@@ -15,6 +15,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
+from reports.grid.temporary import lasting_folder
 from reports.grid.worker import cpu_time, work
 
 IMPORTED_ONCE = ("reports.grid.measure", "engines.registry")  # by the fork server, for all workers
@@ -28,6 +29,20 @@ class Job:
     item: Any
     earlier: str = ""
     earlier_outside: bool = False
+
+
+def stop_all() -> None:
+    """End every worker of this process; for a process that ends where it stands."""
+    for child in multiprocessing.active_children():
+        _kill(child)
+
+
+def _kill(process: BaseProcess) -> None:
+    """With what its jobs have forked."""
+    with contextlib.suppress(OSError):
+        if hasattr(os, "killpg") and process.pid is not None:
+            os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
 
 
 @dataclass
@@ -53,8 +68,8 @@ class Worker:
         return self.process.exitcode
 
     def stop(self) -> None:
-        """End the process, whatever it does."""
-        self.process.kill()
+        """End the process, whatever it does, and what it has started."""
+        _kill(self.process)
         self.process.join(PATIENCE)
         self.connection.close()
         if self.process.exitcode is not None:
@@ -66,6 +81,8 @@ def start_method(*modules: str) -> Any:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
+    # Where the fork server's socket lies: it would be left behind by an interruption.
+    vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(lasting_folder()))
     context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
     return context
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import tempfile
 from html import escape
 from pathlib import Path
 
+from reports.grid.temporary import temporary_folder
 from reports.site.markdown import Formulas
 from reports.site.packages import NotFetched, fetched
 from reports.site.packages_used import KATEX
@@ -30,8 +30,8 @@ def rendered(formulas: Formulas, cache: Path) -> tuple[list[str], str]:
         module = fetched(KATEX, cache)["dist/katex.mjs"]
     except NotFetched as reason:
         return _as_written(asked), str(reason)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "katex.mjs"
+    with temporary_folder() as folder:
+        path = folder / "katex.mjs"
         path.write_bytes(module)
         ended = subprocess.run(
             [node, str(SCRIPT), str(path)],

@@ -9,10 +9,11 @@ from html import escape
 
 from markdown_it import MarkdownIt
 
+from reports.text.templates import CODE, inert
+
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
 # As GitHub has it: no space inside next to either sign, and no digit after the second.
 INLINE = re.compile(r"(?<![\\$\w])\$(?!\s)([^$]+?)(?<!\s)\$(?![\w$])")
-CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
 HEADING = re.compile(r"<h([1-6])>(.*?)</h\1>", re.DOTALL)
 OWN_PAGE = re.compile(r'href="(?!https?:|#|mailto:)([^"#]+)\.md(#[^"]*)?"')
 MARK = "\ue000{}\ue001"  # stands for a formula while Markdown is read: letters that no page has
@@ -42,7 +43,10 @@ def html(text: str, formulas: Formulas) -> str:
     for index in range(0, len(parts), 2):  # what is between code
         part = DISPLAYED.sub(lambda found: formulas.mark(found[1], True), parts[index])
         parts[index] = INLINE.sub(lambda found: formulas.mark(found[1], False), part)
-    rendered = MarkdownIt("commonmark", {"html": True}).enable("table").render("".join(parts))
+    reader = MarkdownIt("commonmark", {"html": True}).enable("table")
+    for rule in ("html_block", "html_inline"):
+        reader.add_render_rule(rule, lambda self, tokens, index, options, env: inert(tokens[index].content))
+    rendered = reader.render("".join(parts))
     seen: dict[str, int] = {}
 
     def anchored(found: re.Match[str]) -> str:

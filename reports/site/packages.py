@@ -10,10 +10,11 @@ import hashlib
 import shutil
 import subprocess
 import tarfile
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from reports.grid.temporary import temporary_folder
 
 PATIENCE = 180  # s for one package
 
@@ -55,14 +56,14 @@ def _fetch(package: Package, path: Path) -> None:
     if npm is None:
         raise NotFetched("npm is not installed")
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+    with temporary_folder(path.parent) as folder:
         words = [npm, "pack", f"{package.name}@{package.version}", "--silent", "--ignore-scripts"]
         given: dict[str, Any] = {"cwd": folder, "capture_output": True, "encoding": "utf-8", "timeout": PATIENCE}
         try:
             ended = subprocess.run(words, **given)
         except subprocess.TimeoutExpired:
             raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
-        found = list(Path(folder).glob("*.tgz"))
+        found = list(folder.glob("*.tgz"))
         if ended.returncode or not found:
             told = (ended.stderr.strip().splitlines() or ["no reason was given"])[-1]
             raise NotFetched(f"npm could not fetch {package.name} {package.version} ({told})")

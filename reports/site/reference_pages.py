@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import tempfile
 from importlib.util import find_spec
-from pathlib import Path
 
 from reports.charts.theme import DARK, LIGHT, Theme
+from reports.grid.temporary import temporary_folder
 from reports.site.packages import NotFetched
 
 MODULES = ("reference", "engines")
@@ -27,8 +26,8 @@ def reference_pages() -> dict[str, bytes]:
     """Files below reference/ of the site. Raises NotFetched where pdoc is not installed or fails."""
     if find_spec("pdoc") is None:
         raise NotFetched("pdoc is not installed: pip install '.[site]'")
-    with tempfile.TemporaryDirectory() as folder:
-        theme, output = Path(folder) / "theme", Path(folder) / "pages"
+    with temporary_folder() as folder:
+        theme, output = folder / "theme", folder / "pages"
         theme.mkdir()
         (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
         words = [sys.executable, "-m", "pdoc", "--no-show-source", "--no-search", "--template-directory", str(theme)]

@@ -23,6 +23,14 @@ class Quiet(SimpleHTTPRequestHandler):
         ".md": "text/plain; charset=utf-8",
     }
 
+    def send_head(self) -> Any:
+        """As the class above, with an answer to a name that no file can have, such as one with a zero byte."""
+        try:
+            return super().send_head()
+        except (ValueError, OSError):
+            self.send_error(404, "There is no such file")
+            return None
+
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import gzip
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 from reports.grid.ending import FileTrouble
 from reports.grid.files import folder_for
+from reports.grid.temporary import temporary_folder
 from reports.site.build import MARKER
 
 REMEDY = "give another --output"
@@ -30,14 +30,14 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
     refuse_strangers(output)
     parent = folder_for(output.absolute().parent, REMEDY)
     try:
-        with tempfile.TemporaryDirectory(prefix=".site", dir=parent) as aside:
-            new = Path(aside) / "new"
+        with temporary_folder(parent) as aside:
+            new = aside / "new"
             for name, content in files.items():
                 path = new / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
             if output.exists():
-                output.replace(Path(aside) / "old")
+                output.replace(aside / "old")
             new.replace(output)
     except OSError as reason:
         raise FileTrouble(f"{output} can't be written ({reason.strerror or reason}): {REMEDY}") from None

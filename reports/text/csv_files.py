@@ -31,9 +31,14 @@ def as_csv(
     ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in identity))
     for row in ordered:
         values = (digest(getattr(row, name)) if name in DESCRIPTIONS else getattr(row, name) for name in names)
-        told = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in values]
+        told = [f"{v:.4g}" if isinstance(v, float) else no_formula(str(v)) for v in values]
         writer.writerow([*told, *([] if made_with is None else [digest(made_with[row.key])])])
     return out.getvalue()
+
+
+def no_formula(word: str) -> str:
+    """A word as a cell that no spreadsheet works out: with an apostrophe before the sign that begins a formula."""
+    return f"'{word}" if word.startswith(("=", "+", "-", "@", "\t", "\r")) else word
 
 
 # A scene with its numbers and an engine with its settings are long, and stand in many rows: these give their digests.
@@ -52,5 +57,5 @@ def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] |
     writer.writerow(["digest", "of", "description"])
     found = {(name, getattr(row, name)) for row in rows for name in DESCRIPTIONS}
     found |= {("versions", told) for told in (made_with or {}).values()}
-    writer.writerows([digest(text), name, text] for name, text in sorted(found))
+    writer.writerows([digest(text), name, no_formula(text)] for name, text in sorted(found))
     return out.getvalue()

@@ -26,7 +26,7 @@ from reports.text.links import link
 from reports.text.overview import overviews
 from reports.text.parts import with_part
 from reports.text.provenance import machine, row_versions, today, versions
-from reports.text.templates import environment, template_of
+from reports.text.templates import environment, inert_page, template_of
 from reports.text.told_scene import told_scene
 
 FEW = 100  # steps: a scene of fewer is no example of a step
@@ -77,7 +77,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
     if page.scenes:
         texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
-    return files | {name: unmeasured.without_marks(text) for name, text in texts.items()}
+    return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
 
 
 def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> dict[str, str] | None:
@@ -118,7 +118,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             foot=foot(command, engines_of(pages)),
         )
     )
-    return unmeasured.without_marks(text)
+    return inert_page(unmeasured.without_marks(text))
 
 
 def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> list[Measurement]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -14,6 +15,20 @@ from reports.text import unmeasured
 from reports.text.links import anchor
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
+
+CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+FOREIGN = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")  # of all HTML our pages have these and comments
+
+
+def inert(text: str) -> str:
+    """HTML or Markdown whose tags are words to read, but for those that our pages have: names may hold anything."""
+    return FOREIGN.sub("&lt;", text)
+
+
+def inert_page(text: str) -> str:
+    """The same of a whole Markdown page, where code stays as it is."""
+    parts = CODE.split(text)
+    return "".join(part if index % 2 else inert(part) for index, part in enumerate(parts))
 
 
 def environment(folder: Path = TEMPLATES) -> Environment:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +15,7 @@ from reports.grid.cells import Cell, estimated_cost
 from reports.grid.fingerprint import ROOT
 from reports.grid.measure import Measurement, blank
 from reports.grid.outcomes import Outcome, describe_exit
+from reports.grid.temporary import temporary_folder
 from reports.versions.installed import environment
 from reports.versions.request import Finished, Request, Running, TreesRow, Trouble
 
@@ -86,9 +86,9 @@ def _told(row: Measurement, version: str) -> Measurement:
 
 def _messages(request: Request) -> Iterator[Any]:
     """What the process says; a Trouble at the end if it ended too early."""
-    with tempfile.TemporaryDirectory(prefix="crosscheck-", ignore_cleanup_errors=True) as folder:
+    with temporary_folder() as folder:
         # In a folder of its own: what an engine leaves behind goes with it, and what lies there hides no module.
-        words = Path(folder) / "said.txt"
+        words = folder / "said.txt"
         with words.open("wb") as errors:
             process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "reports.versions.child"],
@@ -96,7 +96,7 @@ def _messages(request: Request) -> Iterator[Any]:
                 stdout=subprocess.PIPE,
                 stderr=errors,
                 cwd=folder,
-                env=environment(request.place, (ROOT,)),
+                env=environment(request.place, (ROOT,)) | {"TMPDIR": str(folder)},
             )
         assert process.stdin is not None
         assert process.stdout is not None

@@ -15,7 +15,6 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from importlib import metadata
@@ -24,6 +23,7 @@ from pathlib import Path
 from engines.user_cache import CACHE, cache_folder
 from reports.grid.ending import BadInput
 from reports.grid.files import folder_for
+from reports.grid.temporary import temporary_folder
 
 # The name of the folder itself: what lies in one of this name counts by its version (`reports.grid.fingerprint`).
 PACKAGES = "site-packages"
@@ -98,8 +98,8 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
-        with tempfile.TemporaryDirectory(prefix=".part-", dir=folder.parent, ignore_cleanup_errors=True) as aside:
-            target = Path(aside) / PACKAGES
+        with temporary_folder(folder.parent) as aside:
+            target = aside / PACKAGES
             command = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
             command += ["--disable-pip-version-check", "--no-input", "--target", str(target)]
             command += ["--only-binary", ":all:"] if wheels_only else []

@@ -10,10 +10,10 @@ import shutil
 import subprocess
 import sys
 import tarfile
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
+from reports.grid.temporary import temporary_folder
 from reports.site.packages import NotFetched
 
 SHIM = Path(__file__).with_name("shim.c")
@@ -37,8 +37,8 @@ def compiled(cache: Path) -> bytes:
     kept = cache / f"munk2d-{hashlib.sha256(repr(parts).encode()).hexdigest()[:16]}.js"
     if not kept.is_file():
         kept.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=kept.parent) as folder:
-            _compile(compiler, _sources(release, Path(folder)), Path(folder) / "munk2d.mjs").replace(kept)
+        with temporary_folder(kept.parent) as folder:
+            _compile(compiler, _sources(release, folder), folder / "munk2d.mjs").replace(kept)
     return kept.read_bytes()
 
 
