@@ -59,7 +59,7 @@ part_readme() {
   step "crosscheck conform engines.pymunk:TUNED" crosscheck conform engines.pymunk:TUNED
   step "crosscheck export" sh -c "crosscheck export free_four_bar --to mjcf > $work/model.xml"
   step "crosscheck check model.xml" crosscheck check "$work/model.xml"
-  step "crosscheck search" crosscheck search --budget 10
+  step "crosscheck search --seconds 10" crosscheck search --seconds 10
   step "a wheel of MuJoCo" pip download --quiet --no-deps --dest "$work/dist" mujoco-core==4.0.1
   step "crosscheck compare" sh -c "crosscheck compare mujoco==4.0.1 $work/dist/*.whl"
   step "nothing that git tracks has changed" clean
