@@ -23,7 +23,7 @@ step() {  # step WORDS COMMAND ...: one line with the outcome, and of a failure 
   local words=$1 status=0 log=$work/log spent=$work/spent
   shift
   TIMEFORMAT="%0R s wall, %0U + %0S s of processors"
-  { time "$@" > "$log" 2>&1; } 2> "$spent" || status=$?
+  { time "$@" < /dev/null > "$log" 2>&1; } 2> "$spent" || status=$?
   echo "$([ $status = 0 ] && echo ok || echo "FAILED, status $status"): $words ($(tail -n 1 "$spent"))"
   grep -E '^(=+ )?[0-9]+ (passed|failed|skipped|deselected).* in [0-9.]+s' "$log" | sed 's/^/    /'
   [ $status = 0 ] || { failed=1 && tail -n 15 "$log" | sed 's/^/    /'; }
@@ -52,7 +52,7 @@ part_readme() {
   export PATH=$work/plain/bin:$PATH
   step "numba is not there" sh -c '! python -c "import numba"'
   awk '/^```/ { inside = !inside && $0 == "```"; next } inside && /^crosscheck/' README.md > "$work/commands"
-  while read -r line; do step "${line%% *#*}" sh -c "$line"; done < "$work/commands"
+  while read -r line; do step "$(echo ${line%% \#*})" sh -c "$line"; done < "$work/commands"
   awk '/^```/ { inside = $0 == "```python"; next } inside' README.md > "$work/example.py"
   step "README's Python" python "$work/example.py"
   step "crosscheck errata" crosscheck errata
