@@ -1,6 +1,7 @@
 # Everything from a fresh checkout: environment, install, run.
 PYTHON ?= python3
 BIN := .venv/bin
+PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # A worker of pytest for each processor, with one thread each. A file stays in one worker, so that what its tests share
 # is made once; tests/conftest.py says which files begin. The grid has a pool of its own, and runs after the others.
 WORKERS := -n auto --dist loadfile --no-loadscope-reorder
@@ -8,15 +9,20 @@ export OMP_NUM_THREADS ?= 1
 # The tests start many programs, each of which would compile every module again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: report test slow check bench mutants lower clean
+.PHONY: report test publish slow check bench mutants lower clean
 
-report: .venv/installed          ## run the grid into crosscheck-results, publish it in reports/results and README.md
+report: .venv/installed          ## run the whole grid, and write pages and charts; all below ./crosscheck-results
 	$(BIN)/crosscheck run --full
-	$(BIN)/crosscheck report --publish
+	$(BIN)/crosscheck report
 
-test: .venv/installed            ## the tests, the crosscheck grid included, without those marked slow
-	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not crosscheck"
-	$(BIN)/python -m pytest -m "crosscheck and not slow"
+test: .venv/installed            ## the tests without those marked slow, then the crosscheck grid; red if either is
+	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not crosscheck"; tests=$$?; \
+	$(BIN)/python -m pytest -m "crosscheck and not slow" && exit $$tests
+
+publish: .venv/installed-mjx     ## for maintainers: all engines and releases, into reports/results and README.md
+	$(BIN)/crosscheck run --full
+	$(BIN)/crosscheck versions --all --publish
+	$(BIN)/crosscheck report --publish
 
 slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
 	$(BIN)/python -m pytest $(WORKERS) -m slow
@@ -45,11 +51,16 @@ lower: .venv-lower/installed     ## the tests, without the grid, with the oldest
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test]"
+	$(PIP) --editable ".[test]"
 	touch $@
 
 .venv/installed-%: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[test,$*]"
+	$(PIP) --prefer-binary --editable ".[test,$*]"
+	touch $@
+
+# All engines: a part of MJX has to be installed by itself (engines/mjx.py).
+.venv/installed-mjx: .venv/installed-engines
+	$(PIP) --no-deps mujoco-mjx
 	touch $@
 
 clean:

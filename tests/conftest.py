@@ -1,8 +1,10 @@
 """The grid's options and its table, from the package, so that an installed copy has them too."""
 
 import ast
+import os
 import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -51,3 +53,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files; the order within a file stays."""
     place = {f"test_{name}.py": number for number, name in enumerate(FIRST)}
     items.sort(key=lambda item: place.get(Path(item.path).name, len(FIRST)))
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Append the names of skipped tests to the file that CROSSCHECK_SKIPPED names, for `.ci/run`."""
+    target = os.environ.get("CROSSCHECK_SKIPPED")
+    if target and "PYTEST_XDIST_WORKER" not in os.environ:
+        with open(target, "a", encoding="utf-8") as file:
+            file.writelines(f"{report.nodeid}\n" for report in terminalreporter.stats.get("skipped", ()))

@@ -23,7 +23,7 @@ from tests.toys import Disc, FailingToy, Toy
 
 
 def test_the_bench_times_the_same_motion_as_pylinkage():
-    pytest.importorskip("pylinkage")
+    pytest.importorskip("pylinkage", reason="pylinkage comes with the extra `bench`: pip install -e '.[bench]'")
     result = pylinkage_ratio(count=1000)
     # pylinkage adds up its crank angle step by step: a thousand roundings.
     assert result["difference"] < 1e-12

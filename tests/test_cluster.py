@@ -38,7 +38,9 @@ from tests.rough_toys import end_the_supervisor
 from tests.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, SlowToy, Toy
 
-distributed = pytest.importorskip("distributed")
+distributed = pytest.importorskip(
+    "distributed", reason="Dask comes with the extra `cluster`: pip install -e '.[cluster]'"
+)
 ROOT = Path(__file__).resolve().parent.parent
 NOWHERE = "127.0.0.1:0"  # any free port, seen from this machine alone
 # Dask leaves sockets to the garbage collector.

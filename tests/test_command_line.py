@@ -17,6 +17,8 @@ from reports.grid import files
 from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
 from reports.grid.files import write_whole
 from reports.grid.store import Store
+from reports.text.csv_files import as_csv
+from tests.rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
 ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
@@ -87,6 +89,26 @@ def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
     assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite", "truths"}
 
 
+def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, monkeypatch, capfd):
+    """Its cells are not missing, since nobody can run them: they would be taken out without a word."""
+    from engines import registry
+
+    texts = checkout(here / "checkout", monkeypatch)
+    texts["reports/results/errors.csv"] = as_csv(
+        [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
+    )
+    (here / "checkout/reports/results/errors.csv").write_text(texts["reports/results/errors.csv"])
+    absent = {"bullet": "bullet needs pybullet", "mjx": "mjx needs jax", "exudyn": "it is in no row"}
+    monkeypatch.setattr(registry, "ABSENT", absent)
+    assert call("run", *ONE_CELL) == FINE
+    capfd.readouterr()
+    assert call("report", "--publish") == REFUSED
+    said = one_line(capfd.readouterr().err)
+    assert "bullet needs pybullet; mjx needs jax" in said
+    assert "exudyn" not in said
+    assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
+
+
 def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
     monkeypatch.setattr(report_command, "CHECKOUT", here / "site-packages")
     assert call("report", "--publish") == REFUSED
@@ -121,7 +143,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     (here / "crosscheck-results/index.md").unlink()
     assert call("report", "--publish") == FINE
     assert (here / "checkout" / "README.md").read_text() == "a readme, with a table"
-    assert (here / "checkout/reports/results/index.md").read_text() == "made by make report"
+    assert (here / "checkout/reports/results/index.md").read_text() == "made by make publish"
     assert not (here / "crosscheck-results/index.md").exists()
 
 

@@ -48,7 +48,7 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
 
 
 def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
-    pytest.importorskip("xdist")
+    pytest.importorskip("xdist", reason="pytest-xdist comes with the extra `test`: pip install -e '.[test]'")
     found = suite.runpytest_subprocess("-n", "1", "-rs", "--baseline", "errors.csv")
     found.assert_outcomes(skipped=3)
     found.stdout.fnmatch_lines(["*the grid has workers of its own: pytest -m crosscheck, without -n"])

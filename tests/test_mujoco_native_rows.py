@@ -21,7 +21,7 @@ from reference.scenes import CarAndTrailer, ChaplyginSleigh, RollingEllipse
 from reference.trajectory import Trajectory
 from reports.search.mechanisms import mechanism
 
-pytest.importorskip("numba")
+pytest.importorskip("numba", reason="numba, the extra 'fast', is not installed")
 
 ENGINE = replace(EXTENDED, estimates=False)
 KINDS = ("pin", "slot", "skate", "rod", "drive", "weld")

@@ -30,7 +30,7 @@ from reports.versions.comparison import compared
 from reports.versions.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
 from reports.versions.request import Request, TreesRow
 from reports.versions.steps import steps
-from reports.versions.table import Entry, Table, as_csv, entries, merged, read
+from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
 
@@ -308,6 +308,18 @@ def test_the_page_reads_its_rows_and_names_their_steps(monkeypatch):
     }
     monkeypatch.setattr(page, "table", lambda: Table((), {}))
     assert page.words(Material({})) == {"engines": []}
+
+
+def test_a_published_number_keeps_its_text_within_rounding_and_a_time_within_a_tenth():
+    before = read(page.DATA)
+    known = [entry for entry in before.entries if entry.comparable and entry.quantity == "angle"][:20]
+    before = replace(before, entries=tuple(known))
+    moved = tuple(replace(entry, error=entry.error + 1e-12, cpu=1.09 * entry.cpu) for entry in known)
+    assert as_csv(as_published(replace(before, entries=moved), before)) == as_csv(before)
+    changed = tuple(replace(entry, error=1.01 * entry.error + 1e-10, cpu=1.11 * entry.cpu) for entry in known)
+    assert as_published(replace(before, entries=changed), before).entries == changed
+    gone = tuple(replace(entry, outcome=Outcome.TORN) for entry in moved)
+    assert as_published(replace(before, entries=gone), before).entries == gone
 
 
 def test_the_published_rows_show_the_velocity_term_and_the_sparse_factor():

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -16,6 +17,7 @@ from reports.grid.files import write_whole
 
 CHECKOUT = Path(__file__).parents[2]
 KEPT = "pages"  # the folder of files that need not be drawn again (`reports.cli.kept_pages`)
+SEARCHED = ("search.md", "search_errors.svg")
 LARGE = 2**20  # bytes of a store: smaller ones have too few rows for workers (`reports.cli.drawing`)
 
 
@@ -47,9 +49,15 @@ def report(
     from reports.grid.running import missing
     from reports.grid.store import Store
     from reports.pages.catalogue import PAGES
+    from reports.text import kept_numbers
     from reports.text.rendering import render_all, render_readme
 
     folder = published() if publish else results
+    before = kept_numbers.read(published()) if publish else kept_numbers.Published()
+    refuse_without(before.engines)
+    if publish:  # the searches are run by a command of their own: what is published of them stays
+        standing = ((name, folder / name) for name in SEARCHED)
+        searched = searched or {name: path.read_text(encoding="utf-8") for name, path in standing if path.is_file()}
     with Store.read(results / STORE) as store:
         known = known_to(store, publish)
         # What a page borrows belongs to the full grid as far as the page that it is borrowed from runs it.
@@ -66,18 +74,38 @@ def report(
             raise nothing
         if publish and left:
             raise BadInput(f"nothing is published, {grid}")
-        command = "make report" if publish else "crosscheck report"
+        if publish:
+            rows = {page: kept_numbers.as_published(given.rows, before) for page, given in material.items()}
+            material = {page: replace(given, rows=rows[page]) for page, given in material.items()}
+        command = "make publish" if publish else "crosscheck report"
         many = sum(len(given.rows) for given in material.values()) > MANY
         words = () if publish else store.remembered()
     made = made_of(material, words, command, published(), results / KEPT) if many else {}
     files = render_all(material, command, searched, made)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
+        timings = folder / "timings.csv"
+        if timings.is_file() and same_but_for_the_date(timings.read_text(encoding="utf-8"), texts[timings]):
+            del texts[timings]
         readme = CHECKOUT / "README.md"
         texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
-    write_files(texts, f"{len(files)} files written to {folder}, index.md is the first to read")
+    write_files(texts, f"{len(files)} files written. Read this first: {folder / 'index.md'}")
     if left:
         Terminal(140).say(grid)
+
+
+def same_but_for_the_date(old: str, new: str) -> bool:
+    """Whether two timings.csv differ in nothing but their first line."""
+    return old.partition("\n")[2] == new.partition("\n")[2]
+
+
+def refuse_without(engines: Iterable[str]) -> None:
+    """Raises BadInput if one of these engines, whose rows are published, is not installed: they would be taken out."""
+    from engines.registry import ABSENT
+
+    absent = [ABSENT[engine] for engine in engines if engine in ABSENT]
+    if absent:
+        raise BadInput(f"nothing is published, since rows of engines are that are not installed; {'; '.join(absent)}")
 
 
 def write_files(texts: Mapping[Path, str], line: str) -> None:

@@ -41,7 +41,7 @@ def versions(
     from reports.cli.report import published, refuse_outside_a_checkout
     from reports.cli.terminal import Terminal
     from reports.grid.files import write_whole
-    from reports.versions.table import as_csv, merged, read
+    from reports.versions.table import as_csv, as_published, merged, read
 
     if publish:
         refuse_outside_a_checkout()
@@ -71,7 +71,8 @@ def versions(
                     write_whole({Path(results) / DATA: as_csv(table)}, "what is stored is kept")
             _print(console, _table(name, found), name)
         if publish and table is not None and not wrong:
-            write_whole({published() / DATA: as_csv(table)}, "the file that was there stays as it was")
+            renewed = as_published(table, read(published() / DATA))
+            write_whole({published() / DATA: as_csv(renewed)}, "the file that was there stays as it was")
             console.say(f"{published() / DATA} is renewed")
     if wrong:
         raise BadInput(f"{len(wrong)} of the versions could not be run, the others are stored; the first: {wrong[0]}")

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine, Promise
+from engines.registry import missing
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.checks import Deviation
@@ -76,6 +77,15 @@ class Material:
         """The answer to a task that was run and finished, else None."""
         answer = self.answers.get(task)
         return answer if answer is not None and answer.finished else None
+
+    def unfinished(self, task: Task) -> str:
+        """Why a task has no numbers here, as a sentence: what its run said, or what is to be installed or run."""
+        absent = missing(task.engine) if task.engine is not None else ""
+        if answer := self.answers.get(task):
+            return f"Not finished, {answer.told}."
+        return (
+            f"Not run here: {absent}." if absent else "Not run yet: `crosscheck run --full`, then `crosscheck report`."
+        )
 
     def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
         """The kept motions of these cells, those that were run and finished."""

@@ -9,6 +9,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
 from reports.grid.measure import TIMINGS, Measurement
+from reports.grid.quantities import DIGITS
+
+# The columns that say which row it is.
+IDENTITY = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step")
 
 
 def as_csv(
@@ -20,20 +24,26 @@ def as_csv(
     differs with the machine's rounding. `made_with`: by a row's key the versions of all that its numbers depend on,
     which become a last column of digests.
     """
-    identity = ["scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step"]
-    rest = [f.name for f in fields(Measurement) if f.name not in (*identity, *TIMINGS, "key", "limit")]
-    names = [*identity, *(TIMINGS if timings else rest)]
+    rest = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY, *TIMINGS, "key", "limit")]
+    names = [*IDENTITY, *(TIMINGS if timings else rest)]
     out = io.StringIO()
     out.writelines(f"# {line}\n" for line in header.splitlines())
     writer = csv.writer(out, lineterminator="\n")
     last = [] if made_with is None else ["versions"]
     writer.writerow([*names, *last])
-    ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in identity))
+    ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in IDENTITY))
     for row in ordered:
-        values = (digest(getattr(row, name)) if name in DESCRIPTIONS else getattr(row, name) for name in names)
-        told = [f"{v:.4g}" if isinstance(v, float) else no_formula(str(v)) for v in values]
-        writer.writerow([*told, *([] if made_with is None else [digest(made_with[row.key])])])
+        cells = [told(row, name) for name in names]
+        writer.writerow([*cells, *([] if made_with is None else [digest(made_with[row.key])])])
     return out.getvalue()
+
+
+def told(row: Measurement, name: str) -> str:
+    """A column of a row as its text."""
+    value = getattr(row, name)
+    if name in DESCRIPTIONS:
+        return digest(value)
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
 
 
 def no_formula(word: str) -> str:

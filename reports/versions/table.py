@@ -6,12 +6,12 @@ import csv
 import io
 import math
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from reports.grid.outcomes import Outcome
-from reports.grid.quantities import quantity
+from reports.grid.quantities import DIGITS, agrees, quantity
 from reports.versions.column import Column
 from reports.versions.installed import numbers
 from reports.versions.request import TreesRow
@@ -20,7 +20,7 @@ TREES = "random trees"
 ACCELERATION = "acceleration"
 WRONG = 0.01  # of the largest acceleration: a tree that is further off is counted
 ROUNDING = 1e-3  # of accelerations by a difference over a step: below this are that difference and the solver
-DIGITS = 4
+TENTH = 0.1  # of a time: what differs by less says nothing, since the machine did other work too
 LONGEST = 200  # letters of a sentence
 
 
@@ -136,6 +136,23 @@ def read(path: Path) -> Table:
     except (KeyError, TypeError, ValueError):
         raise ValueError(f"{path}: it is no table of versions; `crosscheck versions --all` writes one") from None
     return Table(found, marks)
+
+
+def as_published(table: Table, before: Table) -> Table:
+    """The lines, with the numbers of `before` where the new ones differ by rounding, or a time by less than TENTH."""
+    known = {_place(entry): entry for entry in before.entries}
+    return Table(tuple(_as_published(entry, known.get(_place(entry), entry)) for entry in table.entries), table.marks)
+
+
+def _as_published(now: Entry, before: Entry) -> Entry:
+    if (now.outcome, _cell(now.step)) != (before.outcome, _cell(before.step)):
+        return now
+    if now.quantity == ACCELERATION:
+        same = _cell(now.error) == _cell(before.error)
+    else:
+        same = agrees(now.quantity, now.error, before.error)
+    cpu = before.cpu if abs(now.cpu - before.cpu) < TENTH * before.cpu else now.cpu
+    return replace(now, error=before.error if same else now.error, cpu=cpu)
 
 
 def _value(text: str, kind: object) -> Any:

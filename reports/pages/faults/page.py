@@ -105,6 +105,7 @@ def words(material: Material) -> Mapping[str, Any]:
     header = ["", "wrong", "median", "largest", "from the other formula, at most"]
     return {
         "printed": printed,
+        "unfinished": {name: material.unfinished(task) for name, task in SCRIPTS.items() if name not in printed},
         "snippets": SNIPPETS,
         "grooves": markdown(["groove in, anchor at", *header[1:]], grooves) if grooves else "",
         "equalities": markdown(["equality", *header[1:]], equalities) if equalities else "",

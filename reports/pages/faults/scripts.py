@@ -10,12 +10,13 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
-from engines import Unsupported
+from engines import Engine, Unsupported
+from engines.mjx import DEFAULT
 from reports.grid.tasks import Task, Values
 
 FOLDER = Path(__file__).parent / "snippets"
@@ -63,6 +64,10 @@ class Script(Task):
     def label(self) -> str:
         return f"script {self.name}"
 
+    @property
+    def engine(self) -> Engine | None:
+        return DEFAULT if self.name in MJX else None
+
     def run(self) -> Values:
         """`expected` and `found`, in the unit that the script says, and `version` of the engine's package.
 
@@ -80,12 +85,12 @@ class Script(Task):
 
     def _apart(self) -> Values:
         """JAX takes its settings from whoever imports it first, so it is not imported here."""
+        DEFAULT.require()
         try:
-            release = version("mujoco-mjx")
             expected, found = said_apart(self.name)
-        except (PackageNotFoundError, RuntimeError) as reason:
-            raise Unsupported(f"MJX is an extra, and does not run here: {reason}") from None
-        return {"expected": np.asarray(expected), "found": np.asarray(found), "version": release}
+        except RuntimeError as reason:
+            raise Unsupported(f"MJX does not run here: {reason}") from None
+        return {"expected": np.asarray(expected), "found": np.asarray(found), "version": version("mujoco-mjx")}
 
 
 def script(name: str) -> Script:
