@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from reports.gate.walk import walk
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, measure
 from reports.grid.outcomes import Outcome
+from reports.grid.quantities import OF, agrees, quantity
 from reports.text.csv_files import as_csv
 from tests.test_gate import NAMES, SCENE, alone, of, row
 from tests.toys import Toy
@@ -24,6 +26,35 @@ from tests.toys import Toy
 
 def old(outcome: Outcome = Outcome.FINISHED, **errors: float) -> Old:
     return Old(outcome, {**dict.fromkeys(NAMES, 1e-9), **errors})
+
+
+@pytest.mark.parametrize("name", [*NAMES, *OF])
+def test_two_values_of_a_quantity_agree_within_its_rounding_and_one_printed_digit(name):
+    assert name in {field.name for field in fields(Measurement)}
+    rounding = quantity(OF.get(name, name)).rounding
+    assert agrees(name, 2.5e-14, 2.4e-14)
+    assert agrees(name, 1e-14 + 0.9 * rounding, 1e-14)
+    assert not agrees(name, 1e-14 + 1.1 * rounding, 1e-14)
+    assert agrees(name, 1e-14 + 1.1 * rounding, 1e-14, amplified=2.0)
+    assert agrees(name, 0.33649, 0.3364)
+    assert not agrees(name, 0.33661, 0.3364)
+
+
+@pytest.mark.parametrize(
+    ("now", "before", "same"),
+    [
+        (math.nan, math.nan, True),
+        (math.inf, math.inf, True),
+        (0.0, 0.0, True),
+        (math.nan, 1.0, False),
+        (1.0, math.nan, False),
+        (math.inf, 1.0, False),
+        (1.0, math.inf, False),
+        (math.nan, math.inf, False),
+    ],
+)
+def test_no_number_agrees_with_a_number(now, before, same):
+    assert agrees("angle", now, before) is same
 
 
 @pytest.mark.parametrize("quantity", NAMES)

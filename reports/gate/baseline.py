@@ -16,7 +16,6 @@ from reports.text.provenance import still_installed
 Identity = tuple[str, str, int, int]
 # The file beside errors.csv in whose comments the versions stand, in the words of `reports.text.provenance.versions`.
 BESIDE = "timings.csv"
-DIGITS = 4  # of the numbers in the file
 
 
 class BadBaseline(ValueError):

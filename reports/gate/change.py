@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from reports.gate.baseline import DIGITS, Old
+from reports.gate.baseline import Old
 from reports.gate.checks import CHANGE, Check
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
+from reports.grid.quantities import DIGITS, QUANTITIES
 
 # With other versions an error may become this many times as large.
 WORSE = 3.0
