@@ -19,7 +19,7 @@ from reports.gate.change import change, cost, drift, growth, known_by_now
 from reports.gate.nudged import Nudge, nudged_cells
 from reports.gate.table import changes
 from reports.gate.verdicts import Case
-from reports.gate.walk import lost, vanished, walk
+from reports.gate.walk import lost, remarks, vanished, walk
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, measure
 from reports.grid.outcomes import Outcome
@@ -160,6 +160,8 @@ def known_of(row: Measurement) -> Old:
 def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_is_new():
     case = Case(SCENE, Toy(), Promise(2))
     assert vanished(case, (None, None)) == ()
+    assert vanished(case, (old(), None)) == (), "it ends at a coarser step"
+    assert not vanished(case, (None, old()))[0].passed
     ours = Case(DrivenFourBar(), Lagrange(), Promise(1))
     (check,) = vanished(ours, (None, None))
     assert not check.passed
@@ -175,14 +177,12 @@ def test_what_a_baseline_has_and_the_grid_has_lost_is_named():
 def test_what_takes_ten_times_as_long_is_told_and_a_limit_makes_it_fail():
     case = Case(SCENE, Toy("one", factor=1e-4), Promise(2))
     cells = [measure(cell, repeat=False) for cell in case.cells()]
-    cheap = {identity(each): replace(known_of(each), cpu=each.cpu / 1e3) for each in cells}
-    dear = walk([case], Baseline(cheap), workers=1)[case]
-    assert dear.change_complaints == ()
-    assert any("times the CPU time of the baseline" in line for line in changes([dear], Baseline(cheap)))
-    limited = walk([case], Baseline(cheap), workers=1, dearest=1.5)[case]
-    assert ["CPU time" in told for told in limited.change_complaints] == [True]
-    unknown = {identity(each): replace(known_of(each), cpu=math.nan) for each in cells}
-    assert walk([case], Baseline(unknown), workers=1, dearest=1.5)[case].change_complaints == ()
+    cheap = Baseline({identity(each): replace(known_of(each), cpu=each.cpu / 1e3) for each in cells})
+    dear = walk([case], cheap, workers=1, dearest=1.5)[case]
+    assert ["CPU time" in told for told in dear.change_complaints] == [True]
+    assert any("times the CPU time of the baseline" in line for line in changes([dear], cheap))
+    unknown = replace(dear, before=tuple(replace(known_of(each), cpu=math.nan) for each in cells))
+    assert remarks(unknown) == ()
 
 
 def test_a_cost_is_that_of_the_cells_that_both_have_timed():
@@ -205,9 +205,6 @@ def test_a_walk_holds_each_row_against_the_baselines_row_of_the_same_cell():
     assert "steps are missing" in found[2].change_complaints[0]
     assert "it was 1e-12" in found[1].change_complaints[0]
     assert [verdict.new for verdict in found] == [0, 0, 1]
-    # A baseline may end at a coarser step, and then no step is missing between.
-    shorter = {key: value for key, value in same.items() if key != identity(measured[-1])}
-    assert walk([case], Baseline(shorter), workers=1)[case].change_complaints == ()
     # Of other versions a number may differ, and not be more than three times as large.
     for versions, complaints_told in (("", 1), ("Python 2.7", 0)):
         near = {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": 0.9e-8})}
@@ -234,7 +231,8 @@ def test_a_baseline_is_read_as_it_was_written_with_the_versions_beside_it(tmp_pa
 
 
 def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_line(tmp_path):
-    files = {"errors.csv": as_csv([row(), row(every=3)], timings=False), "disc.md": "0.5", "disc.svg": "<svg/>"}
+    errors = as_csv([row(), row(every=3)], timings=False)
+    files = {"errors.csv": errors, "index.md": "# Results", "disc.md": "0.5", "disc.svg": "<svg/>"}
 
     def told(**changed: str) -> str:
         for name, text in {**files, DIGESTS: digests_csv(files), **changed}.items():
@@ -250,6 +248,18 @@ def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_li
         assert line in changes([], read_baseline(tmp_path / "errors.csv"))
     (tmp_path / DIGESTS).unlink()
     assert "no digests.csv" in mixed(read_baseline(tmp_path / "errors.csv"))
+    (tmp_path / "index.md").unlink()
+    assert mixed(read_baseline(tmp_path / "errors.csv")) == ""
+
+
+@pytest.mark.parametrize("purpose", ["usual", "failure", "map", "beside"])
+def test_what_a_baseline_knows_of_a_cell_is_of_the_sweep_and_of_no_experiment_at_the_same_step(tmp_path, purpose):
+    experiment = replace(row(angle=0.3), purpose=purpose)
+    path = written(tmp_path / "errors.csv", row(angle=1.5e-5), experiment)
+    timed = [replace(row(), cpu=0.25), replace(experiment, cpu=9.0)]
+    (tmp_path / "timings.csv").write_text(as_csv(timed, timings=True))
+    (known,) = read_baseline(path).cells.values()
+    assert (known.errors["angle"], known.cpu) == (1.5e-5, 0.25)
 
 
 @pytest.mark.parametrize("text", [None, "", "a,b\n1,2\n", "\0\0", "damaged"])

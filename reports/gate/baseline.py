@@ -53,8 +53,11 @@ class Baseline:
 
 
 def mixed(baseline: Baseline) -> str:
-    """One sentence if the baseline's file and the pages beside it were not written together; empty if they were."""
-    found = () if baseline.folder is None else not_as_written(baseline.folder)
+    """One sentence if the baseline's file and the pages beside it were not written together; empty if they were, and
+    where there are none, as in an installed copy."""
+    if baseline.folder is None or not (baseline.folder / "index.md").exists():
+        return ""
+    found = not_as_written(baseline.folder)
     if found is None:
         return (
             f"Nothing says whether {baseline.folder} was written at once: it has no {DIGESTS}; write the report anew."
