@@ -94,6 +94,18 @@ def test_a_worse_build_is_told_and_what_it_prints_and_leaves_behind_is_contained
     assert not (here / "crosscheck-results").exists()  # a build may change: nothing is kept of it
 
 
+def test_a_cost_sets_the_status_where_a_limit_is_given(here):
+    toy(here, "1.0", "def error(): return 1.0\n")
+    toy(here, "2.0", "def error(): return 1.0\n# another build\n")
+    words = ["compare", "1.0", "2.0", "--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"]
+    # A toy tells the same cost whatever it takes.
+    assert invoke([*words, "--cost", "1.5"]) == 0
+    with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
+        invoke([*words, "--cost", "0.9"])
+    with pytest.raises(BadInput, match="--cost is 0; give a number above 0"):
+        invoke([*words, "--cost", "0"])
+
+
 def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
     place = toy(here, "3.0", "import os\nos.abort()\n")
     given = Request((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
