@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from functools import cache
@@ -37,26 +36,18 @@ def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
     return found
 
 
-@cache
-def _said(description: str) -> frozenset[str]:
-    """What a scene or an engine with its settings says of itself, setting by setting."""
-    return frozenset(re.findall(r"\w+=[^,()]+", description))
-
-
-@cache
-def _described(name: str) -> frozenset[str]:
-    return next(
-        (_said(line["description"]) for line in _lines("descriptions.csv") if line["digest"] == name), frozenset()
-    )
-
-
 def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
     """The committed row of each cell that has one.
 
     Several cells differ in the scene's numbers or the engine's settings alone: their digests tell them apart. Where
-    the sources have changed since, no digest fits, and the row has to do whose numbers and settings are most alike.
+    those have changed since, no row is the cell's own (`stale`).
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
+
+
+def stale(cells: Iterable[Cell]) -> list[str]:
+    """The cells that have rows by their names, none of which has their numbers and settings: to be published anew."""
+    return [cell.label for cell in cells if _lines_of(cell) and _line(cell) is None]
 
 
 @cache
@@ -65,22 +56,24 @@ def page_rows(page: Page) -> Mapping[Cell, Measurement]:
     return committed_rows(shown_cells(page))
 
 
+def _lines_of(cell: Cell) -> list[dict[str, str]]:
+    engine = cell.engine
+    named = (cell.scene.name, engine.name, engine.variant, cell.purpose, str(cell.sample_count), str(cell.every))
+    return _stored().get(named, [])
+
+
+def _line(cell: Cell) -> dict[str, str] | None:
+    own = (digest(repr(cell.scene)), digest(repr(cell.engine)))
+    return next((line for line in _lines_of(cell) if (line["parameters"], line["settings"]) == own), None)
+
+
 def _row(cell: Cell) -> Measurement | None:
-    start = blank(cell)
-    named = (start.scene, start.engine, start.variant, start.purpose, str(start.samples), str(start.every))
-    lines = _stored().get(named, [])
-    if not lines:
-        return None
-    own = (digest(start.parameters), digest(start.settings))
-    line = next((line for line in lines if (line["parameters"], line["settings"]) == own), None)
+    line = _line(cell)
     if line is None:
-        wanted = _said(start.parameters) | _said(start.settings)
-        line = max(
-            lines, key=lambda line: len(wanted & (_described(line["parameters"]) | _described(line["settings"])))
-        )
+        return None
     told = {
         f.name: KINDS[str(f.type)](line[f.name])
         for f in fields(Measurement)
         if f.name in line and f.name not in ("parameters", "settings", "step")
     }
-    return replace(start, **told | {"outcome": Outcome(line["outcome"])})
+    return replace(blank(cell), **told | {"outcome": Outcome(line["outcome"])})

@@ -50,10 +50,10 @@ class Sighting:
     shift: float = math.inf
     noise: float = math.inf
 
-    def after(self, every: int, right: Measurement, wrong: Measurement) -> Sighting:
+    def after(self, every: int, right: Measurement, wrong: Measurement, amplified: float) -> Sighting:
         """This and one more step, at which nothing has noticed the mistake yet."""
         before = Old(Outcome(right.outcome), {quantity.name: getattr(right, quantity.name) for quantity in QUANTITIES})
-        out = replace(self, every=every, changed=self.changed or moved(wrong, before))
+        out = replace(self, every=every, changed=self.changed or moved(wrong, before, amplified))
         noise = max((abs(error) for error in before.errors.values() if not math.isnan(error)), default=0.0)
         return replace(out, shift=shift(right, wrong), noise=noise) if noise < self.noise else out
 
@@ -99,7 +99,7 @@ def sightings(trial: Trial, judge: Prediction) -> Mapping[Mistake, Sighting]:
         for mistake, before in tuple(waiting.items()):
             wrong = measure(replace(cell, engine=mistaken(engine, mistake, trial.relative)), repeat=False)
             wrongs[mistake].append(wrong)
-            waiting[mistake] = before.after(every, right, wrong)
+            waiting[mistake] = before.after(every, right, wrong, case.amplified)
             told = [check for check in checks(case, wrongs[mistake], judge) if (check.name, check.quantity) in held]
             failed = [check for check in told if not check.passed]
             if failed:

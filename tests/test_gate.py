@@ -250,10 +250,32 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
     assert complaints(found(1.1), {}) == (str(found(1.1)[0]),)
 
 
-@pytest.mark.parametrize(("reason", "factor"), [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan)])
-def test_a_deviation_says_whose_it_is_and_by_how_much(reason, factor):
+@pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.TORN, Outcome.SATURATED])
+def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
+    case = Case(SCENE, Toy(), Promise(2), (("outcome", Deviation("by design: x", outcome=Outcome.SATURATED)),))
+    ended = row(outcome=outcome)
+    told = Verdict(case, (ended,), theory(JUDGE, Promise(2), None, ended)).theory_complaints
+    assert len(told) == (outcome != Outcome.SATURATED)
+    assert all("known is saturated" in line for line in told)
+    better = Verdict(case, (row(),), theory(JUDGE, Promise(2), None, row())).theory_complaints
+    assert any("deviates no longer" in line for line in better)
+
+
+@pytest.mark.parametrize(
+    ("reason", "factor", "outcome"),
+    [
+        ("soft", 2.0, None),
+        ("by design: soft", 1.0, None),
+        ("ours: x", math.nan, None),
+        ("ours: x", math.inf, None),
+        ("ours: x", None, None),
+        ("ours: x", 2.0, Outcome.TORN),
+        ("ours: x", None, Outcome.FINISHED),
+    ],
+)
+def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends(reason, factor, outcome):
     with pytest.raises(ValueError, match="deviation"):
-        Deviation(reason, factor)
+        Deviation(reason, factor, outcome)
 
 
 def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
@@ -264,7 +286,7 @@ def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
 
 
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> Verdict:
-    return Verdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, new=1)
+    return Verdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, before=(None,))
 
 
 def test_the_report_tells_every_case_its_bound_and_what_failed():
@@ -280,6 +302,13 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
     assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text
     assert "| disc | toy default | error | 3 | by design: soft |" in text
     assert "cells are not in the baseline" in text
+
+
+def test_the_report_counts_and_tells_what_failed_against_the_baseline_alone():
+    changed = verdict(Check("error", "angle", 1.0, 2.0), moved=(Check("change", "angle", 1.0, 0.5),))
+    text = report([changed], Baseline({}))
+    assert "1 scenes and methods, 1 failed, 0 with known deviations" in text
+    assert "disc-toy default: change (angle): 1, bound 0.5" in text
 
 
 def test_every_field_that_a_baseline_needs_is_a_field_of_a_measurement():

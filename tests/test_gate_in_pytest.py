@@ -47,6 +47,34 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
     assert "toy one" not in (suite.path / "out.md").read_text()
 
 
+def test_a_test_of_all_verdicts_is_kept_with_what_is_selected_and_an_engine_that_is_not_there_is_skipped(suite):
+    suite.makepyfile(
+        test_all=SUITE
+        + """
+def test_of_all(verdicts):
+    assert len(verdicts) == 1
+
+def test_of_nothing():
+    pass
+
+from dataclasses import dataclass
+from reports.gate import grid_tests
+
+@dataclass(frozen=True)
+class Absent(Toy):
+    missing: str = "needs what pip install planar-crosscheck[moon] brings"
+
+def test_absent():
+    grid_tests.verdict_of({}, Case(Disc(), Absent(), Promise(2)))
+"""
+    )
+    selected = suite.runpytest_inprocess("test_all.py", "--engine", "toy two", "--baseline", "errors.csv")
+    selected.assert_outcomes(passed=2, deselected=4)
+    absent = suite.runpytest_inprocess("test_all.py", "-k", "absent", "-rs", "--baseline", "errors.csv")
+    absent.assert_outcomes(skipped=1, deselected=5)
+    absent.stdout.fnmatch_lines(["*needs what pip install planar-crosscheck[[]moon[]] brings"])
+
+
 def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
     pytest.importorskip("xdist", reason="pytest-xdist comes with the extra `test`: pip install -e '.[test]'")
     found = suite.runpytest_subprocess("-n", "1", "-rs", "--baseline", "errors.csv")
@@ -60,6 +88,8 @@ def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
         (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
         (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
         (["--scene", "moon"], "no case of --scene"),
+        (["--cost", "0"], "--cost 0.0: it must be a number above 0, such as 1.5"),
+        (["--cost", "nan"], "--cost nan: it must be a number above 0, such as 1.5"),
     ],
 )
 def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):

@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from reference.pendulum.scenes import LinkPendulum
+from reference.scenes import SCENES
 from reports.gate import walk
+from reports.gate.judge import _samples, integrate
 from reports.gate.prediction import prediction
 from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
 from reports.grid.cells import Cell
@@ -18,6 +20,38 @@ from reports.grid.waiting import kin_of
 from tests.toys import Disc, FailingToy, Toy
 
 NO_KINDS: frozenset[Any] = frozenset()
+
+
+class Cut(Disc):
+    """A scene whose motion can be compared for a part of its 0.2 s [s]."""
+
+    name = "cut disc"
+    comparable_until = 0.115
+
+
+class Brief(Cut):
+    """Less than a sample."""
+
+    comparable_until = 1e-4
+
+
+@pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.comparable_until >= scene.duration], ids=str)
+def test_the_judge_runs_to_the_end_of_a_scene(scene):
+    assert _samples(scene) == scene.samples
+
+
+def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least():
+    scene = Cut()
+    assert _samples(scene) == 11
+    assert integrate(scene, 2, 1).t[-1] == pytest.approx(0.11, rel=1e-12)
+    assert _samples(Brief()) == 1
+    assert _samples(Rounded(duration=0.705)) == 27
+
+
+class Rounded(Cut):
+    """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
+
+    comparable_until = 27 * (0.705 / 70)
 
 
 class Unknown(Disc):

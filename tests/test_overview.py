@@ -178,3 +178,9 @@ def test_a_document_has_a_text_between_its_marks_and_nothing_else_changed():
             with_part(lacking, "table", "new")
     with pytest.raises(ValueError, match="lacks the marks"):
         with_part(text, "another", "new")
+
+
+def test_a_document_has_several_parts_and_may_end_one_before_it_begins():
+    (begin, end), (other, last) = marks("table"), marks("index")
+    text = f"{end}\n{other}\nkept\n{last}\n{begin}\nold\n{end}\n{other}\n{last}"
+    assert with_part(text, "table", "new") == f"{end}\n{other}\nkept\n{last}\n{begin}\nnew\n{end}\n{other}\n{last}"

@@ -18,15 +18,25 @@ from jinja2 import UndefinedError
 from reports import __main__ as command_line
 from reports.charts import work_precision as charts
 from reports.charts.theme import DARK, LIGHT, SERIES, svg
-from reports.cli.selection import BadInput, choose_cells, choose_engines, choose_scenes, nearest, steps_per_sample
+from reports.cli.selection import (
+    BadInput,
+    choose_cells,
+    choose_engines,
+    choose_scenes,
+    nearest,
+    shown_cells,
+    steps_per_sample,
+)
 from reports.grid.cells import QUICK, Cell, sweep_cells
 from reports.grid.convergence import judged
 from reports.grid.measure import TIMINGS, measure
 from reports.grid.outcomes import Outcome
+from reports.pages.catalogue import PAGES
 from reports.pages.page import Failure, Material, Observation, Page, StabilityMap
 from reports.text.rendering import render_all
 from reports.text.templates import environment
 from tests import test_any_rows as rendering
+from tests.committed_rows import stale
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
@@ -253,3 +263,8 @@ def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd, undrawn):
     assert "1 of 1 cells run" in out
     assert "lagrange euler baumgarte" in out
     assert {"index.md", "four_bar.md", "errors.csv", "timings.csv"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_no_published_row_is_of_other_numbers_or_settings_than_the_present_ones():
+    found = stale(dict.fromkeys(cell for page in PAGES for cell in shown_cells(page)))
+    assert found == [], f"{len(found)} cells have to be published anew: {', '.join(found[:5])}"

@@ -94,6 +94,18 @@ def test_a_worse_build_is_told_and_what_it_prints_and_leaves_behind_is_contained
     assert not (here / "crosscheck-results").exists()  # a build may change: nothing is kept of it
 
 
+def test_a_cost_sets_the_status_where_a_limit_is_given(here):
+    toy(here, "1.0", "def error(): return 1.0\n")
+    toy(here, "2.0", "def error(): return 1.0\n# another build\n")
+    words = ["compare", "1.0", "2.0", "--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"]
+    # A toy tells the same cost whatever it takes.
+    assert invoke([*words, "--cost", "1.5"]) == 0
+    with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
+        invoke([*words, "--cost", "0.9"])
+    with pytest.raises(BadInput, match="--cost is 0; give a number above 0"):
+        invoke([*words, "--cost", "0"])
+
+
 def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
     place = toy(here, "3.0", "import os\nos.abort()\n")
     given = Request((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
@@ -248,6 +260,27 @@ def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
     return replace(made, angle=angle, cpu=cpu)
 
 
+def ended(outcome):
+    return [row(float("nan"), outcome)]
+
+
+def test_a_cost_is_the_median_of_the_ratios_of_all_rows_and_of_each_methods():
+    before = [row(1e-3, every=every) for every in (1, 3, 10)]
+    after = [row(1e-3, every=every, cpu=cpu) for every, cpu in ((1, 1.0), (3, 2.0), (10, 9.0))]
+    found = compared(before, after)
+    assert found.cost == 2.0
+    assert dict(found.costs) == {before[0].method: 2.0}
+
+
+def test_what_grew_in_the_median_of_all_scenes_is_told_though_no_row_is_three_times_as_wrong():
+    def of_scenes(angle):
+        return [replace(row(angle), scene=f"scene {number}") for number in range(9)]
+
+    found = compared(of_scenes(1e-3), of_scenes(2.9e-3))
+    assert (found.differences, [check.quantity for check in found.grown]) == ((), ["angle"])
+    assert compared(of_scenes(1e-3), of_scenes(1.2e-3)).grown == ()
+
+
 def test_worse_is_more_than_three_times_as_large_and_cost_is_told():
     before = [row(1e-3), row(1e-4, every=10)]
     assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
@@ -256,6 +289,12 @@ def test_worse_is_more_than_three_times_as_large_and_cost_is_told():
     assert (found.pairs, found.cost) == (2, 2.0)
     lost = compared(before, [row(1e-3, Outcome.TORN), row(1e-4, every=10)])
     assert [(each.quantity, each.worse) for each in lost.differences] == [("outcome", True)]
+    assert [
+        (each.quantity, each.worse) for each in compared(ended(Outcome.TORN), ended(Outcome.ABORTED)).differences
+    ] == [("outcome", True)]
+    assert [
+        (each.quantity, each.worse) for each in compared(ended(Outcome.TORN), ended(Outcome.RESET)).differences
+    ] == [("outcome", False)]
     orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)])
     assert [(round(turn.before), round(turn.after)) for turn in orders.turns] == [(2, 1)]
 

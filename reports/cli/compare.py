@@ -49,9 +49,14 @@ def compare(
     scenes: Annotated[
         list[str] | None, typer.Option("--scenes", help="Only these scenes (repeatable, or with commas).")
     ] = None,
+    cost: Annotated[
+        float | None, typer.Option("--cost", help="Status 1 too if a method takes this many times as much CPU time.")
+    ] = None,
     results: Folder = FOLDER,
 ) -> None:
     """Tell what changed in error, order, outcome and cost from A to B; status 1 if an error became 3 times as large."""
+    if cost is not None and not 0 < cost < math.inf:
+        raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     from engines.registry import OTHERS, VARIANTS
     from reports.cli.selection import nearest
     from reports.cli.terminal import Terminal
@@ -83,8 +88,14 @@ def compare(
         raise BadInput(f"nothing can be compared with {sides[0].label}: {columns[0].trouble}")
     found = compared(columns[0].rows, columns[1].rows)
     _print(console, found, sides)
-    if found.worse:
-        raise Broken(f"{sides[1].label} is worse than {sides[0].label} in {len(found.worse)} numbers or outcomes")
+    if found.worse or found.grown:
+        grown = f", and {len(found.grown)} errors over all scenes" if found.grown else ""
+        told = f"{len(found.worse)} numbers or outcomes{grown}"
+        raise Broken(f"{sides[1].label} is worse than {sides[0].label} in {told}")
+    dear = {method: ratio for method, ratio in found.costs.items() if cost is not None and ratio > cost}
+    if dear:
+        told = ", ".join(f"{method} takes {ratio:.2f} times the CPU time" for method, ratio in dear.items())
+        raise Broken(f"{sides[1].label} is dearer than {sides[0].label}: {told}, and --cost is {cost:g}")
 
 
 def _named(word: str) -> tuple[Engine, ...]:
@@ -157,6 +168,7 @@ def _column(
 def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
     """Worse lines first, then better ones, then orders, then one sentence."""
     from reports.cli.terminal import print_table
+    from reports.gate.change import DEAR
     from reports.text.tables import number
 
     def cell(value: float | str) -> str:
@@ -185,6 +197,11 @@ def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
     if turned:
         print_table(console, "Order of the angle's error", ("scene", "method", "before", "after"), turned, 2)
         console.print()
+    for check in found.grown:
+        console.say(f"{sides[1].label}: {check}")
+    for method, ratio in found.costs.items():
+        if ratio > DEAR:
+            console.say(f"{sides[1].label}: {method} takes {ratio:.3g} times the CPU time")
     better = len(found.differences) - len(found.worse)
     cost = "nothing was timed"
     if math.isfinite(found.cost):

@@ -50,6 +50,7 @@ def report(
     from reports.grid.store import Store
     from reports.pages.catalogue import PAGES
     from reports.text import kept_numbers
+    from reports.text.csv_files import DIGESTS, digests_csv
     from reports.text.rendering import render_all, render_readme
 
     folder = published() if publish else results
@@ -82,6 +83,7 @@ def report(
         words = () if publish else store.remembered()
     made = made_of(material, words, command, published(), results / KEPT) if many else {}
     files = render_all(material, command, searched, made)
+    files[DIGESTS] = digests_csv(files)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
         timings = folder / "timings.csv"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+
+from reports.grid.outcomes import Outcome
 
 # "change" stands apart: it is of a baseline, and no deviation excuses it.
 CHECKS = ("outcome", "error", "rate", "gap", "energy", "reaction", "order")
@@ -51,18 +53,34 @@ class Check:
 class Deviation:
     """A check that a method is known to miss: why, and `factor`, how many times its bound it takes at most.
 
-    `reason` begins with whose it is: "upstream:", "by design:" or "ours:". The factor of an outcome, which has no
-    number, is infinite. Raises ValueError for another beginning, or a factor that is not above 1.
+    `reason` begins with whose it is: "upstream:", "by design:" or "ours:". An outcome has no number: of it `outcome`
+    is what is known, and another one is another fault. Raises ValueError for another beginning, for a factor that is
+    not a number above 1, and for both or neither of the two.
     """
 
     reason: str
-    factor: float = math.inf
+    factor: float | None = None
+    outcome: Outcome | None = None
 
     def __post_init__(self) -> None:
         if not self.reason.startswith(BEGINNINGS):
             raise ValueError(f"deviation: reason is {self.reason!r}; it must begin with one of {', '.join(BEGINNINGS)}")
-        if not self.factor > 1:
-            raise ValueError(f"deviation: factor is {self.factor!r}; it must be above 1, or there is no deviation")
+        if (self.factor is None) == (self.outcome is None):
+            raise ValueError(
+                f"deviation: factor is {self.factor!r} and outcome {self.outcome!r}; give one of them, and the outcome "
+                f"where that is what is known"
+            )
+        if self.factor is not None and not 1 < self.factor < math.inf:
+            raise ValueError(
+                f"deviation: factor is {self.factor!r}; it must be a number above 1, or there is no deviation"
+            )
+        if self.outcome is not None and self.outcome.comparable:
+            raise ValueError(f"deviation: outcome is {self.outcome!r}; such a run can be compared, so it is none")
+
+    @property
+    def told(self) -> str:
+        """How much is known, for a table: '2.5', or 'torn'."""
+        return f"{self.factor:.4g}" if self.outcome is None else self.outcome
 
 
 def nearest(checks: Iterable[Check]) -> Check:
@@ -70,8 +88,11 @@ def nearest(checks: Iterable[Check]) -> Check:
     return max(checks, key=lambda check: check.nearness)
 
 
-def complaints(checks: Iterable[Check], known: dict[str, Deviation]) -> tuple[str, ...]:
-    """What is wrong, in sentences: checks that fail unknown, deviations that grew, and those that are none any more."""
+def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
+    """What is wrong, in sentences: checks that fail unknown, deviations that grew, and those that are none any more.
+
+    `outcome`: of the run that is checked, which has to be the one that is known.
+    """
     out: list[str] = []
     checks = tuple(checks)
     for check in checks:
@@ -85,6 +106,9 @@ def complaints(checks: Iterable[Check], known: dict[str, Deviation]) -> tuple[st
         worst = nearest(own)
         if worst.nearness <= BACK:
             out.append(f"{worst}: deviates no longer ({deviation.reason})")
+        elif deviation.factor is None:
+            if outcome != deviation.outcome:
+                out.append(f"{worst}: known is {deviation.outcome} ({deviation.reason})")
         elif worst.nearness > WORSE * deviation.factor:
             out.append(f"{worst}: {worst.nearness:.2g} times the bound, known are {deviation.factor:.2g}")
     return tuple(out)

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import pytest
 
-from reports.gate.baseline import Baseline
+from engines import registry
 from reports.gate.pytest_plugin import GIVEN, KNOWN
 from reports.gate.verdicts import Case, cases
-from reports.gate.walk import Verdict
+from reports.gate.walk import Verdict, grown, lost
 from reports.grid.outcomes import Outcome
 from reports.pages.catalogue import PAGES, with_engines
 
@@ -30,9 +30,16 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("case", [pytest.param(case, id=case.label) for case in found])
 
 
+def verdict_of(verdicts: dict[Case, Verdict], case: Case) -> Verdict:
+    """The verdict of a case; a skip where its engine is an extra that is not installed."""
+    if absent := registry.missing(case.engine):
+        pytest.skip(absent)
+    return verdicts[case]
+
+
 @pytest.mark.crosscheck
 def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, Verdict], case: Case) -> None:
-    verdict = verdicts[case]
+    verdict = verdict_of(verdicts, case)
     if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
         # What can't be built can't be at any step, and says why.
         assert all(row.outcome == Outcome.UNSUPPORTED and row.sentence for row in verdict.rows)
@@ -43,12 +50,28 @@ def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, Verdict], 
 
 @pytest.mark.crosscheck
 def test_a_method_gives_the_numbers_of_the_baseline(verdicts: dict[Case, Verdict], case: Case) -> None:
-    verdict = verdicts[case]
+    verdict = verdict_of(verdicts, case)
     assert not verdict.change_complaints, "\n".join(verdict.change_complaints)
 
 
 @pytest.mark.crosscheck
-def test_the_baseline_knows_some_of_the_grid(request: pytest.FixtureRequest) -> None:
-    baseline: Baseline = request.config.stash[KNOWN]
-    known = {(scene, method) for scene, method, _, _ in baseline.cells}
-    assert known & {(case.scene.name, case.method) for case in GRID}
+def test_with_other_versions_no_method_is_worse_over_all_its_scenes(
+    request: pytest.FixtureRequest, verdicts: dict[Case, Verdict]
+) -> None:
+    found = [str(check) for check in grown(verdicts.values(), request.config.stash[KNOWN]) if not check.passed]
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.crosscheck
+def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.FixtureRequest) -> None:
+    left = lost(request.config.stash[KNOWN], GRID)
+    absent = {told for _, method in left if (told := absence(method))}
+    gone = [f"{scene}-{method}" for scene, method in left if not absence(method)]
+    assert not gone, f"the grid has lost what the baseline has: {', '.join(gone)}"
+    if absent:
+        pytest.skip("; ".join(sorted(absent)))
+
+
+def absence(method: str) -> str:
+    """How to install what a method of an extra needs; empty where it is there, or is no extra's."""
+    return next((told for name, told in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

@@ -1,4 +1,4 @@
-"""The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --crosscheck-report`, and the table at its end.
+"""The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --cost --crosscheck-report`, and its table.
 
 The tests are in `reports.gate.grid_tests`. A conftest takes this with `pytest_plugins = ["reports.gate.pytest_plugin"]`
 and a command line with `-p reports.gate.pytest_plugin`. Only the cells of selected tests are run.
@@ -6,6 +6,7 @@ and a command line with `-p reports.gate.pytest_plugin`. Only the cells of selec
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help='only this engine, or "engine variant"; or package.module:NAME, path/to/file.py[:NAME] (repeatable)',
     )
     group.addoption("--baseline", type=Path, default=BASELINE, help="errors.csv of an earlier run to compare with")
+    group.addoption("--cost", type=float, help="how many times the baseline's CPU time a method may take, such as 1.5")
     group.addoption("--crosscheck-report", type=Path, metavar="FILE.md", help="write what was found as Markdown")
 
 
@@ -46,6 +48,9 @@ def pytest_configure(config: pytest.Config) -> None:
         config.stash[KNOWN] = read_baseline(_option(config, "--baseline"))
     except BadBaseline as error:
         raise pytest.UsageError(str(error)) from None
+    limit = _option(config, "--cost")
+    if limit is not None and not 0 < limit < math.inf:
+        raise pytest.UsageError(f"--cost {limit}: it must be a number above 0, such as 1.5")
     config.stash[GIVEN], config.stash[WANTED] = _engines(_option(config, "--engine"))
     target = _option(config, "--crosscheck-report")
     if target is not None and not target.resolve().parent.is_dir():
@@ -99,18 +104,19 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     scenes, engines = _option(config, "--scene"), config.stash[WANTED]
     if not (scenes or engines):
         return
-    kept = [item for item in items if _wanted(case_of(item), scenes, engines)]
-    if not kept:
+    kept = [item for item in items if _wanted(item, scenes, engines)]
+    if not any(map(case_of, kept)):
         known = sorted({case.scene.name for case in map(case_of, items) if case is not None})
         raise pytest.UsageError(f"no case of --scene {scenes} --engine {list(engines)}; scenes are {', '.join(known)}")
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = kept
 
 
-def _wanted(case: Case | None, scenes: Sequence[str], engines: Sequence[str]) -> bool:
-    """Whether a test is kept: those that are about no case are not, once some are asked for."""
+def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:
+    """Whether a test is kept once some are asked for: of those about no case, the ones that look at all verdicts."""
+    case = case_of(item)
     if case is None:
-        return False
+        return "verdicts" in getattr(item, "fixturenames", ())
     return (not scenes or case.scene.name in scenes) and (
         not engines or case.engine.name in engines or case.method in engines
     )
@@ -125,7 +131,7 @@ def verdicts(request: pytest.FixtureRequest) -> dict[Case, Verdict]:
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)
-    found = walk(chosen, request.config.stash[KNOWN])
+    found = walk(chosen, request.config.stash[KNOWN], dearest=_option(request.config, "--cost"))
     request.config.stash[VERDICTS] = found
     return found
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from reports.gate.baseline import Baseline
-from reports.gate.walk import Verdict
+from reports.gate.baseline import Baseline, mixed
+from reports.gate.walk import Verdict, grown, remarks
 from reports.text.provenance import versions
 from reports.text.tables import markdown, number
 
@@ -57,17 +57,19 @@ def plain(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def changes(verdicts: Iterable[Verdict], baseline: Baseline) -> list[str]:
-    """Sentences on the baseline: its versions if they differ, cells that it lacks, and what changed most."""
+    """Sentences on the baseline: its versions if they differ, what changed then, what is dear, and cells it lacks."""
     verdicts = tuple(verdicts)
-    out = []
+    out = [told] if (told := mixed(baseline)) else []
     if not baseline.same_versions:
         out.append(f"The baseline was made with {baseline.versions}; here are {versions()}.")
         for verdict in verdicts:
             found = [check for check in verdict.change if "baseline" in dict(check.terms)]
-            grown = [
+            other = [
                 check for check in found if abs(check.measured - dict(check.terms)["baseline"]) > 1e-3 * check.measured
             ]
-            out += [f"{verdict.case.label}: {check}" for check in grown]
+            out += [f"{verdict.case.label}: {check}" for check in other]
+        out += [str(check) for check in grown(verdicts, baseline) if not check.passed]
+    out += [f"{verdict.case.label}: {told}." for verdict in verdicts for told in remarks(verdict)]
     new = sum(verdict.new for verdict in verdicts)
     if new:
         named = ", ".join(verdict.case.label for verdict in verdicts if verdict.new)
@@ -90,11 +92,7 @@ def report(verdicts: Iterable[Verdict], baseline: Baseline) -> str:
         parts.append("\n".join(f"* {told}" for told in sentences))
     if known:
         parts.append("## Known deviations")
-        body = [
-            [v.case.scene.name, v.case.method, name, number(d.factor), d.reason]
-            for v in known
-            for name, d in v.case.known
-        ]
+        body = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in known for name, d in v.case.known]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
     changed = changes(verdicts, baseline)
     if changed:

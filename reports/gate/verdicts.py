@@ -41,6 +41,19 @@ class Case:
     def label(self) -> str:
         return f"{self.scene.name}-{self.method}"
 
+    @property
+    def ours(self) -> bool:
+        """Whether scene and engine are those of this suite, whose rows are published."""
+        return {type(each).__module__.partition(".")[0] for each in (self.scene, self.engine)} <= {
+            "reference",
+            "engines",
+        }
+
+    @property
+    def amplified(self) -> float:
+        """How many times the usual rounding of velocities the method carries."""
+        return self.promise.amplified if isinstance(self.promise, Promise) else 1.0
+
     def cells(self) -> tuple[Cell, ...]:
         """What is run of it, coarse steps first."""
         return sweep_cells((self.scene,), (self.engine,), STEPS, COST_LIMIT)

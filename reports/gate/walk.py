@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from engines import Softness
 from reference.scene import Scene
-from reports.gate.baseline import Baseline, identity
-from reports.gate.change import change, drift, moved
-from reports.gate.checks import Check, complaints, nearest
+from reports.gate.baseline import Baseline, Old, identity
+from reports.gate.change import DEAR, change, cost, drift, growth, known_by_now, moved
+from reports.gate.checks import CHANGE, Check, complaints, nearest
 from reports.gate.judge import errors_as_soft
 from reports.gate.nudged import nudged_cells
 from reports.gate.prediction import Kind, Prediction, prediction
@@ -29,18 +30,36 @@ JUDGE_LIMIT = 600.0
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a case's rows were checked against: theory and order, the baseline's numbers, and cells it has not."""
+    """What a case's rows were checked against: theory and order, the baseline's numbers, and cells it has not.
+
+    `before`: what the baseline knows of each row, None where it lacks it.
+    """
 
     case: Case
     rows: tuple[Measurement, ...]
     theory: tuple[Check, ...]
     change: tuple[Check, ...] = ()
-    new: int = 0  # rows that the baseline lacks
+    before: tuple[Old | None, ...] = ()
+
+    @property
+    def pairs(self) -> tuple[tuple[Measurement, Old], ...]:
+        """The rows that the baseline knows, and what it knows of them."""
+        return tuple((row, old) for row, old in zip(self.rows, self.before, strict=False) if old is not None)
+
+    @property
+    def new(self) -> int:
+        """Rows that the baseline lacks."""
+        return sum(old is None for old in self.before)
+
+    @property
+    def cost(self) -> float:
+        """How many times the baseline's CPU time it took; NaN if that is not known."""
+        return cost(self.pairs)
 
     @property
     def theory_complaints(self) -> tuple[str, ...]:
         """Sentences, none if all is as promised or known."""
-        return complaints(self.theory, dict(self.case.known))
+        return complaints(self.theory, dict(self.case.known), self.rows[-1].outcome)
 
     @property
     def change_complaints(self) -> tuple[str, ...]:
@@ -130,21 +149,26 @@ def _as_soft(asked: Iterable[Soft], workers: int) -> Mapping[Soft, Mapping[str, 
     return told
 
 
-def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None) -> dict[Case, Verdict]:
+def walk(
+    chosen: Iterable[Case], baseline: Baseline, workers: int | None = None, dearest: float | None = None
+) -> dict[Case, Verdict]:
     """Run what these cases need, in as many processes as there are processors, and check it.
 
+    `dearest`: how many times the baseline's CPU time a case may take; then runs are timed as those of a report are.
     Raises RuntimeError when the judge itself fails.
     """
     chosen, workers = tuple(chosen), workers or os.cpu_count() or 1
     judging = Judging(tuple(Foretold(scene, soft) for scene, soft in predictions(chosen).items()), {})
     cells = {case: case.cells() for case in chosen}
-    rows = _measured((cell for own in cells.values() for cell in own), workers, judging)
+    rows = _measured((cell for own in cells.values() for cell in own), workers, judging, dearest is not None)
     old = baseline.cells
     doubtful = [
         cell
-        for own in cells.values()
+        for case, own in cells.items()
         for cell in own
-        if baseline.same_versions and (key := identity(rows[cell])) in old and moved(rows[cell], old[key])
+        if baseline.same_versions
+        and (before := old.get(identity(rows[cell]))) is not None
+        and moved(rows[cell], before, case.amplified)
     ]
     nudged = _measured((other for cell in doubtful for other in nudged_cells(cell)), workers)
     finished = {case: tuple(rows[cell] for cell in own) for case, own in cells.items()}
@@ -157,21 +181,65 @@ def walk(chosen: Iterable[Case], baseline: Baseline, workers: int | None = None)
     out: dict[Case, Verdict] = {}
     for case, own in cells.items():
         measured = finished[case]
+        before = tuple(old.get(identity(row)) for row in measured)
         changed: list[Check] = []
-        for cell, row in zip(own, measured, strict=True):
-            before = old.get(identity(row))
-            if before is not None and baseline.same_versions:
+        for cell, row, then in zip(own, measured, before, strict=True):
+            if then is not None and baseline.same_versions:
                 others = [nudged[other] for other in nudged_cells(cell) if other in nudged]
-                changed += change(row, before, others)
-            elif before is not None:
-                changed += drift(row, before)
-        new = sum(identity(row) not in old for row in measured)
+                changed += change(row, then, others, case.amplified)
+            elif then is not None:
+                changed += drift(row, then)
+        changed += vanished(case, before)
         told = checks(case, measured, judging.found[case.scene], soft.get(own_soft[case]) if case in own_soft else None)
-        out[case] = Verdict(case, measured, told, tuple(changed), new)
+        verdict = Verdict(case, measured, told, tuple(changed), before)
+        if dearest is not None and not math.isnan(verdict.cost):
+            costly = Check(CHANGE, "CPU time", verdict.cost, dearest, sentence=" times the baseline's")
+            verdict = replace(verdict, change=(*verdict.change, costly))
+        out[case] = verdict
     return out
 
 
-def _measured(cells: Iterable[Cell], workers: int, supervised: Supervise = supervise) -> Mapping[Cell, Measurement]:
+def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
+    """A check that fails where the baseline lacks what it must have had of a case, coarse steps first.
+
+    A baseline that was made with another grid may end at a coarser step, and it knows nothing of somebody else's scene
+    or engine. It has no hole below its finest step, and of ours it has each scene in each method.
+    """
+    first = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
+    if first is None:
+        lacking = len(before) if case.ours else 0
+        told = ", as the baseline has no row of it: select what it has, or write it anew"
+    else:
+        lacking = sum(old is None for old in before) - first
+        told = ", as steps are missing in the baseline between those that it has: write it anew"
+    return (Check(CHANGE, "rows", float(lacking), 0.0, sentence=told),) if lacking else ()
+
+
+def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...]:
+    """(scene, method) of what a baseline has and a grid lacks."""
+    there = {(case.scene.name, case.method) for case in grid}
+    return tuple(
+        pair for pair in dict.fromkeys((scene, method) for scene, method, *_ in baseline.cells) if pair not in there
+    )
+
+
+def grown(verdicts: Iterable[Verdict], baseline: Baseline) -> tuple[Check, ...]:
+    """With other versions: whether a method's errors grew over all its scenes; see `reports.gate.change.growth`."""
+    if baseline.same_versions:
+        return ()
+    return growth(pair for verdict in verdicts for pair in verdict.pairs)
+
+
+def remarks(verdict: Verdict) -> tuple[str, ...]:
+    """Sentences that change no verdict: what is known by now, and a cost that no machine or load explains."""
+    known = (told for row, old in verdict.pairs for told in known_by_now(row, old))
+    dear = (f"{verdict.cost:.3g} times the CPU time of the baseline",) if verdict.cost > DEAR else ()
+    return tuple(dict.fromkeys([*known, *dear]))
+
+
+def _measured(
+    cells: Iterable[Cell], workers: int, supervised: Supervise = supervise, timed: bool = False
+) -> Mapping[Cell, Measurement]:
     by_key = {cell.key: cell for cell in cells}
-    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=False, supervised=supervised)}
+    rows = {row.key: row for row in run_cells(by_key.values(), workers=workers, timed=timed, supervised=supervised)}
     return {cell: rows[key] for key, cell in by_key.items()}

@@ -46,6 +46,15 @@ class Outcome(StrEnum):
         """Whether the cell ran and what it did is not the scene's motion."""
         return self in (Outcome.SATURATED, Outcome.BRANCH_FLIP, Outcome.TORN, Outcome.DIVERGED, Outcome.RESET)
 
+    @property
+    def grade(self) -> int:
+        """How grave it is: 0 can be compared, 1 says itself that it has none, 2 is wrong, 3 gave nothing at all."""
+        if self.comparable:
+            return 0
+        if self in (Outcome.UNRESOLVED, Outcome.REFUSED, Outcome.UNSUPPORTED):
+            return 1
+        return 2 if self.wrong else 3
+
 
 MEANINGS = {
     Outcome.FINISHED: "ran to its end on the right branch with closed joints; the error may still be large",

@@ -61,22 +61,29 @@ def printed(value: float) -> float:
     return 10.0 ** (math.floor(math.log10(abs(value))) + 1 - DIGITS)
 
 
+def room(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
+    """What printing and rounding may change in a value: one unit of its last printed digit, and the quantity's floor.
+
+    `name`: a field of a Measurement that is an error, a root mean square or an estimate of one. An error is a
+    difference from the truth. Where another processor rounds each step otherwise, the motion moves by no more than
+    `Quantity.rounding`, which is what 1e5 steps may lose. By the triangle inequality the error moves by no more than
+    that, however small it is: this floor is never zero. `amplified`: how many times the usual rounding the method
+    carries, as the weights of a combination of runs do (`engines.Promise.amplified`). What a motion itself amplifies is
+    not in it, and has to be measured (`reports.gate.nudged`). Raises KeyError for another name.
+    """
+    return printed(before), quantity(OF.get(name, name)).rounding * amplified
+
+
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
-    """Whether two values of one quantity differ by no more than printing and rounding: nothing is run for it.
+    """Whether two values of one quantity differ by no more than its `room`: nothing is run for it.
 
-    `name`: a field of a Measurement that is an error, a root mean square or an estimate of one; `now` may have all its
-    digits, `before` the DIGITS of a file. An error is a difference from the truth: where another processor rounds each
-    step otherwise, the motion moves by no more than `Quantity.rounding`, and by the triangle inequality the error moves
-    by no more than that. So the room is that rounding, whatever the error, and one unit of the last printed digit.
-    `amplified`: how many times the usual rounding the method carries (`engines.Promise.amplified`).
-
-    Of 4,280 rows that two processors gave 1,511 errors differ in print. Of those that can be compared eight numbers of
-    four rows go beyond this room: of pivots that are placed by a stale or a predicted contact, at 300 steps a sample
-    and more. They feed rounding back, and only another run tells how much (`reports.gate.nudged`). All others stay
+    `now` may have all its digits, `before` the DIGITS of a file. Of 4,280 rows that two processors gave 1,511 errors
+    differ in print. Of those that can be compared eight numbers of four rows go beyond this room: of pivots that are
+    placed by a stale or a predicted contact, at 300 steps a sample and more, which feed rounding back. All others stay
     within two thirds of it. Two values that are no numbers agree, and one that is a number never agrees with one that
     is not. Raises KeyError for another name.
     """
-    rounding = quantity(OF.get(name, name)).rounding * amplified
+    allowed = sum(room(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):
         return now == before or (math.isnan(now) and math.isnan(before))
-    return abs(now - before) <= printed(before) + rounding
+    return abs(now - before) <= allowed

@@ -7,6 +7,7 @@ import hashlib
 import io
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from pathlib import Path
 
 from reports.grid.measure import TIMINGS, Measurement
 from reports.grid.quantities import DIGITS
@@ -69,3 +70,30 @@ def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] |
     found |= {("versions", told) for told in (made_with or {}).values()}
     writer.writerows([digest(text), name, no_formula(text)] for name, text in sorted(found))
     return out.getvalue()
+
+
+# What tells that the tables and pages of a folder were written together.
+DIGESTS = "digests.csv"
+
+
+def digests_csv(files: Mapping[str, str]) -> str:
+    """The digest of each table and page of a report, by its name. Pictures are left out: no number is read from one."""
+    told = {name: digest(text) for name, text in files.items() if name.endswith((".csv", ".md")) and name != DIGESTS}
+    return "".join(f"{name},{value}\n" for name, value in [("file", "digest"), *sorted(told.items())])
+
+
+def not_as_written(folder: Path) -> tuple[str, ...] | None:
+    """The tables and pages of a folder that are not, or no longer, those that one report wrote; None if none says."""
+    try:
+        lines = (folder / DIGESTS).read_text(encoding="utf-8").splitlines()[1:]
+    except (OSError, UnicodeDecodeError):
+        return None
+    told = (line.rpartition(",") for line in lines)
+    return tuple(name for name, _, value in told if _digest_of(folder / name) != value)
+
+
+def _digest_of(path: Path) -> str:
+    try:
+        return digest(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return ""

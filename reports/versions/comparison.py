@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
 from statistics import median
 
 from reports.gate.baseline import Identity, Old, identity
-from reports.gate.change import drift
+from reports.gate.change import drift, growth
+from reports.gate.checks import Check
 from reports.grid.convergence import Sweep, sweeps
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
@@ -43,12 +45,15 @@ class Turn:
 
 @dataclass(frozen=True)
 class Comparison:
-    """`pairs`: how many rows both have; `cost`: the median of the ratios of CPU times (NaN without one)."""
+    """`pairs`: how many rows both have; `grown`: failed checks of a method's errors over all scenes; `costs`: by method
+    the median of the ratios of CPU times; `cost`: of all rows (NaN without one)."""
 
     pairs: int
     differences: tuple[Difference, ...]
     turns: tuple[Turn, ...]
     cost: float
+    grown: tuple[Check, ...] = ()
+    costs: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def worse(self) -> tuple[Difference, ...]:
@@ -60,10 +65,15 @@ def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> Com
     old, new = _by_cell(before), _by_cell(after)
     pairs = [(old[key], new[key]) for key in old if key in new]
     differences = [found for pair in pairs for found in _differences(*pair)]
-    ratios = [b.cpu / a.cpu for a, b in pairs if _timed(a) and _timed(b)]
-    cost = median(ratios) if ratios else math.nan
+    ratios: dict[str, list[float]] = {}
+    for a, b in pairs:
+        if _timed(a) and _timed(b):
+            ratios.setdefault(b.method, []).append(b.cpu / a.cpu)
+    cost = median(chain(*ratios.values())) if ratios else math.nan
     turns = _turns([a for a, _ in pairs], [b for _, b in pairs])
-    return Comparison(len(pairs), tuple(differences), turns, cost)
+    grown = tuple(check for check in growth((b, _old(a)) for a, b in pairs) if not check.passed)
+    costs = {method: median(own) for method, own in ratios.items()}
+    return Comparison(len(pairs), tuple(differences), turns, cost, grown, costs)
 
 
 def _by_cell(rows: Iterable[Measurement]) -> dict[Identity, Measurement]:
@@ -75,17 +85,18 @@ def _timed(row: Measurement) -> bool:
 
 
 def _differences(before: Measurement, after: Measurement) -> list[Difference]:
+    first, second = Outcome(before.outcome), Outcome(after.outcome)
+    if first != second and not (first.comparable and second.comparable):
+        return [Difference(before, after, "outcome", second.grade > first.grade)]
     lost, won = drift(after, _old(before)), drift(before, _old(after))
     worse = [Difference(before, after, check.quantity, True) for check in lost if not check.passed]
     better = [Difference(before, after, check.quantity, False) for check in won if not check.passed]
-    if before.outcome != after.outcome and not worse and not better:
-        # Neither can be compared: another way to fail is told, and is not worse.
-        return [Difference(before, after, "outcome", False)]
     return worse + better
 
 
 def _old(row: Measurement) -> Old:
-    return Old(Outcome(row.outcome), {each.name: getattr(row, each.name) for each in QUANTITIES})
+    errors = {each.name: getattr(row, each.name) for each in QUANTITIES}
+    return Old(Outcome(row.outcome), errors, row.reaction_rows, row.cpu)
 
 
 def _turns(before: Sequence[Measurement], after: Sequence[Measurement]) -> tuple[Turn, ...]:

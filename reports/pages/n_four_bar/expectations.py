@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reports.gate.checks import Deviation
+from reports.grid.outcomes import Outcome
 
 SWEPT = (
     "by design: near the singular position the forces have no limit and sweeps do not converge; what they leave is "
@@ -35,30 +36,30 @@ RANK = (
 )
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("n_four_bar_2", "pymunk default", "outcome"): Deviation(SHIPPED),
+    ("n_four_bar_2", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.SATURATED),
     ("n_four_bar_2", "pymunk extended", "error"): Deviation(PROJECTED, 7.4),
     ("n_four_bar_2", "pymunk extended", "rate"): Deviation(PROJECTED, 13),
     ("n_four_bar_2", "pymunk extended", "gap"): Deviation(PROJECTED, 3.3),
     ("n_four_bar_2", "pymunk extended", "order"): Deviation(PROJECTED, 3.3),
-    ("n_four_bar_2", "mujoco default", "outcome"): Deviation(SOFT),
+    ("n_four_bar_2", "mujoco default", "outcome"): Deviation(SOFT, outcome=Outcome.BRANCH_FLIP),
     ("n_four_bar_2", "mujoco extended", "error"): Deviation(STEP, 14),
     ("n_four_bar_2", "mujoco extended", "rate"): Deviation(STEP, 26),
     ("n_four_bar_2", "mujoco extended", "gap"): Deviation(STEP, 3.4),
     ("n_four_bar_2", "mujoco extended", "energy"): Deviation(STEP, 2.8),
     ("n_four_bar_2", "mujoco extended", "reaction"): Deviation(STEP, 220),
     ("n_four_bar_2", "mujoco extended", "order"): Deviation(STEP, 4.1),
-    ("n_four_bar_2", "lagrange euler projection", "outcome"): Deviation(EULER),
-    ("n_four_bar_10", "pymunk default", "outcome"): Deviation(SHIPPED),
-    ("n_four_bar_10", "pymunk tuned", "outcome"): Deviation(SWEPT),
-    ("n_four_bar_10", "mujoco default", "outcome"): Deviation(SOFT),
-    ("n_four_bar_10", "lagrange euler projection", "outcome"): Deviation(EULER),
-    ("n_four_bar_40", "pymunk default", "outcome"): Deviation(SHIPPED),
-    ("n_four_bar_40", "pymunk tuned", "outcome"): Deviation(SWEPT),
-    ("n_four_bar_40", "pymunk extended", "outcome"): Deviation(EXTRAPOLATED),
-    ("n_four_bar_40", "mujoco default", "outcome"): Deviation(SOFT),
-    ("n_four_bar_40", "mujoco tuned", "outcome"): Deviation(LARGE),
-    ("n_four_bar_40", "mujoco extended", "outcome"): Deviation(COARSER),
-    ("n_four_bar_40", "lagrange euler projection", "outcome"): Deviation(EULER),
+    ("n_four_bar_2", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
+    ("n_four_bar_10", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.SATURATED),
+    ("n_four_bar_10", "pymunk tuned", "outcome"): Deviation(SWEPT, outcome=Outcome.SATURATED),
+    ("n_four_bar_10", "mujoco default", "outcome"): Deviation(SOFT, outcome=Outcome.BRANCH_FLIP),
+    ("n_four_bar_10", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
+    ("n_four_bar_40", "pymunk default", "outcome"): Deviation(SHIPPED, outcome=Outcome.TORN),
+    ("n_four_bar_40", "pymunk tuned", "outcome"): Deviation(SWEPT, outcome=Outcome.TORN),
+    ("n_four_bar_40", "pymunk extended", "outcome"): Deviation(EXTRAPOLATED, outcome=Outcome.UNRESOLVED),
+    ("n_four_bar_40", "mujoco default", "outcome"): Deviation(SOFT, outcome=Outcome.BRANCH_FLIP),
+    ("n_four_bar_40", "mujoco tuned", "outcome"): Deviation(LARGE, outcome=Outcome.RESET),
+    ("n_four_bar_40", "mujoco extended", "outcome"): Deviation(COARSER, outcome=Outcome.UNRESOLVED),
+    ("n_four_bar_40", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
     ("n_four_bar_2", "pymunk tuned", "gap"): Deviation(SWEPT, 4100000.0),
     ("n_four_bar_2", "pymunk tuned", "reaction"): Deviation(SWEPT, 2.7),
     ("n_four_bar_2", "lagrange rk4 projection", "error"): Deviation(RANK, 390),

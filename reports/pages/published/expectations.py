@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from reports.gate.checks import Deviation
+from reports.grid.outcomes import Outcome
 
 CLOSING = (
     "by design: as shipped a joint closes a tenth of its gap in a sixtieth of a second, a third of the whole motion"
@@ -15,8 +16,8 @@ TIED = (
 EULER = "by design: the crank speeds up for the whole motion, and a method of first order is radians behind"
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
-    ("andrews", "pymunk default", "outcome"): Deviation(CLOSING),
-    ("andrews", "mujoco default", "outcome"): Deviation(SOFT),
+    ("andrews", "pymunk default", "outcome"): Deviation(CLOSING, outcome=Outcome.SATURATED),
+    ("andrews", "mujoco default", "outcome"): Deviation(SOFT, outcome=Outcome.TORN),
     ("andrews", "mujoco extended", "order"): Deviation(TIED, 2.4),
-    ("andrews", "lagrange euler projection", "outcome"): Deviation(EULER),
+    ("andrews", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
 }
