@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from reports.gate.baseline import Baseline
+from reports.gate.theory import idle
 from reports.gate.walk import Verdict
 from reports.text.provenance import versions
 from reports.text.tables import markdown, number
@@ -75,6 +76,14 @@ def changes(verdicts: Iterable[Verdict], baseline: Baseline) -> list[str]:
     return out
 
 
+def unable(verdicts: Iterable[Verdict]) -> list[str]:
+    """Sentences on the checks of theory that can't fail: how many of how many, and for which reasons."""
+    checks = [check for verdict in verdicts for check in verdict.theory]
+    found = idle(checks)
+    out = [f"{len(checks)} checks of theory; {found.total()} of them can't fail."]
+    return out + [f"{count} can't fail: {reason}." for reason, count in found.most_common()]
+
+
 def report(verdicts: Iterable[Verdict], baseline: Baseline) -> str:
     """The whole of it as Markdown: a summary, failures with their sentences, known deviations, and the table."""
     verdicts = tuple(verdicts)
@@ -96,6 +105,7 @@ def report(verdicts: Iterable[Verdict], baseline: Baseline) -> str:
             for name, d in v.case.known
         ]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
+    parts += ["## Checks that can't fail", "\n".join(f"* {told}" for told in unable(verdicts))]
     changed = changes(verdicts, baseline)
     if changed:
         parts += ["## Baseline", "\n".join(f"* {told}" for told in changed)]
