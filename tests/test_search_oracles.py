@@ -23,12 +23,12 @@ from engines.pymunk import model as pymunk_model
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import raw, raw_draw, raw_law
+from reports.search import instant_mujoco, motions, raw, raw_draw, raw_law
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
-from reports.search.subjects import Adapted, Alone, Told
+from reports.search.subjects import OURS, Adapted, Alone, Told
 
 SEED = 1
 
@@ -172,6 +172,18 @@ def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
     [one] = told(Careless(), ALL, 1, "motions")
     assert one.faults == ("raised",)
     assert "body 7" in one.words
+
+
+def test_an_exception_of_an_oracle_is_no_fault_of_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*given: Any) -> float:
+        raise KeyError("a row that is not there")
+
+    monkeypatch.setattr(motions, "difference", broken)
+    monkeypatch.setattr(instant_mujoco, "errors", broken)
+    for engine, oracle in ((Lagrange("rk4"), "motions"), (EXTENDED, "instant")):
+        [one] = told(engine, ("pin",), 1, oracle)
+        assert one.faults == (OURS,)
+        assert one.words.startswith("ours: KeyError")
 
 
 # ------------------------------------------------------------- mistakes put into rods, gears, welds and force elements
