@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 from reports.gate.baseline import Baseline
@@ -21,7 +22,7 @@ def lines(verdicts: Iterable[Verdict]) -> list[list[str]]:
         if worst is None:
             out.append([finest.scene, finest.method, number(finest.step), "-", "-", "-", "-", "can't be built"])
             continue
-        error = next((check for check in verdict.theory if check.name == "error"), None)
+        error = next((check for check in verdict.theory if check.name == "error" and math.isfinite(check.bound)), None)
         told = [number(error.measured), number(error.bound)] if error else ["-", "-"]
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
         out.append(
