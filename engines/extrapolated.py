@@ -290,8 +290,8 @@ class ExtrapolatedRun:
         if not own.row_count:
             return []
         forces = reactions / np.where(own.turning, own.length_scale, 1.0)
-        usual = max(body.mass for body in own.bodies) * own.length_scale / own.time_scale**2
         with np.errstate(all="ignore"):
+            usual = max(body.mass for body in own.bodies) * own.length_scale / np.square(own.time_scale)
             acting = np.fmax.reduce(np.abs(forces[-1]), axis=None, initial=usual)
             share = np.fmax.reduce(expected_error(forces, levels, powers), axis=None, initial=0.0) / acting
         return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []
