@@ -1,6 +1,7 @@
 """Engines under test, and what the suite asks of one: `engines.contract`, in numbered sentences."""
 
 from engines.contract import (
+    CLAIM,
     EXACT,
     Engine,
     Holder,
@@ -14,6 +15,7 @@ from engines.contract import (
 )
 
 __all__ = [
+    "CLAIM",
     "EXACT",
     "Engine",
     "Holder",

@@ -46,6 +46,9 @@ from reference.validation import Count, Positive
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf
+# What every method with an estimate of its own claims: poses wrong by less than this part of a radian, or of the
+# mechanism's length. From where its estimate is above, it is unresolved.
+CLAIM = 1e-7
 
 Holder = Literal["engine", "engine, our rows", "ours"]
 
