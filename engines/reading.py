@@ -33,6 +33,15 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Obstacle:
+    """What a motion meets at `t` [s] that the mechanism lacks, in `words`; `remedy`: what to give the check instead."""
+
+    t: float
+    words: str
+    remedy: str
+
+
+@dataclass(frozen=True)
 class Change:
     """Documented settings of an engine: what they are in `words`, the `lines` to copy, the step `dt` [s]."""
 
@@ -68,6 +77,11 @@ class OwnModel(Protocol):
         ...
 
     @property
+    def assumed(self) -> str:
+        """What the model doesn't say and the reader took instead, in words; empty if nothing."""
+        ...
+
+    @property
     def settings(self) -> Mapping[str, str]:
         """The engine's own settings in the model, in words."""
         ...
@@ -99,8 +113,11 @@ class OwnModel(Protocol):
         """What can be switched off, to find out what explains a difference."""
         ...
 
-    def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
-        """What a motion of poses (times, bodies, 3) runs into, that the mechanism lacks: the time [s] and what."""
+    def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
+        """The first of each kind that a motion of poses and twists (times, bodies, 3) meets, in the order of time.
+
+        All that the reading took for granted is asked for here: contacts, limits of motions and of forces, sleep.
+        """
         ...
 
     @property
@@ -151,6 +168,13 @@ class Reader(Protocol):
 def refuse(element: str, reason: str) -> Unsupported:
     """The error for an element that has no ideal counterpart."""
     return Unsupported(f"{element}: {reason}")
+
+
+def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
+    """Raises Unsupported if the start itself meets what the mechanism lacks."""
+    for each in model.obstacles(np.zeros(1), mechanism.pose[None], mechanism.twist[None]):
+        reason = f"so it does at the start; an ideal mechanism doesn't know it: give {each.remedy}"
+        raise refuse(each.words, reason)
 
 
 class Names:

@@ -89,8 +89,8 @@ def tried(reading) -> list[str]:
             return [str(len(found.mechanism.bodies)), " ".join(without), ""]
         except (Unsupported, InvalidMechanism, ValueError) as reason:
             words = " ".join(str(reason).split())
-            advised = re.search(r"give --without (\w+)(?: or (\w+))?", words)
-            word = None if advised is None else advised[2] if "limit" in words.split("give")[0] else advised[1]
+            advised = re.search(r"give --without (\w+)", words)
+            word = None if advised is None else advised[1]
             if word is None or word in without:
                 return ["", " ".join(without), words]
             without.append(word)

@@ -166,8 +166,8 @@ def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_c
     assert found.parts.falling
     assert found.advised is not None
     lines = sections(found)[0].code
-    step = float(re.search(r"step\((.*)\)", lines[-1])[1])  # type: ignore[index]
-    body = "\n".join(f"    {line}" for line in lines[:-1])
+    step = float(re.search(r"--step (.*)$", lines[-1])[1])  # type: ignore[index]
+    body = "\n".join(f"    {line}" for line in lines)
     mended = PENDULUM.replace("    return space", f"{body}\n    return space")
     again = found_in(tmp_path, mended, "swing.py", "swing.py:make", tolerance=3e-3, step=step)
     assert again.met

@@ -13,7 +13,7 @@ import pytest
 from engines import Unsupported
 from engines.mujoco.reading import read
 from engines.mujoco.reading.places import positions
-from engines.reading import Reading
+from engines.reading import Obstacle, Reading
 from reports.check.comparing import refuse_disagreement
 from reports.check.judging import apart
 from reports.check.law import soft_motion
@@ -284,13 +284,13 @@ def test_a_limit_and_a_contact_are_named_with_their_time():
     t = 0.02 * np.arange(41, dtype=np.float64)
     without = read(model, None, ("limit",))
     free = without.model.run(40, 10).pose
-    assert without.model.obstacles(t, free) == []
-    (at, words), *_ = reading.model.obstacles(t, free)
+    assert without.model.obstacles(t, free, np.zeros_like(free)) == []
+    met, *_ = reading.model.obstacles(t, free, np.zeros_like(free))
     turned = free[:, 1, 2] - free[:, 0, 2]
     sign = np.sign(reading.model.scene.data.xaxis[1] @ reading.model.scene.frame.normal)  # type: ignore[attr-defined]
     beyond = (sign * turned > 0.1) | (sign * turned < -0.1)
-    assert (at, words) == (t[int(np.argmax(beyond))], "joint 'B' reaches its limit")
-    assert at > 0
+    assert met == Obstacle(t[int(np.argmax(beyond))], "joint 'B' reaches its limit", "--without limit")
+    assert met.t > 0
     assert [note.element for note in without.notes] == ["contacts", "limit"]
 
 
@@ -302,10 +302,11 @@ def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
         )
 
     reading = read(with_floor(-0.3))
-    (at, words), *_ = reading.model.obstacles(0.02 * np.arange(41, dtype=np.float64), reading.model.run(40, 10).pose)
-    assert words.startswith("geom 'floor' touches geom")
-    assert 0.1 < at < 0.5
-    with pytest.raises(Unsupported, match=r"geom 'floor' touches geom .*: so it does at the start"):
+    run = reading.model.run(40, 10)
+    met, *_ = reading.model.obstacles(run.t, run.pose, run.twist)
+    assert met.words.startswith("geom 'floor' touches geom")
+    assert 0.1 < met.t < 0.5
+    with pytest.raises(Unsupported, match=r"geom 'floor' touches .*: so it does at the start.* give --without contact$"):
         read(with_floor(0.0))
 
 
@@ -370,6 +371,5 @@ def test_a_spring_that_acts_out_of_its_reach_is_told():
     reading = read(model)
     t, far = np.array([0.0, 1.0]), np.tile(reading.mechanism.pose, (2, 1, 1))
     far[1, 0, 0] = -1e4
-    assert reading.model.obstacles(t, far) == [
-        (1.0, "joint 'S' slides further than the spring that stands for its own")
-    ]
+    (met,) = reading.model.obstacles(t, far, np.zeros_like(far))
+    assert (met.t, met.words) == (1.0, "joint 'S' slides further than the spring that stands for its own")

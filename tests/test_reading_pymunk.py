@@ -24,6 +24,7 @@ from pymunk.constraints import (
 from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import read
+from engines.reading import Obstacle
 from reports.check.comparing import refuse_disagreement
 
 # Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
@@ -204,18 +205,21 @@ def test_a_shape_that_is_touched_on_the_way_is_named():
     t = np.linspace(0, 1, 51)
     poses = np.tile(reading.mechanism.pose, (51, 1, 1))
     poses[:, 1, 1] = 0.4 - 0.5 * 9.81 * t**2
-    ((at, words),) = reading.model.obstacles(t, poses)
-    assert (
-        words == "a shape of the ground touches one of body 2" or words == "a shape of body 2 touches one of the ground"
+    rest = np.zeros_like(poses)
+    (met,) = reading.model.obstacles(t, poses, rest)
+    assert met.words in (
+        "a shape of the ground touches one of body 2",
+        "a shape of body 2 touches one of the ground",
     )
+    assert met.remedy == "--without contact"
     fallen = np.sqrt(2 * (0.4 + 1 - 0.06) / 9.81)
-    assert fallen <= at <= fallen + 0.02
+    assert fallen <= met.t <= fallen + 0.02
     for shape in space.shapes:
         shape.filter = pymunk.ShapeFilter(group=1)
-    assert read(space, 0.01).model.obstacles(t, poses) == []
+    assert read(space, 0.01).model.obstacles(t, poses, rest) == []
     for shape in space.shapes:
         shape.filter = pymunk.ShapeFilter()
-    assert read(space, 0.01, ["contact"]).model.obstacles(t, poses) == []
+    assert read(space, 0.01, ["contact"]).model.obstacles(t, poses, rest) == []
 
 
 def test_limits_are_noted_and_named_when_they_are_reached():
@@ -228,8 +232,11 @@ def test_limits_are_noted_and_named_when_they_are_reached():
     poses = np.tile(reading.mechanism.pose, (3, 1, 1))
     poses[1, 1, 2] = 2.5
     poses[2, 1, 0] = 5.0
-    found = reading.model.obstacles(np.arange(3.0), poses)
-    assert found == [(1.0, "RotaryLimitJoint 1 reaches its end"), (2.0, "SlideJoint 1 reaches its end")]
+    found = reading.model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
+    assert found == [
+        Obstacle(1.0, "RotaryLimitJoint 1 reaches its end", "--without limit"),
+        Obstacle(2.0, "SlideJoint 1 reaches its end", "--without limit"),
+    ]
 
 
 def test_the_users_own_space_is_run_and_never_changed():

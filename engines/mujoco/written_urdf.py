@@ -1,4 +1,6 @@
-"""A mechanism as URDF: a tree of hinges and slides. URDF has no loops, springs or start; what it lacks is refused.
+"""A mechanism as URDF: a tree of hinges, slides and welds. URDF has no loops and no springs: these are refused.
+
+It has no word for a start either: bodies stand as the mechanism's do, at rest, and the file says so where these move.
 
 The plane stands upright, since simulators that read URDF have gravity along -z: the plane's x is URDF's x, its y is
 URDF's z, and every hinge turns about -y. URDF has no word for gravity; an element of MuJoCo's own tells MuJoCo.
@@ -30,6 +32,8 @@ def urdf(mechanism: Mechanism) -> str:
         raise Unsupported(f"force {mechanism.forces[0].name!r}: URDF has no springs and no applied forces")
     root = xml.Element("robot", {"name": "crosscheck"})
     xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
+    if mechanism.twist.any():
+        root.append(xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. "))
     xml.SubElement(root, "link", {"name": "world"})
     for link in tree.links:
         _add(root, mechanism, link)
@@ -50,7 +54,7 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
         ("ixy", "ixz", "iyz"), "0"
     )
     xml.SubElement(inertial, "inertia", tensor)
-    kind = {"hinge": "continuous", "slot": "prismatic", "weld": "fixed"}[link.kind]
+    kind = "prismatic" if link.kind == "slot" else "continuous" if link.turns else "fixed"
     parent = "world" if link.parent is None else mechanism.bodies[link.parent].name
     joint = xml.SubElement(root, "joint", {"name": f"joint of {body.name}", "type": kind})
     xml.SubElement(joint, "parent", {"link": parent})
@@ -61,7 +65,7 @@ def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
         at = (at[0] - base[0], at[1] - base[1])
     xml.SubElement(joint, "origin", {"xyz": _row(*_upright(*at)), "rpy": "0 0 0"})
     axis = (0.0, -1.0, 0.0) if link.kind == "hinge" else _upright(*link.direction)
-    if link.kind != "weld":
+    if kind != "fixed":
         xml.SubElement(joint, "axis", {"xyz": _row(*axis)})
     if link.kind == "slot":
         xml.SubElement(joint, "limit", {"lower": "-1e9", "upper": "1e9", "effort": "1e9", "velocity": "1e9"})

@@ -13,11 +13,12 @@ from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism
 from reports.check.comparing import Errors, Opening, errors, opening, refuse_disagreement
 from reports.check.facts import Facts, facts_of
-from reports.check.judging import Judged, judged
+from reports.check.judging import Judged, judged, often
 from reports.check.parts import Parts, parts_of
 from reports.check.settings import Tried, best, cheapest, same_step, tried
 
 SAMPLES = 200  # about so many instants are compared
+LOOKS = 10  # times a sample at most: how often a motion is asked what it meets; an engine looks once a step
 SMALLER = 4  # runs of the user's own settings at smaller steps that the parts are told from
 
 
@@ -39,13 +40,21 @@ class Checked:
     opens: Opening | None
     parts: Parts
     table: list[Tried]
-    advised: Tried | None
-    decade: Tried | None
 
     @property
     def met(self) -> bool:
         """Whether the user's own settings are within the tolerance."""
         return self.own_errors.largest <= self.tolerance
+
+    @property
+    def advised(self) -> Tried | None:
+        """The cheapest setting within the tolerance."""
+        return cheapest(self.table, self.tolerance)
+
+    @property
+    def decade(self) -> Tried | None:
+        """The cheapest setting with a tenth of the error of the one that is advised."""
+        return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
 
     @property
     def fronts(self) -> list[Tried]:
@@ -77,10 +86,10 @@ def check(
     told("following the ideal motion")
     judge = judged(mechanism, samples, every * model.dt)
     truth = judge.trajectory
-    for at, words in model.obstacles(truth.t, truth.pose):
+    for met in model.obstacles(*often(truth, min(every, LOOKS))):
+        shorter = f"--duration {_below(met.t):g}, or " if met.t > every * model.dt else ""
         raise Unsupported(
-            f"{words} at {at:.3g} s, which an ideal mechanism doesn't know: "
-            + (f"give --duration {_below(at):g}, or --without it" if at > every * model.dt else "give --without it")
+            f"{met.words} at {met.t:.3g} s, which an ideal mechanism doesn't know: give {shorter}{met.remedy}"
         )
     facts = facts_of(mechanism, truth)
     told("running your own settings")
@@ -90,12 +99,10 @@ def check(
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")
 
-    table = tried(reading, truth, samples, every, own.stepping, progress, patience)
+    table = tried(reading, truth, samples, every, own, progress, patience)
     told("telling softness from the step")
-    smaller = same_step(table, table[0])[1 : 1 + SMALLER] if table else []
+    smaller = same_step(table, table[0])[1 : 1 + SMALLER]
     parts = parts_of(reading, truth, own, smaller)
-    advised = cheapest(table, tolerance)
-    decade = None if advised is None else cheapest(table, min(tolerance, max(advised.error, 1e-300)) / 10)
     return Checked(
         name,
         reading,
@@ -111,8 +118,6 @@ def check(
         opening(mechanism, own),
         parts,
         table,
-        advised,
-        decade,
     )
 
 

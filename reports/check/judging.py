@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from engines.lagrange import TRUTH
 from engines.lagrange.dynamics import Dynamics
@@ -53,6 +54,13 @@ def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
     return np.maximum(places, difference[..., 2]).max(axis=1)
+
+
+def often(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
+    """Times, poses and twists of a motion `parts` times as often as it was sampled, by cubics through both."""
+    spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
+    t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
+    return t, spline(t), spline(t, 1)
 
 
 def _growth(mechanism: Mechanism, motion: Trajectory, samples: int, spacing: float, seed: int) -> Array:

@@ -32,20 +32,23 @@ def tried(
     truth: Trajectory,
     samples: int,
     every: int,
-    first: float,
+    own: Trajectory,
     told: Callable[[int, int], None],
     patience: float | None = None,
 ) -> list[Tried]:
-    """Runs at the documented settings, coarse steps first. `first`: the CPU time of the user's own run [s].
+    """Runs at the documented settings, coarse steps first. `own`: at the user's own, which come first in the answer.
 
     Left out is what takes too long: by how often the engine would step, from what it took so far. `patience` [s] of CPU
     time, PATIENCE unless given; if it is infinite all are run, whatever a machine takes.
     """
     model, mechanism = reading.model, reading.mechanism
     patience = PATIENCE if patience is None else patience
-    changes = model.changes(0.0 if patience == float("inf") else model.dt * max(first, 1e-4) / LONGEST)
-    order = sorted(range(len(changes)), key=lambda index: -changes[index].dt)
-    begin, found, rate = time.process_time(), [], max(first, 1e-5) / (samples * every)
+    smallest = 0.0 if patience == float("inf") else model.dt * max(own.stepping, 1e-4) / LONGEST
+    changes = model.changes(min(smallest, model.dt))
+    order = sorted(range(1, len(changes)), key=lambda index: -changes[index].dt)
+    begin, rate = time.process_time(), max(own.stepping, 1e-5) / (samples * every)
+    wrong = errors(mechanism, truth, own)
+    found = [(0, Tried(changes[0], wrong.largest, own.stepping, wrong, own))]
     for number, index in enumerate(order):
         change = changes[index]
         told(number, len(changes))
@@ -54,8 +57,8 @@ def tried(
             continue
         run = model.run(samples, every, change)
         rate = max(rate, run.stepping / steps)
-        own = errors(mechanism, truth, run)
-        found.append((index, Tried(change, own.largest, run.stepping, own, run)))
+        wrong = errors(mechanism, truth, run)
+        found.append((index, Tried(change, wrong.largest, run.stepping, wrong, run)))
     return [each for _, each in sorted(found, key=lambda pair: pair[0])]
 
 

@@ -10,6 +10,7 @@ from reports.check.comparing import QUANTITIES, UNITS
 from reports.check.settings import Tried
 
 MOST_NAMED = 6
+CHEAPER = 0.9  # of the user's CPU time: what differs by less may be the clock's noise
 ROUNDING = 1e-12  # of a radian, and of the mechanism's length
 
 
@@ -34,17 +35,14 @@ def number(value: float) -> str:
 
 def verdict(found: Checked) -> str:
     """The answer in one sentence."""
-    error, tolerance = found.own_errors.largest, found.tolerance
-    if found.met:
-        return (
-            f"Your settings meet the tolerance: the largest error in {found.duration:g} s is {number(error)}, "
-            f"{number(tolerance)} is allowed."
-        )
+    assumed = found.reading.model.assumed
+    whose = f"Assumed: {assumed}. With it, the settings" if assumed else "Your settings"
+    start = f"{whose} {'meet' if found.met else 'miss'} the tolerance:"
     if not found.own_errors.finished:
-        return f"Your settings miss the tolerance: {found.reading.model.engine} gave up before {found.duration:g} s."
+        return f"{start} {found.reading.model.engine} gave up before {found.duration:g} s."
     return (
-        f"Your settings miss the tolerance: the largest error in {found.duration:g} s is {number(error)}, "
-        f"{number(tolerance)} is allowed."
+        f"{start} the largest error in {found.duration:g} s is {number(found.own_errors.largest)}, "
+        f"{number(found.tolerance)} is allowed."
     )
 
 
@@ -66,13 +64,13 @@ def sections(found: Checked, pictures: dict[str, tuple[str, str]] | None = None)
 
 def _advice(found: Checked) -> tuple[str, ...]:
     advised, own = found.advised, found.own_errors.largest
-    if found.met and advised is not None and advised.cost >= 0.9 * found.cost:
-        return ("No setting that was tried is as good and cheaper.", *_decade(found))
+    if found.met and advised is not None and advised.cost >= CHEAPER * found.cost:
+        return ("No setting that was tried meets it much cheaper.", *_decade(found))
     if advised is None:
-        reached = min((each.error for each in found.table), default=float("inf"))
+        closest = min(found.table, key=lambda each: each.error)
         return (
             f"None of the {len(found.table)} documented settings that were tried meets it; the best reached "
-            f"{number(reached)} ({min(found.table, key=lambda each: each.error).change.words}).",
+            f"{number(closest.error)} ({closest.change.words}).",
         )
     ratio = advised.cost / found.cost if found.cost > 0 else float("nan")
     return (
@@ -161,7 +159,12 @@ def _own(found: Checked, picture: tuple[str, str] | None) -> Section:
         label = f"{quantity}, {UNITS[quantity]}"
         rows.append((label, *cells, number(own.worst(quantity)), number(judge.worst(quantity))))
     header = ("error", *(f"at {own.t[index]:.3g} s" for index in quarter), "largest", "the judge's own")
-    sentences = (f"{found.own.stepping:.2g} s of CPU time for {found.duration:g} s of motion.", *found.own.warnings)
+    sentences = (
+        f"{found.own.stepping:.2g} s of CPU time for {found.duration:g} s of motion.",
+        "A reaction is the force or the moment of a row of a joint, beside the largest true one of its kind. Energy is "
+        "the kinetic energy and the potentials of gravity and springs together, beside the largest true kinetic one.",
+        *found.own.warnings,
+    )
     return Section("Your own settings", sentences, header, tuple(rows), picture=picture)
 
 
@@ -214,21 +217,21 @@ def _opening(found: Checked) -> tuple[str, ...]:
 
 def _table(found: Checked) -> Section:
     front = {id(each) for each in found.fronts}
+    alike: dict[tuple[str, str, bool], list[Tried]] = {}
+    for each in found.table:
+        told = number(each.error), number(each.errors.worst("reaction")), each.error <= found.tolerance
+        alike.setdefault(told, []).append(each)
 
-    def row(each: Tried) -> tuple[str, ...]:
-        marks = ["none is both cheaper and better"] if id(each) in front else []
-        marks += ["meets the tolerance"] if each.error <= found.tolerance else []
-        return (
-            each.change.words,
-            number(each.error),
-            number(each.errors.worst("reaction")),
-            number(each.cost),
-            "; ".join(marks),
-        )
+    def row(told: tuple[str, str, bool], group: list[Tried]) -> tuple[str, ...]:
+        shown = group[0] if group[0] is found.table[0] else min(group, key=lambda each: each.cost)
+        marks = ["none is both cheaper and better"] if id(shown) in front else []
+        marks += ["meets the tolerance"] if told[2] else []
+        marks += [f"{len(group) - 1} more alike"] if len(group) > 1 else []
+        return shown.change.words, told[0], told[1], number(shown.cost), "; ".join(marks)
 
     header = ("setting", "largest error", "reaction error", "CPU time, s", "")
     sentences = (
         "Your model with other settings that its engine documents; all else is as you have it. CPU time is of stepping "
-        "alone, on this machine.",
+        "alone, on this machine. Of settings with the same errors the cheapest is listed, or yours.",
     )
-    return Section("What to change", sentences, header, tuple(row(each) for each in found.table))
+    return Section("What to change", sentences, header, tuple(row(*each) for each in alike.items()))

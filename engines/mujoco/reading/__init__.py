@@ -18,12 +18,13 @@ from engines.mujoco.reading.along_joints import off, turns
 from engines.mujoco.reading.equalities import equalities
 from engines.mujoco.reading.forces import forces
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
+from engines.mujoco.reading.force_limits import limited_forces
 from engines.mujoco.reading.hearing import heard
 from engines.mujoco.reading.joints import Scene, tree_joints
 from engines.mujoco.reading.other_settings import switch_off
 from engines.mujoco.reading.own_model import OwnMuJoCo
 from engines.mujoco.reading.steady import drives, steady
-from engines.reading import Note, Reading, refuse
+from engines.reading import Note, Reading, refuse, refuse_at_start
 from reference.forces import Force
 from reference.mechanism import Mechanism
 
@@ -47,6 +48,8 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
         getattr(started, name)[:] = getattr(data, name)
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
+    if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0)):
+        raise refuse("flag sleep", "a tree of bodies that rests is no longer moved by anything; give --without sleep")
     _refuse_not_finite(model, started)
     # No contacts and no solver: a model of thousands of bodies is refused before that.
     mujoco.mj_kinematics(model, started)
@@ -66,10 +69,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
         scene.note(element, "left out at your word, in your model too")
     mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
     own = OwnMuJoCo(scene, mechanism)
-    for _, words in own.obstacles(np.zeros(1), mechanism.pose[None]):
-        raise refuse(
-            words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
-        )
+    refuse_at_start(own, mechanism)
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
     return Reading(mechanism, own, tuple(scene.notes), title)
 
@@ -99,14 +99,15 @@ def _note_gravity_across(scene: Scene) -> None:
 
 def _note_what_may_act(scene: Scene) -> None:
     """Limits and contacts, which count as left out once nothing in the judged motion has met them."""
-    model = scene.model
+    model, limit = scene.model, "its limit is left out, since it is not reached in the judged motion"
+    for element in limited_forces(model):
+        scene.note(element, f"its force is limited; {limit}")
     if off(model, "CONSTRAINT"):
         return
     if not off(model, "LIMIT"):
         for kind, limited in (("JOINT", model.jnt_limited), ("TENDON", model.tendon_limited)):
             for index in np.flatnonzero(limited):
-                element = name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index)
-                scene.note(element, "its limit is left out, since it is not reached in the judged motion")
+                scene.note(name_of(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), index), limit)
     shaped = np.any(model.geom_contype) and np.any(model.geom_conaffinity)
     if not off(model, "CONTACT") and model.ngeom > 1 and (shaped or model.npair):
         scene.note("contacts", "they are left out, since none is made in the judged motion")

@@ -12,7 +12,7 @@ import numpy as np
 
 from engines.mujoco.reading.frame import FREE, HINGE, SLIDE, name_of
 from engines.mujoco.reading.joints import JOINT, Scene
-from engines.reading import refuse
+from engines.reading import Obstacle, refuse
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 FAR = 30.0  # extents of the model: where the far end of a spring along a slide stands
@@ -66,7 +66,7 @@ def _along(scene: Scene, joint: int) -> tuple[Any, Any, float]:
     return near - length * data.xaxis[joint], near, length
 
 
-def beyond_springs(scene: Scene, t: Any, places: Any) -> tuple[str, float] | None:
+def beyond_springs(scene: Scene, t: Any, places: Any) -> Obstacle | None:
     """When a motion of positions (times, nq) comes near the far end of a spring or damper along a slide, if it does."""
     model, length = scene.model, FAR * max(1.0, float(scene.model.stat.extent))
     for joint in np.flatnonzero(model.jnt_type == SLIDE):
@@ -74,7 +74,8 @@ def beyond_springs(scene: Scene, t: Any, places: Any) -> tuple[str, float] | Non
             way = places[:, model.jnt_qposadr[joint]] - scene.data.qpos[model.jnt_qposadr[joint]]
             if np.any(way < -0.9 * length):
                 words = f"{name_of(model, JOINT, int(joint))} slides further than the spring that stands for its own"
-                return words, float(t[int(np.argmax(way < -0.9 * length))])
+                at = float(t[int(np.argmax(way < -0.9 * length))])
+                return Obstacle(at, words, "--without spring and --without damper")
     return None
 
 

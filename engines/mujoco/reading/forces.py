@@ -12,6 +12,7 @@ import numpy as np
 
 from engines.mujoco.reading.along_joints import damped, off, pushed, sprung
 from engines.mujoco.reading.equalities import angle_weights, straight, wrapped_joints
+from engines.mujoco.reading.force_limits import limited_servos
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, name_of, plain_name
 from engines.mujoco.reading.joints import JOINT, Scene
 from engines.reading import refuse
@@ -121,6 +122,7 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
     if off(model, "ACTUATION"):
         return []
     out: list[ForceElement] = []
+    servos = limited_servos(model)  # where a limit is reached the motion is refused
     for actuator in range(model.nu):
         element, name = name_of(model, ACTUATOR, actuator), plain_name(model, ACTUATOR, actuator)
         if model.opt.disableactuator & (1 << max(0, int(model.actuator_group[actuator]))):
@@ -140,7 +142,9 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         affine = bias[:3] if model.actuator_biastype[actuator] == int(mujoco.mjtBias.mjBIAS_AFFINE) else np.zeros(3)
         order = float(data.ctrl[actuator])
         if model.actuator_ctrllimited[actuator] and not off(model, "CLAMPCTRL"):
-            order = float(np.clip(order, *model.actuator_ctrlrange[actuator]))
+            given, order = order, float(np.clip(order, *model.actuator_ctrlrange[actuator]))
+            if order != given:
+                scene.note(element, f"its control of {given:g} is beyond its range; MuJoCo takes {order:g}, so we do")
         push = float(gain[0]) * order + float(affine[0])
         if simple and not push and not np.any(affine):
             scene.note(element, "its control is zero, so it does not act")
@@ -148,12 +152,8 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         kind, target = int(model.actuator_trntype[actuator]), int(model.actuator_trnid[actuator][0])
         if not simple:
             raise refuse(element, "only a motor or a servo without a state of its own, at constant control, is read")
-        if model.actuator_forcelimited[actuator]:
-            low, high = model.actuator_forcerange[actuator]
-            if np.any(affine[1:]):
-                scene.note(element, f"its force is limited to {low:g} to {high:g}, and is taken as not limited")
-            else:
-                push = float(np.clip(push, low, high))
+        if model.actuator_forcelimited[actuator] and not servos[actuator]:
+            push = float(np.clip(push, *model.actuator_forcerange[actuator]))
         if kind in (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)):
             out += _on_joint(scene, element, name, target, gear, push, affine)
         elif np.any(affine[1:]):
@@ -176,10 +176,6 @@ def _on_joint(
     model = scene.model
     if model.jnt_type[joint] not in (HINGE, SLIDE):
         raise refuse(element, "it acts on a joint that is neither a hinge nor a slide")
-    if model.jnt_actfrclimited[joint]:
-        low, high = model.jnt_actfrcrange[joint]
-        if np.any(affine[1:]) or not low <= gear * push <= high:
-            raise refuse(element, f"its joint limits the actuators' force to {low:g} to {high:g}")
     springs = sprung(scene, joint, name, -gear * gear * float(affine[1]), 0.0)
     return [
         *pushed(scene, joint, name, gear * push),

@@ -24,6 +24,7 @@ ELEMENTS = {
     "damper": "DAMPER",
     "gravity": "GRAVITY",
 }
+OTHERS = ("armature", "fluid", "forcelimit", "sleep")  # that no flag of MuJoCo's switches off
 TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
 SHIPPED = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # solref and solimp of an equality about which nothing is said
 HALVINGS = (1, 2, 4, 8, 16, 32)
@@ -33,12 +34,17 @@ def switch_off(model: Any, element: str) -> None:
     """Change a model so that this kind of element no longer acts. Raises ValueError for a word that is none."""
     if element == "armature":
         model.dof_armature[:] = 0.0
+    elif element == "forcelimit":
+        for limited in (model.actuator_forcelimited, model.jnt_actfrclimited, model.tendon_actfrclimited):
+            limited[:] = 0
+    elif element == "sleep":
+        model.opt.enableflags &= ~int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0))
     elif element == "fluid":
         model.opt.density = model.opt.viscosity = 0.0
     elif element in ELEMENTS:
         model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{ELEMENTS[element]}"))
     else:
-        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, 'armature', 'fluid'))}")
+        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, *OTHERS))}")
 
 
 def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list[Change]:

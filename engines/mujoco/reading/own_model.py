@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from engines.mujoco.reading.along_joints import beyond_springs
 from engines.mujoco.reading.declared import declared
+from engines.mujoco.reading.force_limits import limited_forces, reached, unlimited
 from engines.mujoco.reading.frame import angles_of, name_of
 from engines.mujoco.reading.hearing import heard
 from engines.mujoco.reading.joints import Scene
@@ -27,7 +28,7 @@ from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
 from engines.mujoco.written_file import INTEGRATORS, SOLVERS
-from engines.reading import Change, Give
+from engines.reading import Change, Give, Obstacle
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -50,6 +51,10 @@ class OwnMuJoCo:
     @property
     def dt(self) -> float:
         return float(self.scene.model.opt.timestep)
+
+    @property
+    def assumed(self) -> str:
+        return ""
 
     @property
     def declares(self) -> bool:
@@ -119,26 +124,34 @@ class OwnMuJoCo:
     def give(self, gap: Array) -> Give:
         return self._give(gap)
 
-    def obstacles(self, t: Array, pose: Array) -> list[tuple[float, str]]:
-        model, found = self.scene.model, dict[str, float]()
-        data = self._fresh(model)
+    def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
+        model, found = self.scene.model, dict[str, Obstacle]()
+        data, free = self._fresh(model), unlimited(model) if limited_forces(model) else None
+
+        def meets(words: str, without: str) -> None:
+            found.setdefault(words, Obstacle(float(at), words, f"--without {without}"))
+
         kinds = mujoco.mjtConstraint
         limits = {int(kinds.mjCNSTR_LIMIT_JOINT): "joint", int(kinds.mjCNSTR_LIMIT_TENDON): "tendon"}
         touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
         places = positions(self.scene, pose)
-        for at, qpos in zip(t, places, strict=True):
+        for at, qpos, rates in zip(t, places, twist, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
                 if kind in limits:
                     obj = mujoco.mjtObj.mjOBJ_JOINT if limits[kind] == "joint" else mujoco.mjtObj.mjOBJ_TENDON
-                    found.setdefault(f"{name_of(model, obj, int(index))} reaches its limit", float(at))
+                    meets(f"{name_of(model, obj, int(index))} reaches its limit", "limit")
                 elif kind in touching:
                     pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, int(each)) for each in data.contact[index].geom]
-                    found.setdefault(f"{pair[0]} touches {pair[1]}", float(at))
-        if reached := beyond_springs(self.scene, t, places):
-            found.setdefault(*reached)
-        return sorted((at, words) for words, at in found.items())
+                    meets(f"{pair[0]} touches {pair[1]}", "contact")
+            if free is not None:
+                data.qvel[:] = np.linalg.lstsq(self._directions(data), rates.reshape(-1), rcond=None)[0]
+                for element in reached(model, free, data):
+                    meets(f"{element} reaches the limit of its force", "forcelimit")
+        if beyond := beyond_springs(self.scene, t, places):
+            found[beyond.words] = beyond
+        return sorted(found.values(), key=lambda each: each.t)
 
     def changes(self, smallest: float) -> list[Change]:
         return changes(self.scene.model, self.softly_held, smallest, self.urdf)

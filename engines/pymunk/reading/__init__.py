@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pymunk
 
 from engines.pymunk.reading.joints import described
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
-from engines.reading import Note, Reading, refuse
+from engines.reading import Note, Reading, refuse_at_start
 from reference.mechanism import Mechanism
+from reference.validation import InvalidMechanism
 
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
 
@@ -34,12 +34,15 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     found = described(space)
     last = float(space.current_time_step)
     x, y = space.gravity
-    mechanism = Mechanism(tuple(found.bodies), tuple(found.joints), (float(x), float(y)), tuple(found.forces))
+    try:
+        mechanism = Mechanism(tuple(found.bodies), tuple(found.joints), (float(x), float(y)), tuple(found.forces))
+    except InvalidMechanism as reason:
+        if not last:
+            raise
+        words = f"the space has been stepped by {last:g} s already, which opens joints; give it before its first step"
+        raise InvalidMechanism(f"{reason}; {words}") from None
     own = OwnPymunk(found, mechanism, step or last or USUAL_STEP, not (step or last))
-    for _, words in own.obstacles(np.zeros(1), mechanism.pose[None]):
-        raise refuse(
-            words, "so it does at the start; an ideal mechanism doesn't know it: give --without contact or limit"
-        )
+    refuse_at_start(own, mechanism)
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
         found.notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
     notes = [*found.notes, *(Note(element, "left out at your word, in your model too") for element in without)]
@@ -70,7 +73,12 @@ class Reader:
         value = _run(path, file, name)
         if not isinstance(value, pymunk.Space):
             raise ValueError(f"{word}: it is {type(value).__name__}; it must be a pymunk.Space, or give one")
-        return read(value, step, without)
+        try:
+            return read(value, step, without)
+        finally:
+            for body in value.bodies:
+                if body.is_sleeping:
+                    body.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
 
 
 def _run(path: Path, file: str, name: str) -> Any:

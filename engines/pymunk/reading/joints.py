@@ -100,6 +100,8 @@ def _moves(body: pymunk.Body) -> bool:
 
 def _add_body(out: Described, body: pymunk.Body) -> None:
     name = out.words[body]
+    if body.is_sleeping:
+        raise refuse(name, "it is asleep at the start, where nothing moves it; call its activate() first")
     if getattr(body, "_velocity_func", None) or getattr(body, "_position_func", None):
         raise refuse(name, "it moves by a function of its own, which has no ideal counterpart")
     place = body.local_to_world(body.center_of_gravity)

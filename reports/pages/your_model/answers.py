@@ -43,7 +43,7 @@ class Walk(Task):
             reading = read(self.word, Path(folder), step=self.step)
             found = check(reading, self.file, self.duration, self.tolerance, patience=float("inf"))
         told = data(found)
-        for setting in told["tried"]:
+        for setting in (told, *told["tried"]):
             del setting["cpu"]
         # What is cheapest by the clock differs between machines; the largest step that is enough does not.
         coarsest = coarsest_enough(found)
