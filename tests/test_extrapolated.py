@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
 
 from engines import Run, Size, Unsupported
-from engines.extrapolated import Extrapolated, combine, extrapolation_weights
+from engines.extrapolated import Extrapolated, combine, expected_error, extrapolation_weights
+from reference.forces import TorsionDamper
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from tests.mechanisms import pendulum
@@ -143,7 +144,77 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
 def test_a_series_in_the_step_is_resolved_whatever_its_size(levels, powers):
     for size in (1e-6, 1.0, 30.0):
         toy = Toy({2: size, 3: -2 * size, 4: size})
-        assert run(Extrapolated(toy, "extended", levels, powers)).unresolved_at is None
+        assert not any("no series" in words for words in run(Extrapolated(toy, "extended", levels, powers)).warnings)
+
+
+@pytest.mark.parametrize("every", [1, 2, 3, 10])
+def test_how_often_it_is_sampled_changes_neither_the_motion_nor_the_estimate_nor_what_is_told(every):
+    method = Extrapolated(Toy({2: 1.0, 3: 300.0, 4: 100.0, 5: 100.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
+    each, sampled = (method.build(pendulum(), 0.05)(60 // count, count) for count in (1, every))
+    for name in ("t", "pose", "twist", "estimate"):
+        assert np.array_equal(present(getattr(sampled, name)), present(getattr(each, name))[::every])
+    # At this instant its own estimate passes the claim, whether it is a sample or not.
+    assert sampled.unresolved_at == each.unresolved_at
+    assert 0 < present(each.unresolved_at) < each.t[-1]
+    assert f"ours: unresolved from {each.unresolved_at:.4g} s on, its own estimate is not below its claim" in (
+        sampled.warnings
+    )
+
+
+@pytest.mark.parametrize(("kept", "asked"), [(60, (60, 1)), (20, (20, 3)), (1, (10, 6))])
+def test_too_many_poses_to_be_kept_are_watched_at_fewer_instants(kept, asked, monkeypatch):
+    counts: list[tuple[int, int]] = []
+    plain = ToyRun.__call__
+    monkeypatch.setattr("engines.extrapolated.WATCHED", kept)
+    monkeypatch.setattr(ToyRun, "__call__", lambda self, *count: counts.append(count) or plain(self, *count))
+    found = Extrapolated(Toy(), "extended", (1, 2), (2,)).build(pendulum(), 0.1)(10, 6)
+    assert counts == [asked, (asked[0], 2 * asked[1])]
+    assert found.t == pytest.approx(np.arange(11) * 0.6)
+
+
+@pytest.mark.parametrize("powers", [(1, 2, 3, 4), (2, 3, 4, 5)])
+@pytest.mark.parametrize("wrong", range(5))
+def test_a_single_run_that_errs_is_seen_by_the_estimate_whichever_it_is(wrong, powers):
+    levels, values = (2, 3, 4, 6, 8), np.zeros((5, 3))
+    values[wrong] = 1e-3
+    error = np.abs(combine(values, extrapolation_weights(levels, powers)))
+    assert np.all(error < 2 * expected_error(values, levels, powers))
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])
+def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_asymptotic(growth):
+    # 1 / (1 - h / 3) has all powers; the steps are a part of its radius, up to the whole of it.
+    levels, powers = (2, 3, 4, 6, 8), (1, 2, 3, 4)
+    steps = (0.05 + growth) / np.array(levels)
+    values = np.cumsum(np.ones((5, 3)), axis=1) / (1 - steps[:, None] / 3)
+    error = np.abs(combine(values, extrapolation_weights(levels, powers)) - np.arange(1, 4))
+    estimate = expected_error(values, levels, powers)
+    assert np.all(estimate > error)
+    assert np.all(estimate < 30 * error)
+
+
+def test_runs_that_all_step_over_a_damper_are_unresolved_from_the_start():
+    # 1 / 3 kg m^2 about the pin, and so strong a damper: what moves is at rest after a third of a millisecond.
+    own = replace(pendulum(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
+    exact = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
+    assert exact.build(own, 2.9 * own.time_scale)(10, 1).unresolved_at is None
+    over = exact.build(own, 3.1 * own.time_scale)(10, 1)
+    assert over.unresolved_at == 0
+    assert any("unresolved from 0 s on" in words for words in over.warnings)
+
+
+def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeypatch):
+    own, plain = pendulum(), ToyRun.__call__
+    weight = own.bodies[0].mass * 9.81
+    for size, told in ((weight, True), (1e-9 * weight, False)):
+
+        def noisy(self: ToyRun, samples: int, every: int, size: float = size) -> Trajectory:
+            found = plain(self, samples, every)  # no two runs agree on the reactions
+            return replace(found, reaction=np.full_like(found.reaction, size * np.sin(1e4 * self.dt)))
+
+        monkeypatch.setattr(ToyRun, "__call__", noisy)
+        found = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(own, 0.01)(10, 3)
+        assert any("reactions are resolved" in words for words in found.warnings) == told
 
 
 def test_the_start_on_which_all_levels_agree_comes_out_exact():
@@ -170,9 +241,7 @@ def test_cost_is_the_sum_and_warnings_and_the_first_reset_are_passed_on():
     trajectory = run(Extrapolated(Toy(resets_below=0.06), "extended", (1, 2, 3), (2, 3)))
     assert trajectory.stepping == pytest.approx(1e-3 * 30 * (1 + 2 + 3))
     assert trajectory.reset_at == pytest.approx(100 * 0.1 / 3)
-    # The last is the method's own: powers of 2 and 3 alike at such steps.
     assert trajectory.warnings[:3] == ("reset", "at step 0.05", "at step 0.0333")
-    assert trajectory.warnings[3:] == ("ours: reactions are resolved to 6e-04 of the largest",)
     assert run(Extrapolated(Toy(), "extended", (1, 2), (2,))).reset_at is None
 
 

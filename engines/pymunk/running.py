@@ -169,6 +169,11 @@ class PymunkRun:
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        return self.watched(samples, every, 1)
+
+    @validated
+    def watched(self, samples: Count, every: Count, each: Count) -> Trajectory:
+        """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
         self._mechanism.require_room(samples)
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
@@ -184,11 +189,11 @@ class PymunkRun:
             if self._leapfrog:
                 twist[1:] = (recording.before + recording.after[1:]) / 2
             acceleration = accelerations(model, recording, self._dt)
-        reaction = np.concatenate(
-            [
-                self._start_reaction(sweeping)[None],
-                reactions(self._mechanism, recording.pose[1:], twist[1:], acceleration, *loads(model)),
-            ]
+        reaction = np.full((samples + 1, self._mechanism.row_count), np.nan)
+        reaction[0] = self._start_reaction(sweeping)
+        told = slice(each, None, each)
+        reaction[told] = reactions(
+            self._mechanism, recording.pose[told], twist[told], acceleration[each - 1 :: each], *loads(model)
         )
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         warnings = tuple(filter(None, (self._unconverged(sweeping), recording.stopped)))
