@@ -10,15 +10,14 @@ is there already may tell as much by its own estimate and its order; then there 
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, isfinite
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from engines.contract import Engine, Run, Unsupported
+from engines.contract import Engine
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, Positive, validated
@@ -32,12 +31,12 @@ DEAREST = 1.0  # s, by the method's own formula: a rough run of long chains woul
 USUAL, FAST, RESOLVED = 1e-6, 1e-5, 1e-3
 ROUGHER = 4  # times as many rough steps, until they are short enough
 
-_known: deque[tuple[Any, Mechanism, float, Division]] = deque(maxlen=64)
+Rough = Callable[[Count, Count], Trajectory]  # (samples, every) of an `engines.Run`, with an estimate
 
 
 @dataclass(frozen=True)
 class Division:
-    """Into how many a step is to be divided, and the CPU time of the rough runs that told it [s], whenever they ran."""
+    """Into how many a step is to be divided, and the CPU time of the rough runs that told it [s]."""
 
     steps: int
     seconds: float
@@ -65,7 +64,7 @@ def tells_itself(run: Trajectory, mechanism: Mechanism, dt: Positive, order: Pos
 @validated
 def division(
     method: Engine,
-    build: Callable[[float], Run],
+    build: Callable[[float], Rough],
     mechanism: Mechanism,
     duration: Positive,
     order: Positive,
@@ -73,26 +72,21 @@ def division(
 ) -> Division:
     """Into how many a step has to be divided in a motion of `duration` [s]; 1 for nearly all mechanisms.
 
-    `build(dt)` makes a run of the method as it is, whose estimate falls with this order of its step. `method` is what
-    the answer is kept by, together with the mechanism. Where even `finest` times as many rough steps resolve nothing,
-    or a motion is so long, or a step so dear, that a rough run would take as long as a fine one, the answer is 1: the
-    run's own estimate tells the rest. So it is where a motion that a rough run seemed to follow is lost by a finer one:
-    then it is no series in the step, at a singular position say, and still shorter steps are not tried.
+    `build(dt)` makes a run of the `method` as it is, whose estimate falls with this order of its step. Where even
+    `finest` times as many rough steps resolve nothing, or a motion is so long, or a step so dear, that a rough run
+    would take as long as a fine one, the answer is 1: the run's own estimate tells the rest. So it is where a motion
+    that a rough run seemed to follow is lost by a finer one: then it is no series in the step, at a singular position
+    say, and still shorter steps are not tried.
     """
     duration = float(f"{duration:.12g}")  # which runs at different steps round differently
-    for known, same, lasting, found in _known:
-        if same is mechanism and lasting == duration and known == method:
-            return found
     begin = time.process_time()
     cost = method.step_cost_within(mechanism, duration) if isinstance(method, Lasting) else method.step_cost(mechanism)
     steps = _found(build, mechanism, duration, order, finest, cost)
-    found = Division(steps, time.process_time() - begin)
-    _known.append((method, mechanism, duration, found))
-    return found
+    return Division(steps, time.process_time() - begin)
 
 
 def _found(
-    build: Callable[[float], Run], mechanism: Mechanism, duration: float, order: float, finest: int, cost: float
+    build: Callable[[float], Rough], mechanism: Mechanism, duration: float, order: float, finest: int, cost: float
 ) -> int:
     steps = _rough_steps(mechanism, duration)
     if steps > MOST:
@@ -114,13 +108,10 @@ def _rough_steps(mechanism: Mechanism, duration: float) -> int:
     return max(FEWEST, ceil(SHARE * duration / mechanism.time_scale))
 
 
-def _lost(build: Callable[[float], Run], mechanism: Mechanism, duration: float, every: Count) -> float:
+def _lost(build: Callable[[float], Rough], mechanism: Mechanism, duration: float, every: Count) -> float:
     """The largest estimate of a run with so many steps between samples, in radians or lengths; infinite if lost."""
-    try:
-        with np.errstate(all="ignore"):
-            return _lost_in(build(duration / SAMPLES / every)(SAMPLES, every), mechanism)
-    except (Unsupported, ValueError, ArithmeticError):
-        return np.inf
+    with np.errstate(all="ignore"):
+        return _lost_in(build(duration / SAMPLES / every)(SAMPLES, every), mechanism)
 
 
 def _lost_in(run: Trajectory, mechanism: Mechanism) -> float:

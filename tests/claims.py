@@ -1,8 +1,8 @@
 """Methods that claim an accuracy, held against the judge on mechanisms that nobody chose: who is wrong, who says so.
 
-    cases, _ = judged(seed=31, numbers=range(40))
-    found = rows(EXTENDED, cases, steps=(1e-3, 1e-2), everies=(1, 10))
-    print(as_text(table(found)))
+cases, _ = judged(seed=31, numbers=range(40))
+found = rows(EXTENDED, cases, steps=(1e-3, 1e-2), everies=(1, 10))
+print(as_text(table(found)))
 """
 
 from __future__ import annotations

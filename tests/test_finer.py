@@ -87,7 +87,7 @@ def test_a_usual_motion_makes_no_rough_run(monkeypatch):
     assert found.estimate.max() < 1e-9
 
 
-def test_what_a_rough_run_takes_is_part_of_the_stepping_also_when_it_is_known_already(monkeypatch):
+def test_what_a_rough_run_takes_is_part_of_the_stepping(monkeypatch):
     own = FreeFourBar().mechanism()
     monkeypatch.setattr("engines.extrapolated.tells_itself", lambda *_: False)
     monkeypatch.setattr("engines.extrapolated.division", lambda *_: Division(1, 7.0))
@@ -100,14 +100,20 @@ def test_what_a_rough_run_takes_is_part_of_the_stepping_also_when_it_is_known_al
     assert divided.t[-1] == pytest.approx(plain.t[-1])
 
 
-def test_a_division_is_found_once_and_keeps_what_it_took():
+def test_rough_runs_are_made_and_counted_for_each_motion_anew():
     made: list[int] = []
     own = pendulum()
-    first = losing({1: 1e-2, 4: 1e-4}, own, made)
-    again = losing({1: 1e-2, 4: 1e-4}, own, made)
-    assert again is first
-    assert made == [1, 4]
-    assert first.seconds > 0
+    found = [losing({1: 1e-2, 4: 1e-4}, own, made) for _ in range(2)]
+    assert made == [1, 4, 1, 4]
+    assert all(one.seconds > 0 for one in found)
+
+
+def test_what_goes_wrong_in_a_rough_run_is_heard():
+    def build(dt: float):
+        raise ArithmeticError("a fault of ours")
+
+    with pytest.raises(ArithmeticError, match="a fault of ours"):
+        division(Toy("rough"), build, pendulum(), 0.1, ORDER)  # type: ignore[arg-type]
 
 
 def test_no_rough_run_is_made_where_the_worst_pose_of_the_motion_makes_its_steps_too_dear():

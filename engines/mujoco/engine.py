@@ -49,11 +49,10 @@ class MuJoCo(Valid):
     order, and the first that solves it is taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
     `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see `engines.mujoco.joints.skate`;
     `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the integrator otherwise, since four
-    stages of the same stale row cost more and gain nothing. `estimates`: a second run with half as many steps tells
-    the error of the first, if that falls with the fourth power of the step; where it is above what is claimed
-    (`engines.mujoco.theory.claimed`), the run says so, and it warns of any above 1e-7 of a radian or of the mechanism's
-    length; a motion that becomes faster than its start lets expect takes more steps (`engines.finer`), unless its
-    estimate shows that it needs none.
+    stages of the same stale row cost more and gain nothing. `estimates`: a run of steps twice as long, and where
+    that leaves it open one of half steps, tell the error, if it falls with the fourth power of the step; where it is
+    above `engines.CLAIM` the motion is unresolved. A motion that becomes faster than its start lets expect takes more
+    steps (`engines.finer`), unless its estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
 
@@ -157,7 +156,7 @@ class MuJoCo(Valid):
             return MuJoCoRun(model, data, size, plain)  # how far a contact turns in a step is known, and told
 
         def divided(duration: float) -> Division:
-            return division(self, plain, mechanism, duration, theory.ORDER, finest=64)
+            return division(self, lambda own: plain(own).roughly, mechanism, duration, theory.ORDER, finest=64)
 
         return MuJoCoRun(model, data, size, plain, divided)
 

@@ -15,18 +15,19 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Size
+from engines import CLAIM, Size
 from engines.finer import Division, tells_itself
 from engines.mujoco.construction import in_turn
 from engines.mujoco.joints.roll.roll_warnings import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
-from engines.mujoco.theory import CLAIM, ORDER, claimed, seen_order
+from engines.mujoco.theory import ORDER
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int_]  # of steps since the start, rising, or places in such an array
 
 # A joint that opens by more than this part of the mechanism's length is no longer an error of integration: we say so.
 TORN = 1e-3
@@ -34,6 +35,8 @@ TORN = 1e-3
 UNSOLVED = 1e-5
 # Of a radian or of the mechanism's length: what rounding may make of two runs.
 ROUNDED = 1e-8
+# Instants at which an estimate is made beside the samples: all where half of the steps are fewer, as in most runs.
+WATCHED = 1000
 AT_REST = 1e-9  # of the largest acceleration so far, or of one that would be usual
 
 
@@ -81,27 +84,48 @@ class MuJoCoRun:
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Step samples * every times. Raises ValueError for bad counts, RuntimeError if it has run already.
 
-        `stepping` counts what the answer needed: with the rough runs, and the run whose steps had to be divided.
+        How often somebody samples is no part of the method: an estimate is made at WATCHED instants beside the samples,
+        and these decide whether steps are divided and whether the estimate needs a third run. `stepping` counts all of
+        them: what the answer needed, the rough runs, and the run whose steps had to be divided.
         """
+        self._begin(samples)
+        mechanism, sampled = self.model.mechanism, np.arange(samples + 1) * every
+        if self.other is None:
+            return self._as_built(sampled, sampled)
+        watched = _watched(samples * every)
+        counts = np.union1d(sampled, watched)
+        at_samples, at_watched = np.searchsorted(counts, sampled), np.searchsorted(counts, watched)
+        run, spent, (found, apart) = self, 0.0, self._doubled(counts, sampled)
+        by_order = replace(found, estimate=self._by_order(apart))
+        if self.divided is not None and not tells_itself(_at(by_order, at_watched), mechanism, self._dt, ORDER):
+            needed = self.divided(float(found.t[-1]))
+            spent += needed.seconds
+            if needed.steps > 1:
+                spent += found.stepping
+                run, counts = self.other(self._dt / needed.steps), counts * needed.steps
+                found, apart = run._doubled(counts, sampled * needed.steps)
+        found = run._estimated(found, apart, counts, at_watched)
+        return replace(_at(found, at_samples), stepping=found.stepping + spent)
+
+    @validated
+    def roughly(self, samples: Count, every: Count) -> Trajectory:
+        """Poses with an estimate by the order alone, and no reactions: what `engines.finer` asks of a rough run."""
+        self._begin(samples)
+        counts = np.arange(samples + 1) * every
+        found, apart = self._doubled(counts, counts[:0])
+        return replace(found, estimate=self._by_order(apart))
+
+    def _begin(self, samples: int) -> None:
         self.model.mechanism.require_room(samples)
         if self.data.time > 0:
             raise RuntimeError("this model has been stepped already; build it again to repeat the run")
-        step, found = self.model.compiled.opt.timestep, self._as_built(samples, every)
-        if not self.divided or not self.other or tells_itself(found, self.model.mechanism, step, ORDER):
-            return found
-        needed = self.divided(samples * every * step)
-        spent = found.stepping + needed.seconds
-        if needed.steps > 1:
-            found = self.other(step / needed.steps)(samples, every * needed.steps)
-            spent += found.stepping
-        return replace(found, stepping=spent)
 
-    def _as_built(self, samples: int, every: int) -> Trajectory:
-        """The motion by the steps of the model."""
-        step = self.model.compiled.opt.timestep
-        t = np.arange(samples + 1) * (every * step)
+    def _as_built(self, counts: Counts, read: Counts) -> Trajectory:
+        """The motion by the steps of the model, after so many of them; reactions are read after `read`, of these."""
+        step = self._dt
+        t = counts * step
         with _listening(self.data) as complaints, self.model.hooked():
-            position, velocity, clock, stepping = self._step(samples, every)
+            position, velocity, clock, stepping = self._step(counts)
             # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
             behind = np.abs(clock - t) > step / 2
             reset_at = complaints.reset_at if complaints.reset_at is not None else _first(t, behind)
@@ -109,51 +133,90 @@ class MuJoCoRun:
             if reset_at is not None:
                 sound &= t <= reset_at
             warnings = list(complaints.said)
-            acceleration, missed = self._accelerations(position, velocity, t, sound)
+            acceleration, missed = self._accelerations(position, velocity, t, sound & np.isin(counts, read))
         pose, twist, change = self.model.tree.motion(*(self._ordered(x) for x in (position, velocity, acceleration)))
-        reaction = np.full((samples + 1, self.model.mechanism.row_count), np.nan)
-        read = np.all(np.isfinite(change), axis=(1, 2))
-        reaction[read] = self.model.mechanism.reaction(pose[read], change[read], *self.model.loads(), twist[read])
+        reaction = np.full((len(t), self.model.mechanism.row_count), np.nan)
+        told = np.all(np.isfinite(change), axis=(1, 2))
+        reaction[told] = self.model.mechanism.reaction(pose[told], change[told], *self.model.loads(), twist[told])
         pose[~sound], twist[~sound] = np.nan, np.nan
         warnings += self._doubts(pose[sound], t[sound], missed)
         warnings += marks()
-        warnings += roll_warnings(self.model.mechanism, step, t[read], pose[read], twist[read], reaction[read])
-        estimate = self._estimate(samples, every, pose)
-        unresolved_at = None if estimate is None else self._unresolved_at(t, estimate)
-        if unresolved_at is not None:
-            warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim")
-        elif estimate is not None and (lost := float(np.nanmax(estimate / self._sizes))) > CLAIM:
-            warnings.append(f"ours: its own estimate is {lost:.1e} of a radian or of the mechanism's length")
-        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at, estimate, unresolved_at)
+        warnings += roll_warnings(self.model.mechanism, step, t[told], pose[told], twist[told], reaction[told])
+        return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
-    def _estimate(self, samples: int, every: int, pose: Array) -> Array | None:
-        """What a run of half as many steps says of the error of these poses; NaN where that run is lost.
+    def _doubled(self, counts: Counts, read: Counts) -> tuple[Trajectory, Array]:
+        """The same, and how far a run of steps twice as long is from its poses.
 
-        Richardson's: RK4's error falls with the fourth power of the step, and that of soft rows with their compliance.
-        What hard rows lose in rounding falls with neither, and the order is not seen where steps are long: a small
-        difference counts in full, and so does each with long steps. None where samples are one step apart.
+        That run is there after every second step. In between, the larger of the distances before and after counts.
         """
-        if self.other is None or every < 2:
-            return None
-        fewer = every // 2
-        ratio = every / fewer
-        run = self.other(self.model.compiled.opt.timestep * ratio)
-        for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
-            # Rows that give way ratio^4 times as much: their error is then told with that of the step.
-            getattr(run.model.compiled, name)[:] = ratio**4 * getattr(self.model.compiled, name)
-        with _listening(run.data) as complaints, run.model.hooked():
-            position, velocity, _, _ = run._step(samples, fewer)
-        coarse, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
-        if complaints.reset_at is not None:
-            return np.full_like(pose, np.nan)
-        apart = np.abs(coarse - pose)
-        order = seen_order(self.model.mechanism, self.model.compiled.opt.timestep)
-        return np.maximum(apart / (ratio**order - 1), np.minimum(apart, ROUNDED * self._sizes))
+        before, after = counts - counts % 2, counts + counts % 2
+        even = np.union1d(before, after)
+        every = np.union1d(even, counts)
+        found = self._as_built(every, read)
+        apart, spent = self._apart(found.pose[np.searchsorted(every, even)], even // 2, 2.0)
+        apart = np.maximum(*(apart[np.searchsorted(even, around)] for around in (before, after)))
+        return replace(_at(found, np.searchsorted(every, counts)), stepping=found.stepping + spent), apart
 
-    def _unresolved_at(self, t: Array, estimate: Array) -> float | None:
-        """From when on [s] its estimate is not below what it claims."""
-        largest = np.max(estimate / self._sizes, axis=(1, 2))
-        return _first(t, ~(largest <= claimed(self.model.mechanism, self.model.compiled.opt.timestep, t)))
+    def _apart(self, pose: Array, counts: Counts, ratio: float) -> tuple[Array, float]:
+        """How far poses (times, bodies, 3) are from those after so many steps of another length, and what these took.
+
+        Its rows give way ratio^4 times as much, so that their error is told with that of the step. NaN where it is
+        lost.
+        """
+        assert self.other is not None  # only a run with an estimate asks
+        run = self.other(self._dt * ratio)
+        for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
+            getattr(run.model.compiled, name)[:] = ratio**ORDER * getattr(self.model.compiled, name)
+        with _listening(run.data) as complaints, run.model.hooked():
+            position, velocity, clock, spent = run._step(counts)
+        there, _, _ = run.model.tree.motion(*(run._ordered(x) for x in (position, velocity, velocity)))
+        apart = np.abs(there - pose)
+        reset_at = np.inf if complaints.reset_at is None else complaints.reset_at
+        t = counts * run._dt
+        apart[(np.abs(clock - t) > run._dt / 2) | (t >= reset_at)] = np.nan
+        return apart, spent
+
+    def _by_order(self, apart: Array) -> Array:
+        """What steps twice as long say of the error: RK4's falls with the fourth power, and so does that of soft rows.
+
+        What hard rows lose in rounding falls with nothing, so a small difference counts in full.
+        """
+        return np.maximum(apart / (2**ORDER - 1), np.minimum(apart, ROUNDED * self._sizes))
+
+    def _estimated(self, found: Trajectory, apart: Array, counts: Counts, watched: Counts) -> Trajectory:
+        """With an estimate, and whether it is above what is claimed; by half steps too where double ones can't tell.
+
+        Where double steps make more of a difference than is claimed, nobody knows whether the order is seen. Half steps
+        make a difference that is q times as large, where RK4's q is 1/16. Were steps halved on and on, and each
+        difference at most half of the one before, the rest would add up to at most 2 q of it. Where even that is not
+        so, q is above 1/2, and the estimate above the claim. Errors add up along a motion, and what was missed once may
+        pass zero: q is that of the largest differences so far.
+        """
+        stepping, warnings = found.stepping, found.warnings
+        estimate = self._by_order(apart)
+        coarse = self._largest_so_far(apart[watched])
+        if not coarse[-1] <= CLAIM:
+            apart, spent = self._apart(found.pose, 2 * counts, 0.5)
+            q = self._largest_so_far(apart[watched]) / np.where(coarse > 0, coarse, np.inf)
+            here = np.searchsorted(counts[watched], counts, side="right") - 1
+            # A run of double steps that was lost tells of no order: as if it were the first.
+            estimate = apart * (1 + 2 * np.nan_to_num(q, nan=0.5))[here][:, None, None]
+            stepping += spent
+        unresolved_at = _first(found.t, ~(np.max(estimate / self._sizes, axis=(1, 2)) <= CLAIM))
+        if unresolved_at is not None:
+            warnings = (
+                *warnings,
+                f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim",
+            )
+        return replace(found, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
+
+    def _largest_so_far(self, apart: Array) -> Array:
+        """(times,) of a radian or of the mechanism's length; NaN from where one is lost."""
+        return np.maximum.accumulate(np.max(apart / self._sizes, axis=(1, 2)))
+
+    @property
+    def _dt(self) -> float:
+        return self.model.compiled.opt.timestep
 
     @property
     def _sizes(self) -> Array:
@@ -161,30 +224,33 @@ class MuJoCoRun:
         length = self.model.mechanism.length_scale
         return np.array([length, length, 1.0])
 
-    def _step(self, samples: int, every: int) -> tuple[Array, Array, Array, float]:
-        """(samples + 1, ...) positions, velocities and clock, as MuJoCo orders them, and the loop's CPU seconds."""
+    def _step(self, counts: Counts) -> tuple[Array, Array, Array, float]:
+        """Positions, velocities and clock after so many steps (times, ...), the first after none, as MuJoCo orders
+        them, and the loop's CPU seconds.
+        """
         compiled, data = self.model.compiled, self.data
-        position, velocity = np.empty((samples + 1, compiled.nq)), np.empty((samples + 1, compiled.nv))
-        clock = np.empty(samples + 1)
+        position, velocity = np.empty((len(counts), compiled.nq)), np.empty((len(counts), compiled.nv))
+        clock = np.empty(len(counts))
         now_position, now_velocity, advance = data.qpos, data.qvel, mujoco.mj_step
         position[0], velocity[0], clock[0] = now_position, now_velocity, data.time
         overwrite = self.model.drive == "overwrite" and self.model.driven
         before = in_turn(self.model.hooks.before)
+        steps = list(enumerate(np.diff(counts).tolist(), 1))
         begin = time.process_time()
         if before:
-            for sample in range(1, samples + 1):
+            for sample, every in steps:
                 for _ in range(every):
                     before(compiled, data)
                     advance(compiled, data)
                 position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
         elif overwrite:
-            for sample in range(1, samples + 1):
+            for sample, every in steps:
                 for _ in range(every):
                     advance(compiled, data)
                     self._overwrite()
                 position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
         else:
-            for sample in range(1, samples + 1):
+            for sample, every in steps:
                 advance(compiled, data, nstep=every)
                 position[sample], velocity[sample], clock[sample] = now_position, now_velocity, data.time
         return position, velocity, clock, time.process_time() - begin
@@ -234,6 +300,18 @@ class MuJoCoRun:
         if not missed <= UNSOLVED:
             doubts.append(f"ours: the solver missed the accelerations by {missed:.1g} of themselves")
         return doubts
+
+
+def _watched(steps: int) -> Counts:
+    """After how many of the steps an estimate is made, however often somebody samples: every second, or WATCHED."""
+    half = (steps + 1) // 2
+    return 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
+
+
+def _at(found: Trajectory, places: Counts) -> Trajectory:
+    """The motion at some of its times."""
+    kept = {name: getattr(found, name)[places] for name in ("t", "pose", "twist", "reaction")}
+    return replace(found, **kept, estimate=None if found.estimate is None else found.estimate[places])
 
 
 def _first(t: Array, flags: NDArray[np.bool_]) -> float | None:

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from engines import EXACT, Holder, Promise, Unpromised
-from engines.finer import FAST, SHARE
 from engines.motions import is_prescribed, turns_steadily
 from engines.mujoco.joints.roll import RollContact, RollEquality
 from engines.mujoco.joints.skate import STEPWISE
@@ -27,30 +23,6 @@ SPRUNG = Promise(1, gap=2)
 SPRUNG_PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1)
 
 ORDER = 4  # of RK4, and so of every run with an estimate
-# Of a radian or of the mechanism's length: what a run with an estimate claims of its error, whatever the motion.
-CLAIM = 1e-7
-# The fourth order is seen where a step is at most this part of the motion's time scale. Measured in 475 random
-# mechanisms of all kinds with steps of 1e-3 s: of the nine that missed 1e-7 rad, eight had longer steps, at which
-# errors fall by less, or estimates above their claim. The ninth, wrong by 2.1e-7 rad and within a looser claim, had an
-# estimate above CLAIM, and these are told by a warning. It was right in all ten of 2,500 mechanisms that have it alone.
-SHORT = 1 / 25
-
-
-def seen_order(mechanism: Mechanism, dt: float) -> int:
-    """The power of the step with which an estimate may reckon: that of RK4, or the first where steps are long."""
-    return ORDER if dt <= SHORT * mechanism.time_scale else 1
-
-
-def claimed(mechanism: Mechanism, dt: float, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What a run with an estimate claims at times t [s], (times,): errors below this part of a radian or a length.
-
-    Short steps may lose more than CLAIM: what the fourth order makes of the fastest motions that `engines.finer`
-    leaves as they are.
-    """
-    scale = mechanism.time_scale
-    if seen_order(mechanism, dt) < ORDER:
-        return np.full_like(t, CLAIM)
-    return np.maximum(CLAIM, FAST * (SHARE * dt / scale) ** ORDER * np.maximum(1.0, t / scale))
 
 
 def promise(engine: MuJoCo, mechanism: Mechanism, tree: Tree) -> Promise | Unpromised:
