@@ -91,7 +91,7 @@ def test_an_engine_is_found_by_its_module_and_by_its_file_alone_and_in_a_list(he
         ("", "absent.py", "absent.py: there is no such file"),
         ("", "absent:ENGINE", "absent can't be imported: ModuleNotFoundError: No module named 'absent'"),
         ("a = 1\nb = a +\n", "broken.py", "broken.py:2: SyntaxError: invalid syntax"),
-        ("import math\n\nmath.sqrt(-1)\n", "broken.py", "broken.py:3: ValueError: math domain error"),
+        ("import math\n\nmath.sqrt(None)\n", "broken.py", "broken.py:3: TypeError: must be real number, not NoneType"),
         ("import json\njson.loads('x')\n", "broken:X", "broken.py:2: JSONDecodeError: Expecting value"),
         ("raise SystemExit(3)", "broken.py", "broken.py:1: SystemExit: 3"),
     ],

@@ -253,6 +253,14 @@ def test_an_engine_whose_package_is_missing_names_the_extra(monkeypatch):
             inner.build(pins, 1e-2)
 
 
+def test_an_engine_whose_system_library_is_missing_names_it(monkeypatch):
+    monkeypatch.setattr(single_run, "_is_found", lambda module: True)
+    monkeypatch.setattr(single_run, "_opens", lambda library: False)
+    monkeypatch.setattr(single_run.sys, "platform", "linux")
+    lacking = {engine.name: registry.missing(engine) for engine in registry.OTHERS if registry.missing(engine)}
+    assert lacking == {"exudyn": "exudyn needs libGL.so.1, a library of the system that can't be loaded"}
+
+
 def test_a_missing_engine_is_refused_by_name_in_one_line(monkeypatch):
     monkeypatch.setattr(registry, "ABSENT", {"exudyn": "exudyn needs the package exudyn: pip install -e '.[exudyn]'"})
     with pytest.raises(BadInput, match=r"pip install -e '\.\[exudyn\]'"):

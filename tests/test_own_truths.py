@@ -25,7 +25,9 @@ from reports.check.judging import often
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
-WHEEL = '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
+WHEEL = (
+    '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
+)
 LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body>'
 
 
@@ -212,7 +214,9 @@ def test_both_ends_of_a_groove_are_ends(speed):
     body.velocity = (speed, 0.0)
     space = space_of(body)
     space.add(GrooveJoint(space.static_body, body, (-0.6, 0.0), (0.6, 0.0), (0.0, 0.0)))
-    with pytest.raises(Unsupported, match="GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove") as found:
+    with pytest.raises(
+        Unsupported, match="GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove"
+    ) as found:
         check(read_space(space, 0.01), "groove", 2.0, 1e-3)
     assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(found.value)
 
