@@ -12,12 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.body import Triple
+from reference.kinds import of_shape
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
 from reference.validation import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -101,8 +102,11 @@ class CarWithTrailers(Valid):
             )
 
     @validated
-    def axle_rates(self, headings: Complexes, speed: Complexes, turning_rate: Complexes) -> tuple[Any, Any]:
+    def axle_rates(
+        self, headings: Annotated[Complexes, of_shape("...", "vehicles")], speed: Complexes, turning_rate: Complexes
+    ) -> tuple[Any, Any]:
         """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from the car's."""
+        headings = np.asarray(headings)
         speeds, rates = [speed], [turning_rate]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):
             bend = headings[..., index] - headings[..., index + 1]
@@ -117,7 +121,9 @@ class CarWithTrailers(Valid):
         return speed * np.tan(steering) / self.wheelbase
 
     @validated
-    def bend_rates(self, bends: ArrayLike, speed: float, steering: float) -> Array:
+    def bend_rates(
+        self, bends: Annotated[ArrayLike, of_shape("...", "trailers")], speed: float, steering: float
+    ) -> Array:
         """Rates of the joint angles theta_trailer - theta_before (..., trailers) [rad/s]; speed < 0 reverses."""
         bends = np.asarray(bends, dtype=float)
         headings = np.concatenate([np.zeros((*bends.shape[:-1], 1)), np.cumsum(bends, axis=-1)], axis=-1)
