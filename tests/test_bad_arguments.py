@@ -147,16 +147,6 @@ def test_arguments_given_by_name_are_checked_as_those_given_by_place():
             call()
 
 
-def test_a_class_without_checks_is_caught():
-    @dataclasses.dataclass(frozen=True)
-    class Careless:
-        mass: float
-
-    assert outcome(Trial("Careless", "mass", "heavy", lambda: Careless("heavy"))) == "answered"  # type: ignore[arg-type]
-    assert outcome(Trial("float", "mass", "heavy", lambda: float("heavy"))).startswith("another sentence")
-    assert outcome(Trial("len", "mass", 1, lambda: len(1))).startswith("TypeError")  # type: ignore[arg-type]
-
-
 def test_every_class_that_users_make_checks_its_fields_and_is_tried():
     found = dataclasses_of_the_suite()
     assert {name for name, each in found.items() if not issubclass(each, Valid)} <= NOT_MADE_BY_USERS

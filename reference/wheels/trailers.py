@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.body import Triple
 from reference.kinds import of_shape
+from reference.numerics.events import first_below
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
 from reference.validation import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -194,24 +195,20 @@ class CarWithTrailers(Valid):
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first instant that a joint passes the limit, found between the integration's own steps by halving."""
-        if motion is None:
-            bent = np.abs(np.diff(first[3:])) - limit
-            return (0.0, int(np.argmax(bent)) + 1) if bent.size and bent.max() > 0 else (None, None)
-        knots = np.interp(np.arange(8 * len(motion.times) - 7) / 8, np.arange(len(motion.times)), motion.times)
-        states = motion(knots)
-        bent = np.abs(np.diff(states[:, 3:], axis=1)) - limit
-        over = np.flatnonzero((bent > 0).any(axis=1)) if bent.shape[1] else np.zeros(0, dtype=int)
-        if not over.size:
-            return None, None
-        late = int(over[0])
-        if late == 0:
-            return 0.0, int(np.argmax(bent[0])) + 1
-        before, after = knots[late - 1], knots[late]
-        while True:
-            middle = 0.5 * (before + after)
-            if middle in (before, after):
-                break
-            passed = np.abs(np.diff(motion(middle)[0, 3:])).max() > limit
-            before, after = (before, middle) if passed else (middle, after)
-        return float(after), int(np.argmax(np.abs(np.diff(motion(after)[0, 3:])))) + 1
+        """The first instant that a joint passes the limit, and which trailer's, counted from 1."""
+
+        def spare(states: Array) -> Array:
+            bends = np.diff(states[..., 3:], axis=-1)
+            return np.concatenate([limit - bends, limit + bends], axis=-1)
+
+        count = len(self.lengths)
+        if motion is None or not count:
+            folded = np.flatnonzero(spare(first) < 0)
+            return (0.0, int(folded[0]) % count + 1) if folded.size else (None, None)
+
+        def values(t: Array) -> tuple[Array, Array]:
+            states = motion(t)
+            return spare(states).T, limit + np.abs(states[:, 3:]).max(axis=-1)
+
+        when, which = first_below(values, motion.times) or (None, None)
+        return when, None if which is None else which % count + 1
