@@ -251,7 +251,7 @@ def test_a_ring_about_an_ellipse_is_refused_by_the_ellipses_length_wherever_the_
 
 def test_an_ellipse_in_a_tight_ring_rolls_until_its_flat_side_fits_both_ways():
     shape, ring = Ellipse(0.5, 0.3), Ring(0.7)
-    for start in (0.0, 0.2, -0.3):
+    for start in (0.0, 0.1, -0.1):
         rolling = Rolling.at_arcs(shape, Placed(ring), 0.0, start)
         # As bent as the ring, to NEAR_CONFORMAL, at the nearest place on either side.
         ends = np.array(rolling._parameter_limits)
