@@ -52,9 +52,9 @@ class Store:
     A context manager. What is put outlives this program, however it ends, when `put` returns; should the machine itself
     stop at once, the last of it may be missing, and runs again.
 
-    A damaged file is put aside, with what lies beside it, and a new one begun; `notice` says so (empty otherwise). Where
-    the text of a row alone is damaged, that row is missing. `copied`: the file that is read, which is a copy of `path` in
-    a store that is only read.
+    A damaged file is put aside, with what lies beside it, and a new one begun; `notice` says so (empty otherwise).
+    Where the text of a row alone is damaged, that row is missing. `copied`: the file that is read, which is a copy of
+    `path` in a store that is only read.
     Raises FileTrouble, here and in every method, where the file can't be used.
     """
 
