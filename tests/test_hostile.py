@@ -9,6 +9,7 @@ import threading
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -125,7 +126,7 @@ def test_a_scene_of_no_duration_or_samples_is_refused(here, text, telling):
 def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
     @dataclass(frozen=True)
     class Odd(Toy):
-        def step_cost(self, mechanism):
+        def step_cost(self, mechanism) -> Any:
             if "raise" in deed:
                 raise RuntimeError("no")
             return float("nan") if "nan" in deed else "long"

@@ -13,7 +13,7 @@ from tests.test_command_line import call
 
 COMMANDS = {
     name: [option for each in command.params for option in each.opts if option.startswith("--")]
-    for name, command in sorted(typer.main.get_command(app).commands.items())
+    for name, command in sorted(vars(typer.main.get_command(app))["commands"].items())
 }
 WORDS = (
     *(

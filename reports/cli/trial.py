@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from engines import Unsupported
+import numpy as np
+
+from engines import Engine
+from engines.registry import VARIANTS
 from reference.scene import Scene
 from reports.cli.known import Given, values_of
+from reports.grid.cells import Cell, estimated_cost
+from reports.grid.ending import BadInput
 from reports.grid.outcomes import Loss
 from reports.grid.pool import TIME_LIMIT
 from reports.grid.supervisor import supervise
+from reports.pages.catalogue import SCENES
 
 SLEEPING = 2 * TIME_LIMIT  # s of one that does not use its CPU time
 
@@ -33,6 +40,8 @@ class Trial:
             _touch(value)
             if isinstance(value, Scene):
                 _ask(value, self.motion)
+            else:
+                _ask_costs(SCENES, (value,))
         return ""
 
 
@@ -43,19 +52,18 @@ def _touch(value: Any) -> None:
 
 
 def _ask(scene: Scene, motion: bool) -> None:
-    from engines.registry import VARIANTS
-    from reports.grid.cells import Cell, estimated_cost
-
     scene.mechanism()
-    for engine in VARIANTS:
-        estimated_cost(Cell(scene, engine, 1))
+    _ask_costs((scene,), VARIANTS)
     if motion:
-        import numpy as np
-
-        try:
+        with suppress(ValueError):  # the textbook refuses, which pages can tell
             scene.motion(np.linspace(0.0, scene.duration, scene.samples + 1))
-        except (ValueError, Unsupported):  # the textbook refuses, which pages can tell
-            return
+
+
+def _ask_costs(scenes: Sequence[Scene], engines: Sequence[Engine]) -> None:
+    for scene in scenes:
+        for engine in engines:
+            with suppress(BadInput):  # that is told where the cost is needed
+                estimated_cost(Cell(scene, engine, 1))
 
 
 def refused(given: Sequence[Given], motion: bool = False) -> dict[Given, str]:
