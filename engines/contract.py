@@ -92,7 +92,7 @@ class Promise:
     `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
     costs, where a softness that is tied to the step sets the others. `differences`: reactions are a change of velocity
     over the step divided by this number; 0 where they are read as forces. `amplified`: how many times the usual
-    rounding of velocities a combination of runs carries.
+    rounding of velocities a combination of runs carries. `reaction` is NaN where the engine can't tell any.
     """
 
     order: float
@@ -113,9 +113,7 @@ class Promise:
 
     def step(self, quantity: str) -> float:
         """The order of what the step alone costs."""
-        if self.integrator is None or self.of(quantity) != self.order:
-            return self.of(quantity)
-        return self.integrator
+        return self.of(quantity) if self.integrator is None else self.integrator
 
 
 @dataclass(frozen=True)

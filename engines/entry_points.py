@@ -7,8 +7,8 @@ never installed has them, and one that was installed before the file changed has
 from __future__ import annotations
 
 import tomllib
+import warnings
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
@@ -65,12 +65,26 @@ def registered(
 
 
 def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
-    """The first value of each key of a group; what can't be used, or is of a key that ours has, is left out."""
+    """The first value of each key of a group; one of a key that ours has is left out.
+
+    So is what can't be used: with a warning, unless a package is not installed that it needs.
+    """
     found: dict[str, Any] = {}
-    for _, key, reference in (*_ours(group), *_theirs(group)):
-        with suppress(ValueError):
-            found.setdefault(key, load(reference, kind)[0])
+    for owner, key, reference in (*_ours(group), *_theirs(group)):
+        try:
+            value = load(reference, kind)[0]
+        except ValueError as reason:
+            if not _lacks_a_package(reason.__context__):
+                warnings.warn(f"{group}: {key!r} of the distribution {owner} is left out: {reason}", stacklevel=2)
+            continue
+        found.setdefault(key, value)
     return found
+
+
+def _lacks_a_package(error: BaseException | None) -> bool:
+    """Whether an import failed since a package that is none of ours is not installed."""
+    lacking = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    return lacking not in ("", "reference", "engines", "reports")
 
 
 @cache

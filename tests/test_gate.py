@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from dataclasses import fields, replace
+from itertools import permutations
 from typing import Any
 
 import pytest
@@ -12,10 +13,10 @@ import pytest
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.baseline import Baseline
 from reports.gate.checks import Check, Deviation, complaints, nearest
-from reports.gate.order_check import order
+from reports.gate.order_check import TOO_FEW, order
 from reports.gate.prediction import Prediction
 from reports.gate.table import lines, report
-from reports.gate.theory import ROOM, ROOM_OWN, theory
+from reports.gate.theory import ROOM, ROOM_OWN, idle, theory
 from reports.gate.verdicts import Case, cases, checks
 from reports.gate.walk import Verdict
 from reports.grid.cells import Cell
@@ -141,11 +142,39 @@ def test_a_promise_for_one_quantity_is_for_that_alone():
     assert not of(theory(JUDGE, Promise(4), None, row(rate=1e-6)), "rate").passed
 
 
-def test_where_nothing_is_promised_the_outcome_alone_is_held():
+def test_where_nothing_is_promised_an_error_may_not_be_far_above_what_the_methods_own_steps_change_in_it():
     nothing = Unpromised("nobody knows")
-    assert [check.name for check in theory(JUDGE, nothing, None, row(angle=0.1))] == ["outcome"]
-    assert not any(check.passed for check in theory(JUDGE, nothing, None, row(outcome=Outcome.TORN)))
+    coarse = [row(every=1, angle=0.013), row(every=3, angle=0.011)]
+    assert of(theory(JUDGE, nothing, None, row(angle=0.01), coarse), "angle").passed
+    assert not of(
+        theory(JUDGE, nothing, None, row(angle=0.07), [row(1, angle=0.072), row(3, angle=0.071)]), "angle"
+    ).passed
+    assert not theory(JUDGE, nothing, None, row(outcome=Outcome.TORN))[0].passed
     assert order(nothing, falling(2)) == ()
+
+
+def test_of_a_single_step_without_a_promise_no_more_than_half_of_a_reaction_may_be_wrong():
+    for error, passes in ((0.49, True), (1.0, False), (math.nan, False)):
+        assert of(theory(JUDGE, Unpromised("nobody knows"), None, row(reaction=error)), "reaction").passed is passes
+
+
+PRESCRIBED = replace(JUDGE, prescribed=True, earlier=dict.fromkeys(NAMES, 2.0))
+
+
+def test_in_a_prescribed_motion_velocities_of_the_first_order_are_those_of_the_middle_of_a_step():
+    promise, coarse = Promise(2, rate=1), [row(every=1, rate=1e-2), row(every=3, rate=3.3e-3)]
+    for error, passes in ((1e-3, True), (1.2e-3, True), (1.3e-3, False)):  # 2 rad/s^2 for half of a thousandth
+        assert of(theory(PRESCRIBED, promise, None, row(rate=error)), "rate").passed is passes
+        assert of(theory(PRESCRIBED, promise, None, row(rate=error), coarse), "rate").passed is passes
+    soft = Softness(2500.0, 100.0, 0.01, (True, True))
+    assert of(theory(PRESCRIBED, promise, soft, row(rate=1.3e-3)), "rate").passed  # a spring lags by its own time
+
+
+def test_in_a_prescribed_motion_an_error_is_that_of_the_next_coarser_step_scaled():
+    promise, coarse = Promise(2), [row(every=1, angle=1e-5), row(every=3, angle=1e-7), row(every=5, angle=4e-8)]
+    # The coarsest would allow 1.25e-7, and with the room of a free motion 2.5e-7.
+    for judge, bound in ((PRESCRIBED, 1.25 * 1e-8), (JUDGE, ROOM_OWN * 1e-7)):
+        assert of(theory(judge, promise, None, row(), coarse), "angle").bound == pytest.approx(bound + 1e-11)
 
 
 def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_other_scene():
@@ -157,8 +186,10 @@ def test_a_page_knows_better_what_its_motion_asks_for_than_the_engine_and_of_no_
 def test_no_bound_is_above_what_the_outcome_refuses():
     wild = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
     found = theory(wild, Promise(1), None, row())
-    assert of(found, "angle").bound == 0.5
+    assert [of(found, name).bound for name in ("angle", "rate", "slip", "reaction")] == [0.5, 1.0, 1.0, 1.0]
     assert of(found, "gap").bound == pytest.approx(0.05)
+    lost = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkeys(NAMES, math.inf))
+    assert not idle(theory(lost, Promise(1), None, row()))
 
 
 def test_a_methods_own_coarser_steps_bound_its_finest():
@@ -171,14 +202,26 @@ def test_a_methods_own_coarser_steps_bound_its_finest():
 
 def test_a_run_that_can_not_be_compared_fails_by_its_outcome_and_an_unsupported_one_has_no_check():
     found = theory(JUDGE, Promise(1), None, row(outcome=Outcome.TORN))
-    assert [(check.name, check.passed) for check in found] == [("outcome", False)]
+    assert [check.name for check in found if not check.passed] == ["outcome"]
+    assert idle(found) == {"the run can't be compared, so its outcome alone is held": len(NAMES)}
     assert theory(JUDGE, Promise(1), None, row(outcome=Outcome.UNSUPPORTED)) == ()
 
 
-def test_a_reaction_that_is_no_number_makes_no_check_and_an_error_that_is_infinite_fails():
+def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_counted():
     found = theory(JUDGE, Promise(1), None, row(reaction=math.nan, angle=math.inf))
-    assert "reaction" not in {check.name for check in found}
-    assert not of(found, "angle").passed
+    assert [check.quantity for check in found if not check.passed] == ["angle", "reaction"]
+    assert not idle(found)
+    untold = theory(JUDGE, Promise(1, reaction=math.nan), None, row(reaction=math.nan))
+    assert idle(untold) == {"the engine says that it can't tell it": 1}
+    for none in (replace(JUDGE, gapped=(False, False)), replace(JUDGE, second={**JUDGE.second, "gap": math.nan})):
+        assert idle(theory(none, Promise(1), None, row(gap=math.nan))) == {"the scene has no such number": 1}
+
+
+def test_coarser_steps_without_a_number_bound_nothing_in_whatever_order_they_come():
+    numbers = [row(every=every, angle=angle) for every, angle in ((1, math.nan), (2, 1e-7), (3, 1e-8))]
+    for coarse in permutations(numbers):
+        found = theory(JUDGE, Promise(2), None, row(), coarse)
+        assert of(found, "angle").bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
 
 
 def rows(*errors: float) -> list[Measurement]:
@@ -215,8 +258,8 @@ def test_another_order_a_plateau_and_growth_fail(promised, errors):
 
 
 def test_no_order_is_asked_of_two_points_or_of_rounding():
-    assert order(Promise(2), falling(2, points=2)) == ()
-    assert order(Promise(2), rows(1e-12, 1e-13, 1e-13, 1e-12)) == ()
+    for few in (falling(2, points=2), rows(1e-12, 1e-13, 1e-13, 1e-12)):
+        assert idle(order(Promise(2), few)) == {TOO_FEW: 1}
 
 
 def toy_checks(engine: Toy) -> tuple[Check, ...]:
@@ -248,6 +291,11 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
     assert "no longer" in complaints(found(0.4), known)[0]
     assert "no such check" in complaints((), known)[0]
     assert complaints(found(1.1), {}) == (str(found(1.1)[0]),)
+    # Roundings that a motion amplifies are others on another processor.
+    known = {"error": Deviation("by design: rank", 10.0, rounding=True)}
+    assert not complaints(found(0.1), known)
+    assert not complaints(found(99.0), known)
+    assert "known are 10" in complaints(found(101.0), known)[0]
 
 
 @pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.TORN, Outcome.SATURATED])
@@ -302,6 +350,7 @@ def test_the_report_tells_every_case_its_bound_and_what_failed():
     assert "disc-toy default: error (angle): 0.0002, bound 0.0001" in text
     assert "| disc | toy default | error | 3 | by design: soft |" in text
     assert "cells are not in the baseline" in text
+    assert "3 checks of theory; 1 of them can't fail." in report([good, verdict(*order(Promise(2), ()))], Baseline({}))
 
 
 def test_the_report_counts_and_tells_what_failed_against_the_baseline_alone():

@@ -35,6 +35,14 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
 
 
+def test_a_long_run_may_take_more_steps_for_every_sample_and_a_sample_that_takes_too_many_ends_it(monkeypatch):
+    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+    monkeypatch.setattr("engines.lagrange.dynamics.MOST_STEPS", 30)
+    long, dense = TRUTH.build(pendulum(), 0.02)(60, 1), TRUTH.build(pendulum(), 4.0)(1, 1)
+    assert np.isfinite(long.pose).all()  # two steps or so of each sample are 120
+    assert np.isnan(dense.pose[-1]).all()
+
+
 @pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("rk4", 4)])
 @pytest.mark.parametrize("stabilisation", ["none", "projection"])
 def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisation):

@@ -15,8 +15,7 @@ from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cli.selection import QUICK_MOST, choose_cells
-from reports.grid.cells import Cell
-from reports.grid.expected import expected_seconds
+from reports.grid.cells import Cell, estimated_seconds
 from reports.grid.measure import measure
 from reports.grid.scaling_fit import series_of
 from reports.pages.page import Material
@@ -90,7 +89,7 @@ def test_a_quick_run_has_the_small_chains_and_a_full_one_all():
     engines = tuple(dict.fromkeys(cell.engine for cell in CELLS))
     for full in (False, True):
         chosen = [c for c in choose_cells(pendulums, engines, (PAGE,), full) if isinstance(c.scene, LongPendulum)]
-        quick = [cell for cell in CELLS if links(cell) in SMALL and expected_seconds(cell) <= QUICK_MOST]
+        quick = [cell for cell in CELLS if links(cell) in SMALL and estimated_seconds(cell) <= QUICK_MOST]
         assert chosen == (list(CELLS) if full else quick)
     others = tuple(scene for scene in SCENES if skate.PAGE.teaches(scene))
     assert not any(isinstance(c.scene, LongPendulum) for c in choose_cells(others, engines, (PAGE,), True))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
+from reference.forces import Spring, TorsionSpring
 from reference.validation import InvalidMechanism
 from reports.search.mechanisms import ALL, mechanism, recipe
 from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim, as_text, from_text, ladder
@@ -55,6 +56,21 @@ def test_kinds_that_came_later_change_no_case_without_them():
     """What was published is drawn anew by the same words: the first five kinds are those of the beginning."""
     assert ALL == KINDS == EVERY[:5]
     assert as_text(recipe(1, 13)) == as_text(recipe(1, 13, KINDS))
+
+
+def test_most_springs_are_stretched_or_pushed_at_the_start():
+    """By `rest` tenths of their length, or so many steps of an angle: at rest no wrong stiffness would show."""
+    stretched = 0
+    for number in range(60):
+        case = recipe(5, number, ("pin", "spring", "torsion-spring"))
+        drawn = build(case)
+        links = [link for link in case.links if "spring" in link.kind]
+        for link, spring in zip(links, drawn.forces, strict=True):
+            assert isinstance(spring, Spring | TorsionSpring)
+            pull = np.abs(replace(drawn, forces=(spring,)).applied.on(drawn.pose, drawn.twist)).max()
+            assert (pull > 1e-9 * spring.stiffness) == (link.rest != 0), link
+            stretched += link.rest != 0
+    assert stretched > 30
 
 
 def test_rods_gears_welds_and_forces_all_come_up_between_bodies_and_on_the_ground():

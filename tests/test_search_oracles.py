@@ -6,8 +6,8 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -23,12 +23,13 @@ from engines.pymunk import model as pymunk_model
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import raw, raw_draw, raw_law
+from reports.search import instant_mujoco, motions, raw, raw_draw, raw_law, relations
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
-from reports.search.subjects import Adapted, Alone, Told
+from reports.search.subjects import OURS, Adapted, Alone, Told
+from tests.wrong_adapters import Spoiled
 
 SEED = 1
 
@@ -148,6 +149,79 @@ def test_a_direction_of_the_world_that_is_taken_for_granted_is_found() -> None:
 
 
 @dataclass(frozen=True)
+class InItsUnits(Lagrange):
+    """Takes a fixed mass [kg], or arm [m], for granted on every body beside what it is told."""
+
+    mass: float = 0.0
+    arm: float = 0.0
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        bodies = tuple(
+            replace(body, mass=body.mass + self.mass, inertia=body.inertia + body.mass * self.arm**2)
+            for body in mechanism.bodies
+        )
+        return super().build(replace(mechanism, bodies=bodies), dt)
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("in other masses", {"mass": 0.01}), ("in other lengths", {"arm": 0.01})])
+def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: dict[str, float]) -> None:
+    def found(engine: Any) -> set[str]:
+        subject, number = Adapted(engine), NAMES.index(name)
+        cases = [subject.draw(SEED, case, ("pin",), 0) for case in range(8)]
+        return {fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults}
+
+    assert found(Lagrange("rk4", "projection")) == set()
+    assert found(InItsUnits("rk4", "projection", **wrong)) == {name}
+
+
+@dataclass(frozen=True)
+class Single(Lagrange):
+    """Computes in single precision, as it says, and feels so much of its gravity's part along x."""
+
+    precision: ClassVar[float] = 2.0**-23
+    part: float = 1.0
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        x, y = mechanism.gravity
+        run = super().build(replace(mechanism, gravity=(self.part * x, y)), dt)
+        return Spoiled(run, self._rounded)
+
+    def _rounded(self, given: Trajectory) -> Trajectory:
+        return replace(
+            given, **{name: getattr(given, name).astype(np.float32).astype(float) for name in ("pose", "twist")}
+        )
+
+
+def test_single_precision_hides_its_rounding_and_no_hundredth_of_a_motion() -> None:
+    def found(engine: Any) -> list[str]:
+        subject, number = Adapted(engine), NAMES.index("turned")
+        cases = [case for n in range(24) if (case := subject.draw(SEED, n, ("pin",), 0)).gravity[0]]
+        return [fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults]
+
+    assert relations.bound(Single("rk4")) < 2e-3
+    assert found(Single("rk4", "projection")) == []
+    assert found(Single("rk4", "projection", part=1.03))
+
+
+def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_good_are_not() -> None:
+    """A loop of pins: MuJoCo's springs fall as the square of the step where it is tuned, and stay as shipped."""
+    kinds, cases = ("pin",), range(8)
+
+    def gives_way(engine: Any) -> list[bool]:
+        found = told(engine, kinds, len(cases), "motions")
+        return [any("give way" in reason for reason in one.not_asked) for one in found]
+
+    assert any(gives_way(DEFAULT))
+    assert not any(gives_way(TUNED))
+    loops = [
+        one for one, soft in zip(told(TUNED, kinds, len(cases), "motions"), gives_way(DEFAULT), strict=True) if soft
+    ]
+    assert any(one.errors for one in loops)
+    harder = HeavierToTurn("tuned", **{f.name: getattr(TUNED, f.name) for f in fields(TUNED) if f.name != "variant"})
+    assert faults(harder, kinds, len(cases), "motions")
+
+
+@dataclass(frozen=True)
 class Boasting(Lagrange):
     """A method of the first order that promises the fourth."""
 
@@ -172,6 +246,18 @@ def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
     [one] = told(Careless(), ALL, 1, "motions")
     assert one.faults == ("raised",)
     assert "body 7" in one.words
+
+
+def test_an_exception_of_an_oracle_is_no_fault_of_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*given: Any) -> float:
+        raise KeyError("a row that is not there")
+
+    monkeypatch.setattr(motions, "difference", broken)
+    monkeypatch.setattr(instant_mujoco, "errors", broken)
+    for engine, oracle in ((Lagrange("rk4"), "motions"), (EXTENDED, "instant")):
+        [one] = told(engine, ("pin",), 1, oracle)
+        assert one.faults == (OURS,)
+        assert one.words.startswith("ours: KeyError")
 
 
 # ------------------------------------------------------------- mistakes put into rods, gears, welds and force elements
@@ -322,6 +408,23 @@ def test_a_spring_that_pushes_is_found_in_the_motion_of_an_engine_without_a_law_
 
 
 # --------------------------------------------------------------------------------------------- faults of MuJoCo's own
+
+
+def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> None:
+    """Of first = slope second + bend second^2 with second zero: the rates of a sum are squared, not summed squares."""
+    asked = 0
+    for number in range(12):
+        model = raw_draw.model(SEED, number, ("tendon",))
+        judge = raw_law.judged(model)
+        found = judge.expected(np.zeros((len(model.equalities), 1)))
+        for each in model.equalities:
+            first, second = ([one - 1, one] if one else [0] for one in (each.first, each.second))
+            slope, bend = each.curve[0] / 2, each.curve[1] / 2
+            turning = 2 * bend * judge.rates[second].sum() ** 2
+            left = found[first].sum() - slope * found[second].sum() - turning
+            assert abs(left) < 1e-9 * max(1.0, np.abs(found).max())
+            asked += abs(turning) > 0.1 and len(second) == 2
+    assert asked >= 3
 
 
 def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script() -> None:

@@ -10,6 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from engines.registry import VARIANTS
+from reference.scenes import SCENES
+from reports.cli.selection import choose_cells
 from reports.grid import expected, processors, spending
 from reports.grid.cells import Cell
 from reports.grid.expected import dearest_first, expected_seconds
@@ -17,6 +20,7 @@ from reports.grid.pool import run_items
 from reports.grid.supervisor import supervise
 from reports.grid.tasks import Motion, Task, Values
 from reports.grid.waiting import Waiting, kin_of
+from reports.pages.catalogue import PAGES
 from tests.toys import Disc, Toy
 
 
@@ -80,6 +84,18 @@ def test_what_a_cell_took_when_it_was_published_counts_more_than_a_formula(tmp_p
     monkeypatch.setattr(expected, "_published", lambda: published)
     assert expected_seconds(cell) == pytest.approx(10.0 * cell.scene.duration + 0.5 + expected.LEAST, rel=1e-9)
     assert expected_seconds(replace(cell, purpose="map")) < 1.0  # it has no number there
+
+
+def test_published_timings_that_are_damaged_are_told_and_change_no_cell_of_a_quick_run(tmp_path, monkeypatch):
+    quick = choose_cells(SCENES[:3], VARIANTS, PAGES, False)
+    (tmp_path / "timings.csv").write_text("scene,engine\ndisc,toy\n", encoding="utf-8")
+    with pytest.warns(UserWarning, match="can't be read"):
+        assert expected._published(tmp_path / "timings.csv") == {}
+    monkeypatch.setattr(expected, "_published", lambda: {})
+    assert choose_cells(SCENES[:3], VARIANTS, PAGES, False) == quick
+    named = {expected._name(cell): 100.0 for cell in quick}
+    monkeypatch.setattr(expected, "_published", lambda: named)
+    assert choose_cells(SCENES[:3], VARIANTS, PAGES, False) == quick
 
 
 def test_the_published_timings_are_found_and_some_of_the_grid_is_in_them():

@@ -15,6 +15,7 @@ from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
+from tests.mistakes import Mistake
 
 Build = Callable[[Mechanism, float], Any]
 
@@ -34,7 +35,7 @@ class Wrong:
         return getattr(self.inner, member)
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return MISTAKES[self.variant](self.inner, mechanism, dt)
+        return {**MISTAKES, **SMALL}[self.variant](self.inner, mechanism, dt)
 
 
 class Spoiled:
@@ -330,6 +331,58 @@ MISTAKES: dict[str, Callable[..., Any]] = {
     "bodies are told from the ground up": from_the_ground_up,
     "reactions of pins are told first": pins_first,
     "reactions are always of the body": always_on_the_body,
+}
+
+
+def numbers_off(kind: str, relative: float) -> Callable[..., Any]:
+    """The mistake of a number that is off in every model: of the middle body, or of gravity."""
+
+    def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+        owner = "" if kind == "gravity" else mechanism.bodies[len(mechanism.bodies) // 2].name
+        return inner.build(Mistake(kind, owner).made(mechanism, relative), dt)
+
+    return build
+
+
+def driven_backwards(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+    joints = tuple(
+        replace(joint, turning_rate=-joint.turning_rate) if isinstance(joint, Drive) else joint
+        for joint in mechanism.joints
+    )
+    bodies = tuple(replace(body, twist=tuple(-value for value in body.twist)) for body in mechanism.bodies)
+    return inner.build(replace(mechanism, joints=joints, bodies=bodies), dt)
+
+
+def times(name: str, factor: float) -> Callable[..., Any]:
+    return after(lambda given, mechanism, dt: replace(given, **{name: factor * getattr(given, name)}))
+
+
+def in_single_precision(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    return replace(given, pose=given.pose.astype(np.float32).astype(float))
+
+
+def without_numbers(given: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
+    return replace(given, reaction=np.full_like(given.reaction, np.nan))
+
+
+def longer_steps(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
+    """Steps that are 1 % longer than those asked for, told at the times of these."""
+    return Spoiled(inner.build(mechanism, 1.01 * dt), lambda given: replace(given, t=given.t / 1.01))
+
+
+# Mistakes of which some are smaller than what the questions of the conformance kit see: the gate of theory is asked.
+SMALL: dict[str, Callable[..., Any]] = {
+    "a mass is 1 % off": numbers_off("mass", 1e-2),
+    "a mass is 0.1 % off": numbers_off("mass", 1e-3),
+    "an inertia is 10 % off": numbers_off("inertia", 1e-1),
+    "gravity is 9.80": numbers_off("gravity", 9.80 / 9.81 - 1),
+    "steps are 1 % longer": longer_steps,
+    "the drive turns the other way": driven_backwards,
+    "velocities are 1.001 times as large": times("twist", 1.001),
+    "poses are of single precision": after(in_single_precision),
+    "reactions are 1.01 times as large": times("reaction", 1.01),
+    "reactions are 1.1 times as large": times("reaction", 1.1),
+    "reactions are no numbers": after(without_numbers),
 }
 
 HALF_A_STEP_LATE = Wrong("velocities are half a step late")

@@ -46,11 +46,14 @@ class Exudyn(Optional):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """Second, both; what is held as an equation is exact up to Newton's tolerance."""
+        """Second, both; what is held as an equation is exact up to Newton's tolerance. Without consistent accelerations
+        at the start no reactions are told where velocities are held."""
         velocities = holds_velocities(mechanism)
+        reaction = math.nan if velocities and not self.consistent else None
         if self.integrator == "TrapezoidalIndex2":
-            return Promise(2, slip=EXACT)
-        return Promise(2) if velocities or is_prescribed(mechanism) else Promise(2, gap=EXACT)
+            return Promise(2, slip=EXACT, reaction=reaction)
+        held = velocities or is_prescribed(mechanism)
+        return Promise(2, reaction=reaction) if held else Promise(2, gap=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:

@@ -67,10 +67,7 @@ class Machine:
     @classmethod
     def of(cls, mechanism: Mechanism) -> Machine | None:
         """None for a pair of curves that no table holds: only the reference's own contacts will do there."""
-        try:
-            arrays = flat(mechanism)
-        except (ValueError, ArithmeticError):  # curves that can't touch everywhere around the start
-            return None
+        arrays = flat(mechanism)
         rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
         records = arrays.rolls
         if np.any(records[:, 0] == NOT_TABULATED):

@@ -24,7 +24,10 @@ MOST_CELLS = 2**15
 
 def form_of(rolling: Rolling) -> tuple[int, tuple[float, ...]]:
     """(the form, its constants) of a pair: see `rows.py` in the folder `compiled` for what each stands for."""
-    fast = rolled(rolling)
+    try:
+        fast = rolled(rolling)
+    except (ValueError, ArithmeticError):  # curves that can't touch everywhere around the start
+        return NOT_TABULATED, _numbers(())
     match fast:
         case RoundOnLine():
             return ON_LINE, _numbers(fast.constants)

@@ -26,7 +26,7 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
     from reports.cli.run import run_interruptible
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal
-    from reports.grid.expected import expected_seconds
+    from reports.grid.cells import estimated_seconds
     from reports.grid.pool import TIMED, worker_count
     from reports.grid.store import Store
     from reports.text.provenance import machine, versions
@@ -53,7 +53,7 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
         run_interruptible(terminal, store, items, False, 60.0, Pool(crew.threads, account.supervise))
         passed("supervising and storing")
     print_account(terminal, account, parts, len(items), crew.threads)
-    short = sorted((cell for cell in cells if cell.purpose in TIMED), key=expected_seconds)
+    short = sorted((cell for cell in cells if cell.purpose in TIMED), key=estimated_seconds)
     some = short[:: max(1, len(short) // COMPARED)]
     most = worker_count(timed=True)
     if most > 1:

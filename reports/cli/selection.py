@@ -9,9 +9,8 @@ from types import MappingProxyType
 
 from engines import Engine
 from reference.scene import Scene
-from reports.grid.cells import FULL, QUICK, Cell, beside_cells, sweep_cells
+from reports.grid.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
 from reports.grid.ending import BadInput
-from reports.grid.expected import expected_seconds
 from reports.grid.tasks import Task
 from reports.grid.usual_steps import usual_cells
 from reports.pages.page import Page
@@ -173,16 +172,16 @@ def choose_tasks(
 def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
     """Those for which a quick run has the time: of an engine beside the grid one step, the finest that is short.
 
-    Seconds are those of the published run where it has the cell, so that the choice is the same on every machine.
+    Seconds are those of the engines' own formulas, so that the choice is the same everywhere, whatever was measured.
     """
     alike: dict[tuple[Scene, Engine, str], list[Cell]] = {}
     for cell in cells:
         alike.setdefault((cell.scene, cell.engine, cell.purpose), []).append(cell)
     chosen: set[Cell] = set()
     for (_, _, purpose), members in alike.items():
-        ordered = sorted(members, key=expected_seconds)
-        short = [cell for cell in ordered if expected_seconds(cell) <= QUICK_SECONDS]
-        least = [cell for cell in ordered[:1] if expected_seconds(cell) <= QUICK_MOST]
+        ordered = sorted(members, key=estimated_seconds)
+        short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
+        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= QUICK_MOST]
         coarsest = [cell for cell in members if cell.purpose == "sweep" and cell.every == QUICK[0]]
         chosen.update(short[-1:] or least if purpose == "beside" else (*short, *least, *coarsest))
     return tuple(cell for cell in cells if cell in chosen)

@@ -1,8 +1,11 @@
 """The judge: a mechanism with exact multipliers, or with joints that give way in a known manner, by textbook methods.
 
-It knows no engine. Its steps here share no code with any, `engines.lagrange` included, since it is to judge that too;
-with numba it has the compiled rows of that package take the same steps, a hundred times as fast, and a test holds them
-against the steps here, over random mechanisms and every kind of softness.
+It knows no engine, but it is no stranger to one: with numba the compiled rows and steps of `engines.lagrange` do its
+work, a hundred times as fast as the steps here, and both take rows from `reference.mechanism`. So others stand beside
+it, which share no code with either. In scenes that is the truth, a closed form or an own integration of few angles, to
+which its errors fall with the order of its method (`tests/test_judge.py`). In random mechanisms of all joints but
+rolling ones, and of all forces, it is the equations in the coordinates of a spanning tree, written anew there
+(`tests/test_judge_witness.py`). Joints that give way are held by the sag of a spring, and by the steps here.
 """
 
 from __future__ import annotations
@@ -109,10 +112,21 @@ def projected(mechanism: Mechanism, pose: Array, twist: Array, t: float) -> tupl
 
 def integrate(scene: Scene, order: int, every: int, soft: Softness | None = None, project: bool = False) -> Trajectory:
     """The scene's motion by Runge and Kutta's method of this order, `every` steps a sample."""
-    mechanism = scene.mechanism()
-    samples = _samples(scene)
-    found = _compiled(mechanism, samples, scene.spacing, order, every, soft, project) if installed() else None
-    return found or in_numpy(mechanism, samples, scene.spacing, order, every, soft, project)
+    return stepped(scene.mechanism(), _samples(scene), scene.spacing, order, every, soft, project)
+
+
+def stepped(
+    mechanism: Mechanism,
+    samples: int,
+    spacing: float,
+    order: int,
+    every: int,
+    soft: Softness | None = None,
+    project: bool = False,
+) -> Trajectory:
+    """A mechanism's motion as the gate has it: by compiled steps where there are some, else as `in_numpy`."""
+    found = _compiled(mechanism, samples, spacing, order, every, soft, project) if installed() else None
+    return found or in_numpy(mechanism, samples, spacing, order, every, soft, project)
 
 
 def _samples(scene: Scene) -> int:

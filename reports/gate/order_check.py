@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from engines import EXACT, Promise, Unpromised
@@ -19,10 +20,12 @@ BELOW = 0.4
 ABOVE = 0.95
 # Errors above this [rad] are not proportional to what causes them, so no order is read from them.
 PROPORTIONAL = 0.1
+TOO_FEW = "fewer than three steps have an error above rounding and below a tenth of a radian"
 
 
 def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[Check, ...]:
-    """The check of one method's rows, if they can tell: three points that are above rounding and small enough.
+    """The check of one method's rows, if they can tell: three points that are above rounding and small enough. With
+    fewer it can't fail, and says so.
 
     measured: how far the observed order is from the promised one, in multiples of what it may be. An error that levels
     off, grows or jumps about has the order 0.
@@ -33,7 +36,7 @@ def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[C
     found = fit([row.step for row in usable], [row.angle for row in usable], quantity("angle").rounding)
     above = [row for row in usable if row.angle > quantity("angle").rounding]
     if len(above) < ENOUGH:
-        return ()
+        return (Check("order", "angle", 0.0, math.inf, sentence=f", {TOO_FEW}"),)
     flat = found.verdict in (Verdict.PLATEAU, Verdict.LEVELS, Verdict.GROWS, Verdict.ERRATIC)
     observed = 0.0 if flat or found.points < 2 else found.order
     short = promise.order - observed

@@ -10,15 +10,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
 
 from engines import EXACT, Engine, Softness
+from engines.motions import is_prescribed
 from reference.scene import Scene
+from reference.trajectory import Trajectory
 from reports.gate.judge import QUANTITY_NAMES, errors
-from reports.grid.errors import largest
+from reports.grid.errors import constraint_errors, largest, motion_errors
 from reports.grid.measure import SATURATED, TORN
 
 # Which rows are soft, and whether they have the term of velocities: what the judge has to run once.
@@ -49,6 +51,8 @@ class Prediction:
     the mechanism's `length` [m]; of the truth the largest `speed` [m/s] and `acceleration` [m/s^2], and by how much of
     themselves reactions are `changing`: their first two derivatives [1/s, 1/s^2] over the largest. `soft`: errors by
     kind of softness, at STIFFNESS, DAMPING and COMPLIANCE. `gapped`: which rows of the mechanism have a gap to close.
+    `prescribed`: whether nothing is free to move, so that drives alone say how it moves; then `earlier` are errors by
+    quantity of velocities and reactions that are those of an earlier instant, over the time between [s].
     """
 
     step: float
@@ -60,6 +64,12 @@ class Prediction:
     changing: tuple[float, float]
     soft: Mapping[Kind, Mapping[str, float]]
     gapped: tuple[bool, ...]
+    prescribed: bool = False
+    earlier: Mapping[str, float] = field(default_factory=dict)
+
+    def has(self, quantity: str) -> bool:
+        """Whether the scene has such a number: without a joint that limits a position there is no gap."""
+        return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.gapped))
 
     def error(self, quantity: str, order: float, step: float) -> float:
         """A (step / tau)^order, A and tau from the two ideal methods; infinite where those failed, NaN if unknown.
@@ -100,13 +110,24 @@ class Prediction:
         """What a spring costs that closes a gap [m] of the step's: it moves at gap times damping, which is a slip."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
-        speed, pull = gap * softness.damping, gap * softness.stiffness
+        if quantity == "reaction":
+            return gap * softness.stiffness / self.acceleration
+        return self._slipping(quantity, gap * softness.damping)
+
+    def settling(self, quantity: str, softness: Softness | None) -> float:
+        """What springs cost that are tied to the step while they take up their load: a critically damped one opens to
+        its gap [m] at 1 / e of the gap times the root of its stiffness, at most."""
+        if softness is None or softness.compliance == 0:
+            return 0.0
+        return self._slipping(quantity, self.give("gap", softness) * math.sqrt(softness.stiffness) / math.e)
+
+    def _slipping(self, quantity: str, speed: float) -> float:
+        """What a slip of this speed [m/s] is in other quantities than poses."""
         costs = {
             "slip": speed,
             "velocity": speed,
             "rate": speed / self.length,
             "energy": 2 * speed / self.speed,
-            "reaction": pull / self.acceleration,
         }
         return costs.get(quantity, 0.0)
 
@@ -115,9 +136,17 @@ class Prediction:
         return self.changing[order > 1] * step ** min(order, 2)
 
     def refused(self, quantity: str) -> float:
-        """The error above which a run is no longer comparable, whatever the order promises."""
-        scales = {"angle": SATURATED, "gap": TORN * self.length, "position": SATURATED * self.length}
-        return scales.get(quantity, math.inf)
+        """The error above which a run is no longer comparable, whatever the order promises: of velocities, energy and
+        reactions one that is as large as the largest there is."""
+        scales = {
+            "angle": SATURATED,
+            "gap": TORN * self.length,
+            "position": SATURATED * self.length,
+            "rate": self.speed / self.length,
+            "velocity": self.speed,
+            "slip": self.speed,
+        }
+        return scales.get(quantity, 1.0)
 
 
 def given(
@@ -179,6 +208,7 @@ def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
         # Of a motion that is lost nothing follows for another order.
         second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     mechanism = scene.mechanism()
+    prescribed = is_prescribed(mechanism)
     return Prediction(
         scene.spacing / every,
         second,
@@ -187,16 +217,33 @@ def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
         *_motion(scene),
         {kind: softened(scene, *kind) for kind in soft},
         tuple(mechanism.holonomic.tolist()),
+        prescribed,
+        _earlier(scene) if prescribed else {},
     )
+
+
+def _sampled(scene: Scene) -> Trajectory:
+    """The truth at DIFFERENCES + 1 instants within what is compared."""
+    return scene.motion(np.linspace(0.0, min(scene.horizon, scene.comparable_until), DIFFERENCES + 1))
+
+
+def _earlier(scene: Scene) -> Mapping[str, float]:
+    """Errors of the truth's own velocities and reactions, a difference late, over that difference [s]."""
+    mechanism, truth = scene.mechanism(), _sampled(scene)
+    names = ("t", "pose", "twist", "reaction")
+    now, before = (
+        Trajectory(*(getattr(truth, name)[part] for name in names)) for part in (slice(1, None), slice(None, -1))
+    )
+    late = replace(now, twist=before.twist, reaction=before.reaction)
+    told = constraint_errors(mechanism, late) | motion_errors(scene, mechanism, now, late)
+    return {name: told[name] / (truth.t[1] - truth.t[0]) for name in QUANTITY_NAMES}
 
 
 def _motion(scene: Scene) -> tuple[float, float, tuple[float, float]]:
     """Speed, acceleration and the change of reactions of the truth; see Prediction."""
     mechanism = scene.mechanism()
-    until = min(scene.horizon, scene.comparable_until)
-    dt = until / DIFFERENCES
-    truth = scene.motion(np.arange(DIFFERENCES + 1) * dt)
-    length = mechanism.length_scale
+    truth, length = _sampled(scene), mechanism.length_scale
+    dt = truth.t[1]
     twist, reaction = truth.twist, truth.reaction
     speed = max(largest(np.hypot(twist[..., 0], twist[..., 1])), length * largest(twist[..., 2]))
     change = np.diff(twist, axis=0) / dt

@@ -16,7 +16,7 @@ import pytest
 from engines import Engine, registry
 from engines.loading import is_reference
 from reports.gate.baseline import BadBaseline, Baseline, read_baseline
-from reports.gate.table import HEADER, changes, lines, plain, report
+from reports.gate.table import HEADER, changes, lines, plain, report, unable
 from reports.gate.verdicts import Case
 from reports.gate.walk import Verdict, walk
 
@@ -142,7 +142,7 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
         return
     baseline = config.stash[KNOWN]
     terminalreporter.section("crosscheck")
-    for line in (*plain(HEADER, lines(found.values())), *changes(found.values(), baseline)):
+    for line in (*plain(HEADER, lines(found.values())), *unable(found.values()), *changes(found.values(), baseline)):
         terminalreporter.line(line)
     target = _option(config, "--crosscheck-report")
     if target is not None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 from reports.gate.baseline import Baseline, mixed
+from reports.gate.theory import idle
 from reports.gate.walk import Verdict, grown, remarks
 from reports.text.provenance import versions
 from reports.text.tables import markdown, number
@@ -20,7 +22,7 @@ def lines(verdicts: Iterable[Verdict]) -> list[list[str]]:
         if worst is None:
             out.append([finest.scene, finest.method, number(finest.step), "-", "-", "-", "-", "can't be built"])
             continue
-        error = next((check for check in verdict.theory if check.name == "error"), None)
+        error = next((check for check in verdict.theory if check.name == "error" and math.isfinite(check.bound)), None)
         told = [number(error.measured), number(error.bound)] if error else ["-", "-"]
         near = f"{worst.name} ({worst.quantity})" if worst.quantity != worst.name else worst.name
         out.append(
@@ -77,6 +79,14 @@ def changes(verdicts: Iterable[Verdict], baseline: Baseline) -> list[str]:
     return out
 
 
+def unable(verdicts: Iterable[Verdict]) -> list[str]:
+    """Sentences on the checks of theory that can't fail: how many of how many, and for which reasons."""
+    checks = [check for verdict in verdicts for check in verdict.theory]
+    found = idle(checks)
+    out = [f"{len(checks)} checks of theory; {found.total()} of them can't fail."]
+    return out + [f"{count} can't fail: {reason}." for reason, count in found.most_common()]
+
+
 def report(verdicts: Iterable[Verdict], baseline: Baseline) -> str:
     """The whole of it as Markdown: a summary, failures with their sentences, known deviations, and the table."""
     verdicts = tuple(verdicts)
@@ -94,6 +104,7 @@ def report(verdicts: Iterable[Verdict], baseline: Baseline) -> str:
         parts.append("## Known deviations")
         body = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in known for name, d in v.case.known]
         parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
+    parts += ["## Checks that can't fail", "\n".join(f"* {told}" for told in unable(verdicts))]
     changed = changes(verdicts, baseline)
     if changed:
         parts += ["## Baseline", "\n".join(f"* {told}" for told in changed)]

@@ -7,13 +7,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from engines import Engine, Promise, Softness, Unpromised
+from engines.motions import is_prescribed
 from reference.scene import Scene
 from reports.gate.checks import Check, Deviation
 from reports.gate.judge import errors_as_soft
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.gate.theory import theory
-from reports.grid.cells import QUICK, Cell, mechanism_of, sweep_cells
+from reports.grid.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.pages.page import Page
@@ -55,8 +56,16 @@ class Case:
         return self.promise.amplified if isinstance(self.promise, Promise) else 1.0
 
     def cells(self) -> tuple[Cell, ...]:
-        """What is run of it, coarse steps first."""
-        return sweep_cells((self.scene,), (self.engine,), STEPS, COST_LIMIT)
+        """What is run of it, coarse steps first.
+
+        In a motion that is prescribed a wrong mass shows in the reactions alone, so those of first order, which are
+        wrong by as much as they change in a step, need finer ones.
+        """
+        mechanism = mechanism_of(self.scene)
+        alone = is_prescribed(mechanism) and isinstance(self.promise, Promise) and self.promise.of("reaction") == 1
+        rigid = self.engine.softness(mechanism, self.scene.spacing) is None
+        steps = FULL if alone and rigid else STEPS
+        return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT)
 
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:

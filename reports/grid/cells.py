@@ -101,6 +101,11 @@ def estimated_cost(cell: Cell) -> float:
     return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
 
 
+def estimated_seconds(cell: Cell) -> float:
+    """The same with the making of a model that takes long, as its engine says."""
+    return estimated_cost(cell) + getattr(cell.engine, "building", 0.0)
+
+
 @lru_cache(maxsize=4096)
 def _step_cost(scene: Scene, engine: Engine) -> float:
     return engine.step_cost(mechanism_of(scene))

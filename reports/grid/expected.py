@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import warnings
 from collections.abc import Hashable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
@@ -55,9 +56,12 @@ def _name(cell: Cell) -> tuple[str, ...]:
 def _published(path: Path = PUBLISHED) -> dict[tuple[str, ...], float]:
     """Seconds of stepping and building by scene, engine, variant, purpose, samples and steps a sample.
 
-    Where cells of several settings have these in common, the longest. Nothing where no such file can be read.
+    Where cells of several settings have these in common, the longest. Nothing where there is no such file, nor, with a
+    warning, of a damaged one: work is then ordered by formulas.
     """
     found: dict[tuple[str, ...], float] = {}
+    if not path.is_file():
+        return found
     try:
         lines: Sequence[str] = [line for line in path.read_text(encoding="utf-8").splitlines() if line[:1] != "#"]
         for row in csv.DictReader(lines):
@@ -66,6 +70,9 @@ def _published(path: Path = PUBLISHED) -> dict[tuple[str, ...], float]:
             seconds = float(row["cpu"]) * duration + float(row["build"])
             if math.isfinite(seconds):
                 found[name] = max(seconds, found.get(name, 0.0))
-    except (OSError, KeyError, ValueError, TypeError):
+    except (OSError, KeyError, ValueError, TypeError) as reason:
+        warnings.warn(
+            f"{path} can't be read ({type(reason).__name__}: {reason}): work is ordered by formulas", stacklevel=2
+        )
         return {}
     return found

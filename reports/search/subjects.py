@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -34,6 +35,7 @@ from reports.search.release import release
 from reports.search.renumbered import of_a_shape
 
 ORACLES = ("instant", "relations", "motions")
+OURS = "our own error"  # of an oracle that raises: no fault of the engine
 LAW = 1e-9  # of MuJoCo alone: rounding makes a thousandth of it
 
 
@@ -86,7 +88,7 @@ class Adapted:
             },
             "motions": lambda: motions.errors(self.engine, mechanism),
         }
-        return _asked({name: asked[name] for name in ORACLES if name in oracles})
+        return _asked({name: asked[name] for name in ORACLES if name in oracles}, self.engine)
 
     def text(self, case: Recipe) -> str:
         return as_text(case)
@@ -123,7 +125,7 @@ class Alone:
             return {name: (error, LAW) for name, error in told["errors"].items()}
 
         raw_law.judged(case)  # a case that is none is no fault
-        return _asked({"instant": instant} if "instant" in oracles else {})
+        return _asked({"instant": instant} if "instant" in oracles else {}, None)
 
     def text(self, case: raw.Model) -> str:
         return raw.as_text(case)
@@ -140,7 +142,8 @@ def is_shaped(subject: Subject) -> bool:
     return isinstance(subject, Adapted) and getattr(subject.engine, "building", 0.0) > 0
 
 
-def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> Told:
+def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], engine: Engine | None) -> Told:
+    """What these say of an engine, None for MuJoCo alone; an exception is a fault of whoever raised it."""
     errors: dict[str, tuple[float, float]] = {}
     left, words = [], []
     with np.errstate(all="ignore"):
@@ -155,9 +158,22 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]]) -> 
                 errors[name] = (np.inf, 0.0)
                 words.append(str(reason))
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own
-                errors["raised"] = (np.inf, 0.0)
-                words.append(f"{type(error).__name__}: {error}"[:300])
+                own = engine is not None and _passed_through(error, engine)
+                errors["raised" if own else OURS] = (np.inf, 0.0)
+                words.append(f"{'' if own else 'ours: '}{type(error).__name__}: {error}"[:300])
     return Told(errors, tuple(left), "; ".join(words))
+
+
+def _passed_through(error: Exception, engine: Any) -> bool:
+    """Whether an exception came out of the engine's own code, and not of what asks it alone."""
+    owners = set()
+    while engine is not None:
+        module = type(engine).__module__
+        # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.
+        owners.add(module if module.count(".") < 2 else module.rpartition(".")[0])
+        engine = getattr(engine, "engine", None)
+    called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
+    return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)
 
 
 def at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:

@@ -17,5 +17,6 @@ ESTIMATED = (
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("person_two_feet", "mujoco tuned", "error"): Deviation(ESTIMATED, 1.2),
-    ("person_two_feet", "mujoco tuned", "gap"): Deviation(ESTIMATED, 1.6),
+    ("person_two_feet", "mujoco tuned", "rate"): Deviation(ESTIMATED, 5.8),
+    ("person_two_feet", "mujoco tuned", "gap"): Deviation(ESTIMATED, 6.1),
 }
