@@ -25,7 +25,9 @@ from reports.check.judging import often
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
-WHEEL = '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
+WHEEL = (
+    '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
+)
 LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body>'
 
 
@@ -104,7 +106,7 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     reading = mjcf(WHEEL, more, rate=rate, joint=joint)
     fast = sqrt(gear**2 * k / INERTIA)
     at = math.asin(0.6 / (k * gear) * fast / rate) / fast
-    with pytest.raises(Unsupported, match=f"^{element} reaches the limit of its force at") as refused:
+    with pytest.raises(Unsupported, match=rf"^{element} reaches the limit of its force at") as refused:
         check(reading, "servo", 1.0, 1e-3)
     told = float(str(refused.value).split(" at ")[1].split(" s")[0])
     assert at <= told <= at + 0.005  # the looks are 1 ms apart, and three digits are told
@@ -123,7 +125,7 @@ def test_motors_that_exceed_their_joints_limit_only_together_are_refused_at_the_
     reading = mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.5, joint='actuatorfrcrange="-1.2 1.2"')
     t, turn = judged_turn(reading)
     np.testing.assert_allclose(np.abs(turn), 1.0 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match="^joint 'a' reaches the limit of its force: so it does at the start"):
+    with pytest.raises(Unsupported, match=r"^joint 'a' reaches the limit of its force: so it does at the start"):
         mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.7, joint='actuatorfrcrange="-1.2 1.2"')
 
 
@@ -134,7 +136,7 @@ def test_a_constant_force_beyond_its_limit_is_read_with_the_limit():
 
 
 def test_a_model_that_may_sleep_is_refused_by_name():
-    with pytest.raises(Unsupported, match="^flag sleep: .* give --without sleep$"):
+    with pytest.raises(Unsupported, match=r"^flag sleep: .* give --without sleep$"):
         mjcf(WHEEL, flags='sleep="enable"')
 
 
@@ -212,7 +214,9 @@ def test_both_ends_of_a_groove_are_ends(speed):
     body.velocity = (speed, 0.0)
     space = space_of(body)
     space.add(GrooveJoint(space.static_body, body, (-0.6, 0.0), (0.6, 0.0), (0.0, 0.0)))
-    with pytest.raises(Unsupported, match="GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove") as found:
+    with pytest.raises(
+        Unsupported, match=r"GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove"
+    ) as found:
         check(read_space(space, 0.01), "groove", 2.0, 1e-3)
     assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(found.value)
 
@@ -250,7 +254,7 @@ def test_a_joint_that_lets_its_bodies_overlap_does_so_only_in_the_space(added):
         space.add(joint)
         assert read_space(space, 0.01).mechanism.joints
     else:
-        with pytest.raises(Unsupported, match="a shape of body . touches one of body ."):
+        with pytest.raises(Unsupported, match=r"a shape of body . touches one of body ."):
             read_space(space, 0.01)
 
 
@@ -272,7 +276,7 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
         space.step(0.01)
     (bob,) = space.bodies
     assert bob.is_sleeping
-    with pytest.raises(Unsupported, match="^body 1: it is asleep at the start"):
+    with pytest.raises(Unsupported, match=r"^body 1: it is asleep at the start"):
         read_space(space, 0.01)
     bob.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
     # Awake it is checked: told to leave sleep out, or too fast for it.

@@ -306,7 +306,9 @@ def test_a_contact_is_named_with_its_time_and_at_the_start_refused():
     met, *_ = reading.model.obstacles(run.t, run.pose, run.twist)
     assert met.words.startswith("geom 'floor' touches geom")
     assert 0.1 < met.t < 0.5
-    with pytest.raises(Unsupported, match=r"geom 'floor' touches .*: so it does at the start.* give --without contact$"):
+    with pytest.raises(
+        Unsupported, match=r"geom 'floor' touches .*: so it does at the start.* give --without contact$"
+    ):
         read(with_floor(0.0))
 
 

@@ -33,7 +33,9 @@ def urdf(mechanism: Mechanism) -> str:
     root = xml.Element("robot", {"name": "crosscheck"})
     xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
     if mechanism.twist.any():
-        root.append(xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. "))
+        root.append(
+            xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
+        )
     xml.SubElement(root, "link", {"name": "world"})
     for link in tree.links:
         _add(root, mechanism, link)
