@@ -235,7 +235,8 @@ def test_chaos_ends_the_horizon_and_a_single_pendulum_has_none():
     wild = PENDULUM_2.mechanism()
     rates = [replace(body, twist=(0.0, 0.0, 0.0)) for body in wild.bodies]
     chaotic = judged(replace(wild, bodies=tuple(rates)), 1500, 0.01)
-    assert chaotic.horizon < chaotic.trajectory.t[-1]
+    # A few times of the mechanism, which is 0.3 s: it is no sooner wild.
+    assert 1.0 < chaotic.horizon < chaotic.trajectory.t[-1]
 
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):

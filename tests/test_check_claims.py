@@ -13,7 +13,7 @@ from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory
 from reports.check import settings
 from reports.check.checked import Checked
-from reports.check.comparing import Errors, errors
+from reports.check.comparing import Errors, errors, opening
 from reports.check.facts import facts_of
 from reports.check.numbers import data
 from reports.check.parts import parts_of
@@ -190,6 +190,11 @@ def test_the_joint_that_opens_most_is_named_with_its_gap_and_time(soft):
 # ----------------------------------------------------------------------------------------------------------- facts
 
 
+def body_of(name, pose, twist) -> Body:
+    (x, y, angle), (right, up, rate) = map(float, pose), map(float, twist)
+    return Body(name, 1.0, 0.1, (x, y, angle), (right, up, rate))
+
+
 def crank_and_rocker(crank: float, coupler: float, rocker: float, ground: float, drive: bool = True):
     """A four-bar whose crank turns at 2 rad/s from 0.3 rad on: its mechanism, and the angles over time by geometry."""
     rate, start = 2.0, 0.3
@@ -215,7 +220,7 @@ def crank_and_rocker(crank: float, coupler: float, rocker: float, ground: float,
     step = 1e-6
     twist = (pose(step) - pose(-step)) / (2 * step)
     bodies = [
-        Body(name, 1.0, 0.1, tuple(map(float, own)), tuple(map(float, moving)))
+        body_of(name, own, moving)
         for name, own, moving in zip(("crank", "coupler", "rocker"), pose(0.0), twist, strict=True)
     ]
     joints = [
@@ -270,7 +275,7 @@ def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular(soft):
     step = 1e-6
     twists = rate * (pose(one + step) - pose(one - step)) / (2 * step)
     bodies = tuple(
-        Body(name, 1.0, 0.1, tuple(map(float, own)), tuple(map(float, moving)))
+        body_of(name, own, moving)
         for name, own, moving in zip(("crank", "coupler", "rocker"), poses[0], twists[0], strict=True)
     )
     joints = (
@@ -288,6 +293,31 @@ def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular(soft):
     read = " ".join(sections(replace(soft, facts=facts))[1].sentences)
     assert f"Near-singular positions on the way: 1, the nearest at {at:.3g} s" in read
     assert "No position on the way is near-singular." not in read
+
+
+def test_growth_and_the_fastest_motion_are_told_as_they_are(soft):
+    def read(found):
+        return " ".join(sections(found)[1].sentences)
+
+    assert "which is not exponential" in read(soft)
+    wild = replace(soft, judge=replace(soft.judge, horizon=0.1))
+    assert "From about 0.1 s on, small errors grow exponentially" in read(wild)
+    assert "which is not exponential" not in read(wild)
+    # At 40 rad/s a radian takes 25 ms: 12.5 of the steps of 2 ms.
+    fast = replace(soft, facts=replace(soft.facts, fastest_rotation=3.0, stiffest_mode=40.0))
+    assert "a radian of the fastest takes 0.025 s, 12 of your steps." in read(fast)
+
+
+def test_what_opens_by_an_angle_is_told_in_radians():
+    body = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    joints = (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 0.0, 0.0))
+    mechanism = Mechanism((body,), joints, (0.0, 0.0))
+    pose = np.zeros((3, 1, 3))
+    pose[1, 0] = [1e-3, 0.0, 0.2]
+    run = Trajectory(np.arange(3.0), pose, np.zeros((3, 1, 3)), np.zeros((3, 3)), 0.0)
+    found = opening(mechanism, run)
+    assert found is not None
+    assert (found.gap, found.unit, found.t) == (pytest.approx(0.2), "rad", 1.0)
 
 
 # ------------------------------------------------------------------------------------------------------- reactions

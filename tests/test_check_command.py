@@ -58,8 +58,13 @@ def test_a_model_within_its_tolerance_ends_well(folder, capfd):
         ("while True:\n    pass", "CPU"),
         ("import os\nos.abort()", "its process was lost: aborted with signal 6"),
         ("import os\nos._exit(3)", "its process was lost"),
+        (
+            "import pymunk\nfrom pymunk._chipmunk_cffi import lib\nspace, body = pymunk.Space(), pymunk.Body(1, 1)\n"
+            "space.add(body)\nlib.cpSpaceAddBody(space._space, body._body)",
+            "You must not add it a second time. Failed condition: body->space != space",
+        ),
     ],
-    ids=["endless", "aborting", "leaving"],
+    ids=["endless", "aborting", "leaving", "aborted by Chipmunk"],
 )
 def test_a_script_that_ends_its_process_or_never_ends_is_one_line(folder, capfd, text, sentence):
     (folder / "script.py").write_text(text)

@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 import pymunk
 import pytest
-from pymunk.constraints import DampedRotarySpring, GearJoint, GrooveJoint, PivotJoint
+from pymunk.constraints import DampedRotarySpring, GearJoint, GrooveJoint, PivotJoint, RotaryLimitJoint, SlideJoint
 
 from engines import Unsupported
 from engines.lagrange import TRUTH
@@ -106,7 +106,7 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     reading = mjcf(WHEEL, more, rate=rate, joint=joint)
     fast = sqrt(gear**2 * k / INERTIA)
     at = math.asin(0.6 / (k * gear) * fast / rate) / fast
-    with pytest.raises(Unsupported, match=f"^{element} reaches the limit of its force at") as refused:
+    with pytest.raises(Unsupported, match=rf"^{element} reaches the limit of its force at") as refused:
         check(reading, "servo", 1.0, 1e-3)
     told = float(str(refused.value).split(" at ")[1].split(" s")[0])
     assert at <= told <= at + 0.005  # the looks are 1 ms apart, and three digits are told
@@ -125,7 +125,7 @@ def test_motors_that_exceed_their_joints_limit_only_together_are_refused_at_the_
     reading = mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.5, joint='actuatorfrcrange="-1.2 1.2"')
     t, turn = judged_turn(reading)
     np.testing.assert_allclose(np.abs(turn), 1.0 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match="^joint 'a' reaches the limit of its force: so it does at the start"):
+    with pytest.raises(Unsupported, match=r"^joint 'a' reaches the limit of its force: so it does at the start"):
         mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.7, joint='actuatorfrcrange="-1.2 1.2"')
 
 
@@ -135,8 +135,104 @@ def test_a_constant_force_beyond_its_limit_is_read_with_the_limit():
     np.testing.assert_allclose(np.abs(turn), 2 * 0.5 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
 
 
+@pytest.mark.parametrize(("rate", "refused"), [(1.0, False), (2.0, True)])
+def test_a_limit_that_the_velocity_reaches_is_seen(rate, refused):
+    """A velocity servo of 1 N m s at rest pushes against the rate: with 1 N m, or with 2."""
+    more = '<actuator><velocity name="brake" joint="a" kv="1" forcerange="-1.5 1.5"/></actuator>'
+    if refused:
+        with pytest.raises(Unsupported, match=r"^actuator 'brake' reaches the limit of its force: so it does at the"):
+            mjcf(WHEEL, more, rate=rate)
+        return
+    t, turn = judged_turn(mjcf(WHEEL, more, rate=rate))
+    np.testing.assert_allclose(np.abs(turn), rate * INERTIA * (1 - np.exp(-t / INERTIA)), rtol=0, atol=CLOSE)
+
+
+TENDON = (
+    '<tendon><fixed name="t" {0}><joint joint="a" coef="3"/></fixed></tendon>'
+    '<actuator><motor name="pull" tendon="t" gear="2"/></actuator>'
+)
+
+
+def test_a_motor_of_a_tendon_has_its_coefficient_and_the_tendons_limit():
+    t, turn = judged_turn(mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.5))
+    np.testing.assert_allclose(np.abs(turn), 0.5 * 2 * 3 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
+    with pytest.raises(Unsupported, match=r"^actuator 'pull' reaches the limit of its force: so it does at the start"):
+        mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.6)
+
+
+def test_a_limit_is_seen_that_is_passed_between_two_samples():
+    """A body thrown up passes its limit for 4 ms about 0.205 s, the middle of two samples of 10 ms."""
+    rate = 9.81 * 0.205
+    highest = rate**2 / 2 / 9.81 - 9.81 * 0.002**2 / 2
+    lift = LIFT.replace('axis="0 0 1"', f'axis="0 0 1" range="-99 {highest!r}" limited="true"')
+    model = mujoco.MjModel.from_xml_string(f'<mujoco><option timestep="0.0005"/><worldbody>{lift}</worldbody></mujoco>')
+    data = mujoco.MjData(model)
+    data.qvel[0] = rate
+    with pytest.raises(Unsupported, match=r"^joint 0 reaches its limit at 0\.20[34] s"):
+        check(read_mjcf(model, data), "thrown", 2.0, 1e-3)
+
+
+def test_of_two_motors_the_one_whose_group_is_switched_off_does_not_act():
+    motors = '<actuator><motor joint="a" group="3"/><motor joint="a" group="1" gear="3"/></actuator>'
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option actuatorgroupdisable="3"/><worldbody>{WHEEL.format("")}</worldbody>{motors}</mujoco>'
+    )
+    data = mujoco.MjData(model)
+    data.ctrl[:] = 0.5
+    t, turn = judged_turn(read_mjcf(model, data))
+    np.testing.assert_allclose(np.abs(turn), 3 * 0.5 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
+
+
+SPRUNG = 'stiffness="8" damping="0.5"'
+SPRUNG_TENDON = (
+    '<tendon><fixed stiffness="2" damping="0.125" springlength="0"><joint joint="a" coef="2"/></fixed></tendon>'
+)
+
+
+@pytest.mark.parametrize(("joint", "more"), [(SPRUNG, ""), ("", SPRUNG_TENDON)], ids=["a joint", "a tendon"])
+@pytest.mark.parametrize("off", ["spring", "damper", ""])
+def test_springs_and_dampers_act_unless_the_model_switches_them_off(joint, more, off):
+    """With both, a damped oscillation; a damper alone lets the rate fade, a spring alone is a sine."""
+    t, turn = judged_turn(mjcf(WHEEL, more, f'{off}="disable"' if off else "", rate=1.0, joint=joint))
+    decay = 0.0 if off == "damper" else 0.5 / (2 * INERTIA)
+    fast = sqrt(8 / INERTIA - decay**2)
+    wanted = np.exp(-decay * t) * np.sin(fast * t) / fast
+    if off == "spring":
+        wanted = (1 - np.exp(-2 * decay * t)) / (2 * decay)
+    np.testing.assert_allclose(np.abs(turn), np.abs(wanted), rtol=0, atol=CLOSE)
+
+
+@pytest.mark.parametrize("flag", ["", 'gravity="disable"'])
+def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
+    """Forces and torques that stand in the data: on a free body off its frame, and on a hinge."""
+    box = '<body name="f" pos="2 0 0"><freejoint/><inertial pos=".3 0 .1" mass="2" diaginertia=".5 .5 .5"/></body>'
+    world = f"<worldbody>{WHEEL.format('')}{box}</worldbody>"
+    model = mujoco.MjModel.from_xml_string(f'<mujoco><option><flag contact="disable" {flag}/></option>{world}</mujoco>')
+    data = mujoco.MjData(model)
+    data.qfrc_applied[0] = 0.7  # about y, which the plane of x and z counts backwards
+    data.xfrc_applied[2] = [3.0, 0.0, -1.0, 0.0, 0.4, 0.0]
+    motion = TRUTH.build(read_mjcf(model, data).mechanism, 0.02)(50, 1)
+    gone, half = motion.pose - motion.pose[0], motion.t**2 / 2
+    np.testing.assert_allclose(gone[:, 0, 2], -0.7 / INERTIA * half, rtol=0, atol=CLOSE)
+    np.testing.assert_allclose(gone[:, 1, 0], 3.0 / 2 * half, rtol=0, atol=CLOSE)
+    np.testing.assert_allclose(gone[:, 1, 1], (-1.0 / 2 - (0 if flag else 9.81)) * half, rtol=0, atol=CLOSE)
+    np.testing.assert_allclose(gone[:, 1, 2], -0.4 / INERTIA * half, rtol=0, atol=CLOSE)
+
+
+@pytest.mark.parametrize("axis", ["0 1 0", "0 -1 0"])
+def test_a_hinge_driven_by_its_armature_turns_as_mujoco_turns_it(axis):
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco><worldbody>{WHEEL.format('armature=' + chr(34) + '1e9' + chr(34)).replace('0 1 0', axis)}</worldbody>"
+        "</mujoco>"
+    )
+    data = mujoco.MjData(model)
+    data.qvel[0] = 2.0
+    t, turn = judged_turn(read_mjcf(model, data))
+    np.testing.assert_allclose(turn, -2.0 * t if axis == "0 1 0" else 2.0 * t, rtol=0, atol=CLOSE)
+
+
 def test_a_model_that_may_sleep_is_refused_by_name():
-    with pytest.raises(Unsupported, match="^flag sleep: .* give --without sleep$"):
+    with pytest.raises(Unsupported, match=r"^flag sleep: .* give --without sleep$"):
         mjcf(WHEEL, flags='sleep="enable"')
 
 
@@ -215,7 +311,7 @@ def test_both_ends_of_a_groove_are_ends(speed):
     space = space_of(body)
     space.add(GrooveJoint(space.static_body, body, (-0.6, 0.0), (0.6, 0.0), (0.0, 0.0)))
     with pytest.raises(
-        Unsupported, match="GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove"
+        Unsupported, match=r"GrooveJoint 1 reaches its end at 0.[57]0?[0-9]? s.*or a longer groove"
     ) as found:
         check(read_space(space, 0.01), "groove", 2.0, 1e-3)
     assert f"at {0.5 if speed > 0 else 0.7:.3g}" in str(found.value)
@@ -254,7 +350,7 @@ def test_a_joint_that_lets_its_bodies_overlap_does_so_only_in_the_space(added):
         space.add(joint)
         assert read_space(space, 0.01).mechanism.joints
     else:
-        with pytest.raises(Unsupported, match="a shape of body . touches one of body ."):
+        with pytest.raises(Unsupported, match=r"a shape of body . touches one of body ."):
             read_space(space, 0.01)
 
 
@@ -276,7 +372,7 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
         space.step(0.01)
     (bob,) = space.bodies
     assert bob.is_sleeping
-    with pytest.raises(Unsupported, match="^body 1: it is asleep at the start"):
+    with pytest.raises(Unsupported, match=r"^body 1: it is asleep at the start"):
         read_space(space, 0.01)
     bob.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
     # Awake it is checked: told to leave sleep out, or too fast for it.
@@ -284,12 +380,35 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     assert check(read_space(swinging(0.3, 1e-5), 0.001), "fast", 1.0, 1e-1).met
 
 
+def test_without_a_threshold_of_its_own_a_space_counts_what_gravity_adds_in_a_step():
+    """Chipmunk's rule: 0.098 m/s at steps of 10 ms; and what turns is not idle."""
+    with pytest.raises(Unsupported, match=r"^body 1 may fall asleep"):
+        check(read_space(swinging(0.3, 0.0), 0.01), "asleep", 0.5, 1e-1)
+    spinning = disc()
+    spinning.angular_velocity = 1.0
+    still = space_of(spinning)
+    still.sleep_time_threshold, still.idle_speed_threshold = 0.1, 0.2
+    assert check(read_space(still, 0.01), "spinning", 0.5, 1e-1).met
+
+
+def test_limits_have_two_ends_that_count_from_the_first_body_to_the_second():
+    first, second = disc(), disc((1.0, 0.0))
+    space = space_of(first, second)
+    space.add(SlideJoint(first, second, (0, 0), (0, 0), 0.5, 2.0), RotaryLimitJoint(first, second, -0.5, 2.0))
+    model = read_space(space, 0.01).model
+    poses = np.tile([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], (3, 1, 1))
+    poses[1, 1, 2], poses[2, 1, 0] = 1.5, 0.6  # both within
+    assert model.obstacles(np.arange(3.0), poses, np.zeros_like(poses)) == []
+    poses[1, 1, 2], poses[2, 1, 0] = -0.6, 0.4
+    found = model.obstacles(np.arange(3.0), poses, np.zeros_like(poses))
+    assert [(each.t, each.words.split()[0]) for each in found] == [(1.0, "RotaryLimitJoint"), (2.0, "SlideJoint")]
+
+
 def test_copies_of_a_space_that_may_sleep_never_do():
     """pymunk (7.3.1) aborts after some copies in which bodies fell asleep."""
     reading = read_space(swinging(0.05, 0.5), 0.01, ["sleep"])
-    for _ in range(12):
-        run = reading.model.run(50, 1)
-    assert np.isfinite(run.pose).all()
+    runs = [reading.model.run(50, 1) for _ in range(12)]
+    assert all(np.isfinite(run.pose).all() for run in runs)
     assert reading.model.described.space.sleep_time_threshold == inf  # type: ignore[attr-defined]
 
 

@@ -143,11 +143,12 @@ def interrupts_held() -> Iterator[None]:
 
 
 def last_words(folder: Path, pid: int | None) -> str:
-    """The line in which native code said why it aborts, if it did."""
+    """In what words native code said why it aborts, if it did."""
     with contextlib.suppress(OSError):
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]
-        telling = [line for line in lines if "abort" in line.lower() or "error" in line.lower()]
-        for line in (telling or lines)[:1]:
-            return line[:200]
+        first = next((at for at, line in enumerate(lines) if "abort" in line.lower() or "error" in line.lower()), 0)
+        # Chipmunk's reason and the condition that failed stand below a line that ends with a colon.
+        count = 3 if lines and lines[first].endswith(":") else 1
+        return " ".join(lines[first : first + count])[:300]
     return ""

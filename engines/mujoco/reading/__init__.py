@@ -16,9 +16,9 @@ import numpy as np
 
 from engines.mujoco.reading.along_joints import off, turns
 from engines.mujoco.reading.equalities import equalities
+from engines.mujoco.reading.force_limits import limited_forces
 from engines.mujoco.reading.forces import forces
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
-from engines.mujoco.reading.force_limits import limited_forces
 from engines.mujoco.reading.hearing import heard
 from engines.mujoco.reading.joints import Scene, tree_joints
 from engines.mujoco.reading.other_settings import switch_off

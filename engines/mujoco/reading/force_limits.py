@@ -1,4 +1,4 @@
-"""Limits of the forces of actuators: which of them an ideal spring or push leaves out, and when a motion reaches one."""
+"""Limits of the forces of actuators: which of them an ideal spring or push lacks, and when one is reached."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)

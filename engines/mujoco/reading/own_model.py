@@ -128,7 +128,7 @@ class OwnMuJoCo:
         model, found = self.scene.model, dict[str, Obstacle]()
         data, free = self._fresh(model), unlimited(model) if limited_forces(model) else None
 
-        def meets(words: str, without: str) -> None:
+        def meets(at: float, words: str, without: str) -> None:
             found.setdefault(words, Obstacle(float(at), words, f"--without {without}"))
 
         kinds = mujoco.mjtConstraint
@@ -141,14 +141,14 @@ class OwnMuJoCo:
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
                 if kind in limits:
                     obj = mujoco.mjtObj.mjOBJ_JOINT if limits[kind] == "joint" else mujoco.mjtObj.mjOBJ_TENDON
-                    meets(f"{name_of(model, obj, int(index))} reaches its limit", "limit")
+                    meets(at, f"{name_of(model, obj, int(index))} reaches its limit", "limit")
                 elif kind in touching:
                     pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, int(each)) for each in data.contact[index].geom]
-                    meets(f"{pair[0]} touches {pair[1]}", "contact")
+                    meets(at, f"{pair[0]} touches {pair[1]}", "contact")
             if free is not None:
                 data.qvel[:] = np.linalg.lstsq(self._directions(data), rates.reshape(-1), rcond=None)[0]
                 for element in reached(model, free, data):
-                    meets(f"{element} reaches the limit of its force", "forcelimit")
+                    meets(at, f"{element} reaches the limit of its force", "forcelimit")
         if beyond := beyond_springs(self.scene, t, places):
             found[beyond.words] = beyond
         return sorted(found.values(), key=lambda each: each.t)

@@ -33,7 +33,7 @@ def obstacles(
     """
     found: dict[str, Obstacle] = {}
 
-    def meets(words: str, remedy: str) -> None:
+    def meets(at: float, words: str, remedy: str) -> None:
         found.setdefault(words, Obstacle(float(at), words, remedy))
 
     shapes = [shape for shape in space.shapes if not shape.sensor]
@@ -56,11 +56,11 @@ def obstacles(
         for one, other in pairs:
             if one.bb.intersects(other.bb) and _touch(one, other):
                 who = [names.get(id(shape.body), "the ground") for shape in (one, other)]
-                meets(f"a shape of {who[0]} touches one of {who[1]}", "--without contact")
+                meets(at, f"a shape of {who[0]} touches one of {who[1]}", "--without contact")
         for limit, label in limits:
             if _reached(limit):
                 groove = isinstance(limit, GrooveJoint)
-                meets(f"{label} reaches its end", "a longer groove" if groove else "--without limit")
+                meets(at, f"{label} reaches its end", "a longer groove" if groove else "--without limit")
     return sorted(found.values(), key=lambda each: each.t)
 
 
