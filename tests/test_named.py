@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -77,6 +78,13 @@ def test_an_engine_is_found_by_its_module_and_by_its_file_alone_and_in_a_list(he
         "mine rk4 projection",
     ]
     assert registry.load("package/mine_2.py:ONE")[0] is sys.modules["package.mine_2"].ONE
+
+
+def test_the_folder_of_an_engine_hides_no_module_that_is_installed(here):
+    written(here, "folder/mine_1.py", FALLING)
+    written(here, "folder/this.py", "")
+    registry.load(f"{here}/folder/mine_1.py:ENGINES")
+    assert not str(find_spec("this").origin).startswith(str(here))
 
 
 @pytest.mark.parametrize(

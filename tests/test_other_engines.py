@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import os
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from engines import Engine, Promise, Size, Unpromised, Unsupported, registry, single_run
+from engines import Engine, Promise, Size, Unpromised, Unsupported, mjx, registry, single_run
 from engines.conformance import cases
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
-from reference.joints import Rod
+from engines.pinocchio.model import Model
+from reference.forces import Force, TorsionSpring
+from reference.joints import Drive, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reports.cli.selection import choose_cells, choose_engines
@@ -25,6 +28,7 @@ from reports.grid.ending import BadInput
 from reports.pages.catalogue import PAGES, SCENES
 from reports.search.mechanisms import mechanism
 from reports.search.parts import FORCES, LINKS
+from tests import mechanisms
 from tests.present import present
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if getattr(engine, "building", 0.0) < SLOW_TO_BUILD)
@@ -309,3 +313,130 @@ def test_a_name_like_that_of_a_missing_engine_is_answered_with_its_extra(monkeyp
     assert str(refused.value) == f"unknown engine 'bullett': did you mean 'bullet'? {told}"
     with pytest.raises(BadInput, match=r"did you mean 'pymunk'\?$"):
         choose_engines("pymunkk", None, registry.ENGINES)
+
+
+def bar(name: str, pose: tuple[float, float, float], twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Body:
+    return Body(name, 1.0, 0.1, pose, twist)
+
+
+# What a second configuration shows: a drive or a slot named from the other body than the joint beside it, an angle
+# beyond a turn, two forces on one body, a speed that an engine's own limits stop or put to sleep. Durations [s].
+HUNG = (Pin("hinge", None, "first", (0.0, 0.0), (-0.5, 0.0)), Pin("joint", "first", "second", (0.5, 0.0), (-0.5, 0.0)))
+TWO = (bar("first", (0.5, 0.0, 0.0)), bar("second", (1.5, 0.0, 0.0), (0.0, -1.0, -2.0)))
+CONFIGURATIONS = {
+    "a drive against its pin": (
+        Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), (0.0, -9.81)),
+        0.3,
+    ),
+    "a held angle against its slot": (
+        Mechanism(
+            (TWO[0], bar("second", (0.8, 0.0, 0.4))),
+            (
+                HUNG[0],
+                Slot("guide", "first", "second", (0.3, 0.0), 0.0, (0.0, 0.0)),
+                Drive("held", "second", "first", 0.0, -0.4),
+            ),
+            (0.0, -9.81),
+        ),
+        0.3,
+    ),
+    "a spring wound up by more than a turn": (
+        Mechanism(
+            (bar("wheel", (0.0, 0.0, 0.0), (0.0, 0.0, 10.0)),),
+            (Pin("hub", None, "wheel", (0.0, 0.0), (0.0, 0.0)),),
+            (0.0, 0.0),
+            (TorsionSpring("spring", None, "wheel", 0.1),),
+        ),
+        1.5,
+    ),
+    "two forces on a body": (
+        Mechanism(
+            (TWO[0],),
+            HUNG[:1],
+            (0.0, 0.0),
+            (Force("one", "first", (0.5, 0.0), (0.0, 2.0)), Force("other", "first", (0.2, 0.1), (1.0, -1.0))),
+        ),
+        0.3,
+    ),
+    "faster than any usual limit": (Mechanism((bar("shot", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),), ()), 0.1),
+    "too slow to stay awake": (Mechanism((bar("drifting", (0.0, 0.0, 0.0), (1e-3, 2e-3, 1e-3)),), ()), 1.5),
+}
+
+
+@each
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_a_second_configuration_moves_as_the_judge_moves_it(engine, name):
+    installed(engine)
+    own, duration = CONFIGURATIONS[name]
+    truth = TRUTH.build(own, duration / 10)(10, 1)
+    try:
+        run = engine.build(own, duration / 300)(10, 30)
+    except Unsupported:
+        pytest.skip(f"{engine.name} has no such joint")
+    way = np.abs(truth.pose - truth.pose[0]).max()
+    promise = engine.order(own)
+    bound = SOFT if isinstance(promise, Unpromised) else 2 * JUDGED.get(int(min(promise.order, 4)), 1e-6)
+    assert np.abs(run.pose - truth.pose).max() < bound * way
+
+
+def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
+    engine = shipped("exudyn")
+    # Coupler and rocker are 0.57 m each, and the crank's end would have to be 1.29 m from the rocker's pin.
+    rate, b, c, d = 2.0, (0.0, 0.4), (0.4, 0.8), (0.8, 0.4)
+    bars = (
+        mechanisms.bar("crank", (0.0, 0.0), b, rate=rate),
+        mechanisms.bar("coupler", b, c, velocity=(-0.4 * rate, 0.0), rate=-rate / 2),
+        mechanisms.bar("rocker", d, c, rate=rate / 2),
+    )
+    half = [body.mass / 2 for body in bars]
+    joints = (
+        Pin("A", None, "crank", (0.0, 0.0), (-half[0], 0.0)),
+        Pin("B", "crank", "coupler", (half[0], 0.0), (-half[1], 0.0)),
+        Pin("C", "coupler", "rocker", (half[1], 0.0), (half[2], 0.0)),
+        Pin("D", None, "rocker", d, (-half[2], 0.0)),
+        Drive("motor", None, "crank", rate, np.pi / 2),
+    )
+    own = Mechanism(bars, joints)
+    run = engine.build(own, 1e-2)(200, 1)
+    assert any("gave up" in each for each in run.warnings)
+    known = np.isfinite(run.pose).all(axis=(1, 2))
+    count = int(known.sum())
+    assert known[:count].all()
+    # The crank gets there after 0.927 rad, and the sample at which Newton's method failed is none.
+    assert 30 < count <= np.ceil(0.927 / rate / 1e-2)
+    assert np.abs(own.gap(run.pose[:count], run.t[:count])).max() < 1e-6
+
+
+def test_pinocchios_euler_drifts_with_the_new_velocity():
+    # x'' = -x by hand: half a second of steps of 0.1 s keep an energy that the explicit method doubles.
+    model = SimpleNamespace(acceleration=lambda q, v: -q)
+    q, v = Model._euler(model, np.array([1.0]), np.array([0.0]), 0.1)  # type: ignore[arg-type]
+    assert (q[0], v[0]) == pytest.approx((0.99, -0.1))
+
+
+def test_pinocchio_tells_no_inertia_of_bodies_that_are_welded_together():
+    held = SimpleNamespace(mass=2.0, inertia=np.diag([0.0, 0.0, 0.3]))
+    model = SimpleNamespace(_own=[1, 2, 2, 0], model=SimpleNamespace(inertias=[held] * 3))
+    told = Model._inertias(model)  # type: ignore[arg-type]
+    assert told[0] == pytest.approx([2.0, 2.0, 0.3])
+    assert np.isnan(told[1:]).all()
+
+
+@pytest.mark.parametrize(("joint", "told"), [(None, False), (Rod("rod", None, "bob", (0, 0), (0, 0), 1.0), True)])
+def test_mjx_says_what_it_lacks_where_it_lacks_it(monkeypatch, joint, told):
+    """Without its compiler: what a run says is decided by the mechanism alone."""
+    still = SimpleNamespace(qpos=np.zeros(3), qvel=np.zeros(3), qacc=np.zeros(3))
+    device = SimpleNamespace(put_model=lambda model: model, put_data=lambda model, data: still)
+    still.qpos = still.qpos.view(Ready)
+    monkeypatch.setattr(mjx, "_programs", lambda: (device, lambda held, now, count: now, lambda held, now: now))
+    monkeypatch.setattr(mjx.Mjx, "require", lambda self: None)
+    own = Mechanism((Body("bob", 1.0, 0.1, (1.0, 0.0, 0.0)),), (joint,) if joint else ())
+    run = mjx.DEFAULT.build(own, 1e-2)(2, 1)
+    assert run.warnings == ((mjx.NO_VELOCITY_TERM,) if told else ())
+
+
+class Ready(np.ndarray):
+    """An array of JAX that has been worked out."""
+
+    def block_until_ready(self) -> Ready:
+        return self

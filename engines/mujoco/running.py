@@ -187,28 +187,36 @@ class MuJoCoRun:
         """With an estimate, and whether it is above what is claimed; by half steps too where double ones can't tell.
 
         Where double steps make more of a difference than is claimed, nobody knows whether the order is seen. Half steps
-        make a difference that is q times as large, where RK4's q is 1/16. Were steps halved on and on, and each
-        difference at most half of the one before, the rest would add up to at most 2 q of it. Where even that is not
-        so, q is above 1/2, and the estimate above the claim. Errors add up along a motion, and what was missed once may
-        pass zero: q is that of the largest differences so far.
+        make a difference that is q times as large, where RK4's q is 1/16. At q up to 1/8 the third order is seen at
+        least: were steps halved on and on, and each difference at most half of the one before, the rest would add up to
+        2 q of it at most. Else they are taken to fall as those of the first order do, to as much again. Were not even
+        that so, q would be above 1/2, and the estimate above the claim. What was missed once may pass zero: q is that
+        of the largest differences so far.
         """
         stepping, warnings = found.stepping, found.warnings
         estimate = self._by_order(apart)
         coarse = self._largest_so_far(apart[watched])
+        # From which step on it is above is known no better than the estimate is: from where double steps leave it open.
+        closed = watched[: np.argmin([*self._within(apart[watched]), False])]
+        unresolved_at = None
         if not coarse[-1] <= CLAIM:
             apart, spent = self._apart(found.pose, 2 * counts, 0.5)
             q = self._largest_so_far(apart[watched]) / np.where(coarse > 0, coarse, np.inf)
-            here = np.searchsorted(counts[watched], counts, side="right") - 1
-            # A run of double steps that was lost tells of no order: as if it were the first.
-            estimate = apart * (1 + 2 * np.nan_to_num(q, nan=0.5))[here][:, None, None]
+            factor = np.where(q <= 1 / 8, 1 + 2 * q, 2.0)  # 2 also where the run of double steps is lost
+            estimate = apart * factor[np.searchsorted(counts[watched], counts, side="right") - 1, None, None]
             stepping += spent
-        unresolved_at = _first(found.t, ~(np.max(estimate / self._sizes, axis=(1, 2)) <= CLAIM))
-        if unresolved_at is not None:
+        if not self._within(estimate).all():
+            above = found.t[np.argmin(self._within(estimate))]
+            unresolved_at = float(min(above, (counts[closed[-1]] + 1) * self._dt)) if len(closed) else 0.0
             warnings = (
                 *warnings,
                 f"ours: unresolved from {unresolved_at:.4g} s on, its own estimate is not below its claim",
             )
         return replace(found, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
+
+    def _within(self, apart: Array) -> NDArray[np.bool_]:
+        """(times,) whether that is no more than what is claimed."""
+        return np.max(apart / self._sizes, axis=(1, 2)) <= CLAIM
 
     def _largest_so_far(self, apart: Array) -> Array:
         """(times,) of a radian or of the mechanism's length; NaN from where one is lost."""
