@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from engines import Promise
+from engines import Promise, registry
 from reference.scene import Scene
 from reference.scenes import SCENES
+from reports.gate.baseline import Baseline, Old
 from reports.gate.checks import CHECKS
 from reports.gate.grid_tests import (
     GRID,
@@ -18,6 +21,8 @@ from reports.gate.grid_tests import (
     test_the_grid_has_every_scene_and_method_of_the_baseline,
     test_with_other_versions_no_method_is_worse_over_all_its_scenes,
 )
+from reports.gate.pytest_plugin import KNOWN
+from reports.grid.outcomes import Outcome
 from reports.pages.catalogue import PAGES, page_of, untaught
 from tests.conftest import GRID as FILE
 from tests.conftest import wants_the_grid_alone
@@ -55,6 +60,16 @@ def test_every_known_deviation_names_a_real_case_and_a_check():
             assert (scene, method) in real, (scene, method)
             assert check in CHECKS, check
             assert (check == "outcome") == (deviation.outcome is not None), (scene, method, check)
+
+
+def test_what_an_engine_that_is_not_installed_leaves_out_is_skipped_by_its_extra_and_any_other_loss_fails(monkeypatch):
+    lost = Baseline({("disc", "gone default", 20, 1): Old(Outcome.FINISHED, {})})
+    request: Any = SimpleNamespace(config=SimpleNamespace(stash={KNOWN: lost}))
+    with pytest.raises(AssertionError, match="has lost what the baseline has: disc-gone default"):
+        test_the_grid_has_every_scene_and_method_of_the_baseline(request)
+    monkeypatch.setattr(registry, "ABSENT", {"gone": 'gone is not installed: pip install "planar-crosscheck[gone]"'})
+    with pytest.raises(pytest.skip.Exception, match=r"planar-crosscheck\[gone\]"):
+        test_the_grid_has_every_scene_and_method_of_the_baseline(request)
 
 
 def test_the_grid_has_every_scene_of_every_page():

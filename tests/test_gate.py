@@ -291,6 +291,11 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
     assert "no longer" in complaints(found(0.4), known)[0]
     assert "no such check" in complaints((), known)[0]
     assert complaints(found(1.1), {}) == (str(found(1.1)[0]),)
+    # Roundings that a motion amplifies are others on another processor.
+    known = {"error": Deviation("by design: rank", 10.0, rounding=True)}
+    assert not complaints(found(0.1), known)
+    assert not complaints(found(99.0), known)
+    assert "known are 10" in complaints(found(101.0), known)[0]
 
 
 @pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.TORN, Outcome.SATURATED])

@@ -26,13 +26,17 @@ class Cut(Disc):
     """A scene whose motion can be compared for a part of its 0.2 s [s]."""
 
     name = "cut disc"
-    comparable_until = 0.115
+    until = 0.115
+
+    @property
+    def comparable_until(self) -> float:
+        return self.until
 
 
 class Brief(Cut):
     """Less than a sample."""
 
-    comparable_until = 1e-4
+    until = 1e-4
 
 
 @pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.comparable_until >= scene.duration], ids=str)
@@ -51,7 +55,7 @@ def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at
 class Rounded(Cut):
     """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
 
-    comparable_until = 27 * (0.705 / 70)
+    until = 27 * (0.705 / 70)
 
 
 class Unknown(Disc):

@@ -61,7 +61,11 @@ def terms(
 ) -> tuple[float, float, float]:
     """What step, softness and rounding cost in a quantity, before any room is given; `as_soft`: see `theory`."""
     rounding = ROUNDING["velocity" if quantity == "slip" else quantity]
-    if quantity in ("rate", "velocity", "slip", "energy"):
+    if quantity in ("rate", "velocity"):
+        # What is rounded in a pose shows in velocities as the motion takes it on; see `Prediction.error`.
+        rounding = max(rounding, prediction.speed / prediction.length * ROUNDING["angle"])
+    if quantity not in ("gap", "reaction"):
+        # The weights of a combination of runs carry the rounding of poses as they carry that of velocities.
         rounding *= promise.amplified
     if quantity == "reaction" and promise.differences:
         # A change of velocity: a combination of runs carries its rounding as it carries that of velocities.
