@@ -64,4 +64,4 @@ lower: .venv-lower/installed     ## the tests, without the grid, with the oldest
 	touch $@
 
 clean:
-	rm -rf .venv .venv-lower
+	rm -rf .venv .venv-lower .venv-all build

@@ -123,7 +123,7 @@ class Promise:
 
 @dataclass(frozen=True)
 class Unpromised:
-    """No order can be promised; `reason` is one sentence that says why. All checks but those of an order remain."""
+    """No order can be promised; `reason` is one sentence that says why. What its own steps change bounds its errors."""
 
     reason: str
 

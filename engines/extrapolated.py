@@ -24,7 +24,8 @@ Array = NDArray[np.float64]
 # Of the largest force that acts: reactions whose estimate is above it are told.
 FORCES = 1e-3
 # How many times the next difference that two successive ones let expect counts as the error. Chosen after 270 random
-# mechanisms with three steps each, and frozen before 268 others were tried: of them no motion was wrong without a word.
+# mechanisms with three steps each, and frozen before 298 others were tried: of these 894 motions one was wrong without
+# a word, by 4e-6 with an estimate of 9e-8.
 CAUTION = 4
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
@@ -61,7 +62,8 @@ class Extrapolated(Valid):
     and the rounding of all steps. It is worked out at every step of dt, whichever of them are sampled, and where it
     is above `engines.CLAIM`, of a radian or of the mechanism's length, the motion is `unresolved_at` that time, and a
     warning tells it. So it is from the start where a damper is so strong that it ends a motion within every run's step:
-    what it does then they may all miss alike. Reactions whose own estimate is above FORCES of the largest force that acts are told as well.
+    what it does then they may all miss alike. Reactions whose own estimate is above FORCES of the largest force that
+    acts are told as well.
 
     Where the estimate is more than what the finest run seems to miss (the distance to the extrapolation of the two
     finest), the runs are no series in the step: one has gone another way at a singular position, say. From there on the

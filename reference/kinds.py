@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, is_dataclass
 from functools import lru_cache
+from itertools import islice
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -59,10 +60,41 @@ class Kind:
     take: Callable[[Any], Any]
 
 
+MOST_FROM_ITERATOR = 2**20  # numbers: one that never ends must not be waited for
+MOST_DIMENSIONS = 16
+
+
+def _scalar(value: Any) -> Any:
+    """What an array without dimensions holds."""
+    return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
+
+
+def _listed(value: Any) -> Any:
+    """A list of the members of what has an order; anything else as it is."""
+    if isinstance(value, memoryview):
+        return value.tolist()
+    if isinstance(value, Iterator):
+        members = list(islice(value, MOST_FROM_ITERATOR + 1))
+        return members if len(members) <= MOST_FROM_ITERATOR else NOT_TAKEN
+    if isinstance(value, Sequence) and not isinstance(value, list | tuple | str | bytes | bytearray):
+        return list(value)
+    return value
+
+
+def _ends(value: Any, within: tuple[Any, ...] = ()) -> bool:
+    """Whether lists in lists come to an end: numpy would take one that holds itself apart until memory is full."""
+    if not isinstance(value, Sequence) or isinstance(value, str | bytes | bytearray):
+        return True
+    if len(within) >= MOST_DIMENSIONS or any(value is each for each in within):
+        return False
+    return all(_ends(each, (*within, value)) for each in value if type(each) is not float)
+
+
 def _number(value: Any) -> Any:
     if type(value) is float:
         return value
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+    value = _scalar(value)
+    if isinstance(value, bool | np.timedelta64) or not isinstance(value, numbers.Real):
         return NOT_TAKEN
     try:
         return float(value)
@@ -80,14 +112,18 @@ def _finite(value: Any) -> Any:
 def _whole(value: Any) -> Any:
     if type(value) is int:
         return value
-    return int(value) if isinstance(value, numbers.Integral) and not isinstance(value, bool) else NOT_TAKEN
+    value = _scalar(value)
+    whole = isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
+    return int(value) if whole else NOT_TAKEN
 
 
 def _truth(value: Any) -> Any:
+    value = _scalar(value)
     return bool(value) if isinstance(value, bool | np.bool_) else NOT_TAKEN
 
 
 def _text(value: Any) -> Any:
+    value = _scalar(value)
     return str(value) if isinstance(value, str) else NOT_TAKEN
 
 
@@ -95,8 +131,11 @@ def _array(value: Any) -> Any:
     """Real numbers in one shape as an array of floats; neither bools nor text, not even one among numbers."""
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value
+    value = _listed(value)
     try:
         if not isinstance(value, np.ndarray | float):
+            if not _ends(value):
+                return NOT_TAKEN
             each = np.array(value, dtype=object)
             if any(_number(item) is NOT_TAKEN for item in each.flat):
                 return NOT_TAKEN
@@ -116,6 +155,7 @@ def _kept(value: Any) -> Any:
     """Functions of numbers and of arrays give numbers and arrays, so the value stays what it is."""
     if type(value) is float:
         return value if math.isfinite(value) else NOT_TAKEN
+    value = _listed(value)
     return value if _finite_array(value) is not NOT_TAKEN else NOT_TAKEN
 
 
@@ -206,9 +246,8 @@ def _sequence(arguments: Sequence[Any]) -> Kind:
 
     def take(value: Any) -> Any:
         if type(value) is not tuple:
-            if isinstance(value, np.ndarray) and value.ndim:
-                value = value.tolist()
-            elif not isinstance(value, tuple | list):
+            value = value.tolist() if isinstance(value, np.ndarray) and value.ndim else _listed(value)
+            if not isinstance(value, tuple | list):
                 return NOT_TAKEN
         if not endless and len(value) != count:
             return NOT_TAKEN
@@ -227,6 +266,7 @@ def _either(kinds: Sequence[Kind]) -> Kind:
     takes = [kind.take for kind in kinds]
 
     def take(value: Any) -> Any:
+        value = _listed(value)  # an iterator gives its members once
         for each in takes:
             taken = each(value)
             if taken is not NOT_TAKEN:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,14 +21,15 @@ from reference.forces import ForceElement
 from reference.joint_rows import JointRows
 from reference.joints import Joint, Vector
 from reference.kept import kept
-from reference.kinds import Floats
+from reference.kinds import Floats, of_shape
 from reference.memory import require_room
 from reference.row_system import rank, reactions
 from reference.scales import length_scale, time_scale
 from reference.start import refuse_a_bad_start
 from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 
-States = AnyComplexes  # (..., bodies, 3)
+States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
+Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
 
 # The rank of dense rows takes a minute at this size [bytes], and eight at twice the bodies.
 LARGEST_RANK = 2**28
@@ -177,7 +178,7 @@ class Mechanism(Valid):
         return self.joint_rows.velocities(pose, twist) - self.rate
 
     @validated
-    def bias(self, pose: Numbers, twist: Numbers) -> NDArray[np.float64]:
+    def bias(self, pose: Reals, twist: Reals) -> NDArray[np.float64]:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         step = 1e-100
         return -np.imag(self.joint_rows.velocities(pose + 1j * step * twist, twist)) / step
@@ -185,11 +186,11 @@ class Mechanism(Valid):
     @validated
     def reaction(
         self,
-        pose: Numbers,
-        acceleration: Numbers,
-        inertias: Numbers | None = None,
-        gravity: Numbers | None = None,
-        twist: Numbers | None = None,
+        pose: Reals,
+        acceleration: Reals,
+        inertias: Annotated[Numbers, of_shape("bodies", 3)] | None = None,
+        gravity: Annotated[Numbers, of_shape(2)] | None = None,
+        twist: Reals | None = None,
     ) -> NDArray[np.float64]:
         """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
 
@@ -231,7 +232,7 @@ class Mechanism(Valid):
         return reactions(self.rows(pose), inertias.reshape(-1), stacked, size)
 
     @validated
-    def degrees_of_freedom(self, pose: Floats | None = None) -> tuple[int, int]:
+    def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
         """(configuration, velocity) freedoms by the rank of the rows at a pose, the start unless given (box 18.3).
 
         A skate takes a freedom of velocity and none of configuration; a drive takes one of both. Dense linear algebra,

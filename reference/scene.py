@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from abc import ABC, abstractmethod
 from dataclasses import fields
@@ -13,7 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 from reference.kinds import Floats, of_shape
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism, Numbers, Valid, sample_times, shown, validated
+from reference.validation import (
+    Count,
+    InvalidMechanism,
+    Numbers,
+    Positive,
+    Valid,
+    sample_times,
+    shown,
+    take,
+    validated,
+)
 
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
@@ -32,6 +43,15 @@ class Scene(Valid, ABC):
     reach: ClassVar[float] = 10.0  # durations, see `latest`
     duration: float
     horizon: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        own = {field.name for field in fields(self)}  # type: ignore[arg-type]
+        for name, annotation in (("duration", Positive), ("horizon", Positive), ("samples", Count)):
+            # What a class sets without a field; a property is worked out only when it is asked for.
+            value = inspect.getattr_static(self, name)
+            if name not in own and not hasattr(value, "__get__"):
+                take(self._owner(), name, value, annotation)
 
     def __getstate__(self) -> dict[str, Any]:
         """Its numbers alone, so that a scene travels to another process without what it has worked out.

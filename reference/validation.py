@@ -131,7 +131,14 @@ def validated(function: Function) -> Function:
         for name, value in named.items():
             if name in known:
                 named[name] = _taken(function, name, value, known)
-        return function(*plain, **named)
+        try:
+            return function(*plain, **named)
+        except ArithmeticError as reason:  # a division by zero, a number too large, a root that is not found
+            if isinstance(reason, InvalidMechanism):
+                raise
+            raise InvalidMechanism(
+                f"{function.__qualname__}: it has no value for these arguments: {reason}; give others"
+            ) from reason
 
     checked.__validated__ = True  # type: ignore[attr-defined]
     return checked  # type: ignore[return-value]

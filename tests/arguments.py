@@ -10,6 +10,7 @@ import dataclasses
 import functools
 import importlib
 import inspect
+import itertools
 import pkgutil
 import typing
 from collections.abc import Callable, Iterator, Mapping
@@ -24,8 +25,7 @@ import reference
 from engines import registry
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.reflection import Reflected
-from reference.kinds import NOT_FINITE as MAY_BE_INFINITE
-from reference.kinds import Floats
+from reference.kinds import Floats, Rule
 from reference.rolling.scenes import RollingDisc
 from reference.validation import (
     AnyComplexes,
@@ -44,12 +44,15 @@ from tests.mechanisms import four_bar
 from tests.samples import INSTANCES, RUN
 
 NAN, INF = float("nan"), float("inf")
-NOTHING_AT_ALL = [None, object(), {}, {"x": 1.0}, float, Ellipsis]
+NOTHING_AT_ALL = [None, object(), {}, {"x": 1.0}, float, Ellipsis, np.timedelta64(1, "s")]
+ENDLESS: list[Any] = []
+ENDLESS += [ENDLESS, ENDLESS]  # numpy would take it apart until memory is full
 NO_NUMBERS = [*NOTHING_AT_ALL, "1.5", "abc", b"1", 1 + 2j, np.complex128(1 + 2j), True, np.bool_(False), [], {1.0, 2.0}]
 NOT_FINITE = [NAN, INF, -INF, np.float64("nan"), np.float32("inf")]
 NO_SCALARS = [[1.0], (1.0,), np.array([1.0, 2.0]), np.zeros((2, 2)), [[1.0]]]
 NO_ARRAYS = ["abc", "1.5", ["1.5"], [1.0, None], [1.0, True], [[1.0], [1.0, 2.0]], np.array(["1", "2"])]
 NO_ARRAYS += [*NOTHING_AT_ALL, True, np.array([True]), np.array([object()]), b"1", {1.0}, [10**400]]
+NO_ARRAYS += [ENDLESS, [np.timedelta64(1, "s")], itertools.repeat(1.0)]
 COMPLEX = [1j, [1 + 2j], np.array([1 + 2j])]
 
 KNOWN: dict[Any, list[Any]] = {
@@ -88,11 +91,13 @@ def bad(annotation: Any) -> list[Any]:
     found, arguments, origin = _known(annotation), get_args(annotation), get_origin(annotation)
     if found is not None:
         return found
-    if origin is Annotated and MAY_BE_INFINITE in arguments:
-        return [value for value in bad(arguments[0]) if not any(value is each for each in NOT_FINITE)]
+    if origin is Annotated and isinstance(arguments[-1], Rule):
+        *others, rule = arguments
+        shapes = [0.5, np.zeros(1), np.zeros((1, 1))] if rule.words.startswith("of shape") else []
+        wrong = [value for value in shapes if not rule.holds(value)]
+        return bad(Annotated[*others] if len(others) > 1 else others[0]) + wrong
     if origin is Annotated:
-        kind, *notes = arguments
-        return bad(Annotated[kind, notes[0]] if len(notes) > 1 else kind)
+        return [value for value in bad(arguments[0]) if not any(value is each for each in NOT_FINITE)]
     if origin is Literal:
         return [*KNOWN[str], "", "nonsense", arguments[0] + " ", [arguments[0]], (arguments[0],)]
     if origin is tuple:
@@ -133,6 +138,7 @@ def _meant(value: Any, annotation: Any) -> bool:
     if get_origin(annotation) is Callable or annotation is Callable:
         return callable(value)
     if annotation is float or get_origin(annotation) is Annotated:
+        value = value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
         return isinstance(value, (int, float)) and not isinstance(value, bool)
     return isinstance(annotation, type) and isinstance(value, annotation)
 
@@ -152,7 +158,7 @@ def good(annotation: Any) -> Any:
         if annotation == each:
             return value
     if origin is Annotated:
-        arrays = (np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 3)), np.ones((1, 1)))
+        arrays = (np.zeros(2), np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 3)), np.ones((1, 1)))
         for value in (good(arguments[0]), 3, *arrays):
             if all(note.holds(value) for note in annotation.__metadata__ if hasattr(note, "holds")):
                 return value

@@ -9,7 +9,8 @@ import os
 import pickle
 import random
 import signal
-from collections import Counter
+from array import array
+from collections import Counter, deque
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from reference.four_bar import FourBar, OverdrivenFourBar
 from reference.four_bar.linkage import Unreachable
 from reference.mechanism import Body
 from reference.rolling.scenes import RollingDisc
+from reference.scene import Scene
 from reference.scenes import SCENES
 from reference.skate.parking import park
 from reference.validation import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated
@@ -145,16 +147,6 @@ def test_arguments_given_by_name_are_checked_as_those_given_by_place():
             call()
 
 
-def test_a_class_without_checks_is_caught():
-    @dataclasses.dataclass(frozen=True)
-    class Careless:
-        mass: float
-
-    assert outcome(Trial("Careless", "mass", "heavy", lambda: Careless("heavy"))) == "answered"  # type: ignore[arg-type]
-    assert outcome(Trial("float", "mass", "heavy", lambda: float("heavy"))).startswith("another sentence")
-    assert outcome(Trial("len", "mass", 1, lambda: len(1))).startswith("TypeError")  # type: ignore[arg-type]
-
-
 def test_every_class_that_users_make_checks_its_fields_and_is_tried():
     found = dataclasses_of_the_suite()
     assert {name for name, each in found.items() if not issubclass(each, Valid)} <= NOT_MADE_BY_USERS
@@ -175,16 +167,31 @@ def test_functions_of_every_part_are_tried():
 def unusual(value: Any) -> list[Any]:
     """The same value in other clothes."""
     if isinstance(value, bool):
-        return [np.bool_(value)]
+        return [np.bool_(value), np.array(value)]
     if isinstance(value, int):
-        return [np.int64(value), np.int32(value)]
+        return [np.int64(value), np.int32(value), np.array(value)]
     if isinstance(value, float):
         whole = [int(value)] if math.isfinite(value) and value.is_integer() else []
-        return [np.float64(value), *whole, *([np.float32(value)] if float(np.float32(value)) == value else [])]
+        return [
+            np.float64(value),
+            np.array(value),
+            *whole,
+            *([np.float32(value)] if float(np.float32(value)) == value else []),
+        ]
     if isinstance(value, str):
-        return [np.str_(value)]
+        return [np.str_(value), np.array(value)]
     if isinstance(value, tuple) and value and all(isinstance(each, float) for each in value):
-        return [list(value), np.array(value), tuple(np.float64(each) for each in value)]
+        numbers = array("d", value)
+        iterator = (each for each in value)
+        return [
+            list(value),
+            np.array(value),
+            tuple(map(np.float64, value)),
+            deque(value),
+            numbers,
+            memoryview(numbers),
+            iterator,
+        ]
     return []
 
 
@@ -292,3 +299,23 @@ def test_an_annotation_that_no_check_is_known_for_is_an_error_and_not_skipped():
 
     with pytest.raises(TypeError, match="no check is known"):
         strange(b"")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("duration", "long"), ("duration", -1.0), ("horizon", math.nan), ("samples", 2.5), ("samples", 0)],
+)
+def test_what_a_scenes_class_sets_without_a_field_is_checked_too(name, value):
+    class Plain(Scene):
+        name, source, duration, horizon = "plain", "", 1.0, 1.0  # no annotations, so no fields
+
+        def mechanism(self):
+            return four_bar()
+
+        def _motion(self, times):
+            raise NotImplementedError
+
+    assert dataclasses.dataclass(frozen=True)(Plain)().duration == 1.0
+    setattr(Plain, name, value)
+    with pytest.raises(InvalidMechanism, match=f"scene 'plain': {name} is "):
+        Plain()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import cast
 
 import pytest
 
@@ -47,7 +48,7 @@ UNSEEN: dict[tuple[str, str], str] = {
 @cache
 def found(name: str, mistake: str) -> tuple[Check, ...]:
     """The checks that an engine with this mistake fails."""
-    engine = Wrong(mistake, ENGINES[name])
+    engine = cast(Engine, Wrong(mistake, ENGINES[name]))
     if registry.missing(ENGINES[name]):
         pytest.skip(registry.missing(ENGINES[name]))
     case = Case(SCENE, engine, engine.order(SCENE.mechanism()))

@@ -163,7 +163,7 @@ class Tree:
         now, units = self.bodies(q, v), [self.bodies(q, unit) for unit in np.eye(n)]
         later = self.bodies(q + 1j * H * v, v.astype(complex))
         ways = np.array([[twist for _, twist in bodies] for bodies in units]).reshape(n, -1).T
-        rest = np.array([twist for _, twist in later]).imag.reshape(-1) / H  # of the bodies, with none of q's
+        rest = np.imag([twist for _, twist in later]).reshape(-1) / H  # of the bodies, with none of q's
         mass = np.array([[body.mass, body.mass, body.inertia] for body in mechanism.bodies]).reshape(-1)
         load = mass * np.tile([*mechanism.gravity, 0.0], len(mechanism.bodies)) - mass * rest
         right = ways.T @ load

@@ -84,10 +84,6 @@ def test_more_random_mechanisms_of_all_joints_move_as_in_numpy(number):
     moves_as_in_numpy(number)
 
 
-def test_some_random_mechanisms_have_all_joints():
-    assert {type(joint) for number in SOME for joint in random_mechanism(11, number).joints} >= JOINTS
-
-
 def exact_acceleration(mechanism: Mechanism) -> np.ndarray:
     """Accelerations (3 bodies,) at the start, with the row system solved to sixty digits."""
     with mpmath.workdps(60):

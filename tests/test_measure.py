@@ -194,3 +194,23 @@ def test_rows_told_are_those_known_at_any_sample():
     reaction[:5, 0], reaction[:, 1] = np.nan, np.nan
     found = measure(Cell(DISC, Given(disc(reaction=reaction)), 1), repeat=False)
     assert found.reaction_rows == 1
+
+
+@dataclass(frozen=True)
+class Moving(Toy):
+    """An engine that counts from another origin, and moves the mechanism's own arrays there."""
+
+    name: str = "moving"
+
+    def build(self, mechanism, dt):
+        pose = mechanism.pose
+        pose += 1.0
+        return super().build(mechanism, dt)
+
+
+def test_an_engine_that_writes_into_a_mechanism_spoils_its_own_row_alone():
+    alone = measure(Cell(DISC, Toy(), 2))
+    spoilt = measure(Cell(DISC, Moving(), 2))
+    assert (spoilt.outcome, "read-only" in spoilt.sentence) == (Outcome.REFUSED, True)
+    after = measure(Cell(DISC, Toy(), 2))
+    assert (after.outcome, after.angle, after.energy) == (alone.outcome, alone.angle, alone.energy)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 import pytest
 
+from reference.curves.traced import Traced
 from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
+from reference.scenes import SCENES
 from reference.trajectory import Trajectory, energy, joint_gap, slip
 from reference.validation import InvalidMechanism
 from tests.mechanisms import bar, four_bar, pendulum
@@ -186,3 +190,38 @@ def test_a_start_that_slips_is_judged_by_its_own_speed(speed):
     with pytest.raises(InvalidMechanism, match="row 'pin x' is moving apart at"):
         turning(1e-7)
     assert turning(1e-12).row_count == 2
+
+
+def arrays_of(value, path, seen, depth=0):
+    """Every array that somebody can reach from a value through public names, with the way there."""
+    if isinstance(value, np.ndarray):
+        yield path, value
+    elif isinstance(value, tuple):
+        for index, each in enumerate(value):
+            yield from arrays_of(each, f"{path}[{index}]", seen, depth + 1)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type) and id(value) not in seen and depth < 8:
+        seen.add(id(value))
+        kept = [
+            name for cls in type(value).__mro__ for name, each in vars(cls).items() if isinstance(each, cached_property)
+        ]
+        for name in {*(field.name for field in dataclasses.fields(value)), *kept}:
+            if not name.startswith("_"):
+                yield from arrays_of(getattr(value, name, None), f"{path}.{name}", seen, depth + 1)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_no_array_that_is_kept_for_all_can_be_written(scene):
+    found = [*arrays_of(scene.mechanism(), "mechanism", set()), *arrays_of(scene, "scene", set())]
+    assert len(found) > 5
+    assert [path for path, array in found if array.flags.writeable] == []
+
+
+def test_what_is_made_of_an_array_does_not_change_with_it():
+    points = np.column_stack([np.cos(np.linspace(0, 1, 20)), np.sin(np.linspace(0, 1, 20))])
+    curve = Traced(np.linspace(0, 1, 20), points)
+    before = curve.point_of(0.5).copy()
+    points += 1.0
+    assert abs(curve.points).max() <= 1.0
+    np.testing.assert_array_equal(curve.point_of(0.5), before)
+    with pytest.raises(ValueError, match="read-only"):
+        curve.points[0] = 0.0

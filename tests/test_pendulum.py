@@ -240,3 +240,20 @@ def test_bad_numbers_are_refused() -> None:
             BarPendulum(**wrong)
     with pytest.raises(InvalidMechanism, match="frequency"):
         Pendulum(0.0, 1.0)
+
+
+@pytest.mark.parametrize("pendulum", [Pendulum(3.0, 1.0, 0.2), Pendulum(3.0, -2.5, -1.0), Pendulum(2.0, 3.0, 5.0)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_passages_are_all_those_that_looking_finds_up_to_the_last(pendulum, sign):
+    pendulum = Pendulum(pendulum.frequency, sign * pendulum.angle, sign * pendulum.rate)
+    t = np.linspace(0, 12 * pendulum.period, 120_001)
+    motion = pendulum.motion(t)[0]
+    for angle in (0.5, -0.9, 0.0):
+        side = np.sin((motion - angle) / 2)
+        seen = t[1:][side[1:] * side[:-1] < 0]
+        assert len(seen) > 10
+        np.testing.assert_allclose(pendulum.passages(angle, float(t[-1])), seen, atol=2 * t[1])
+        for last in (0, 3, len(seen) - 1):  # `until` just after a passage, and just before it
+            exact = float(pendulum.passages(angle, float(t[-1]))[last])
+            assert len(pendulum.passages(angle, exact * (1 + 1e-12))) == last + 1
+            assert len(pendulum.passages(angle, exact * (1 - 1e-12))) == last

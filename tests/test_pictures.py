@@ -12,10 +12,11 @@ from matplotlib.colors import to_hex
 
 from reference import outlines
 from reference.centrodes import Centrodes
-from reference.joints import Pin
+from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingOnCircle
+from reference.slider_crank.scenes import DrivenSliderCrank
 from reports.charts import drawings
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 from reports.charts.stroboscope import PALEST, Strip, outline, path, stroboscope
@@ -50,6 +51,10 @@ def test_a_bodys_points_are_its_joints_turned_and_moved():
     assert found["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
     assert found["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
     assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
+    # A slot in the ground holds to a line: its point is no support.
+    crank = DrivenSliderCrank(offset=0.1).mechanism()
+    assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
+    assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
 
 
 def test_a_method_is_visibly_off_by_its_worst_joint_and_never_where_it_is_not_finite():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -131,3 +132,25 @@ def test_their_commands_are_the_programs():
     helping = [sys.executable, "-m", "reports", "--help"]
     said = subprocess.run(helping, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert words <= set(re.findall(r"^  ([a-z]+)  ", said, re.MULTILINE))
+
+
+# Stands for Python: it notes what it is asked, and the half that its environment names is red.
+PYTHON = """#!/bin/sh
+case "$*" in *"not crosscheck"*) half=tests;; *) half=grid;; esac
+echo $half >> "$NOTES"
+[ "$RED" != $half ]
+"""
+
+
+@pytest.mark.parametrize("red", ["none", "tests", "grid"])
+def test_make_test_runs_the_tests_and_the_grid_and_is_red_if_either_is(red, tmp_path):
+    if shutil.which("make") is None:
+        pytest.skip("make is not installed")
+    (tmp_path / "python").write_text(PYTHON)
+    (tmp_path / "python").chmod(0o755)
+    words = ["make", "--silent", "--old-file=.venv/installed", "test", f"BIN={tmp_path}"]
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    environment = {**kept, "NOTES": str(tmp_path / "notes"), "RED": red}
+    ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert (tmp_path / "notes").read_text().split() == ["tests", "grid"]
+    assert (ended.returncode == 0) == (red == "none")

@@ -57,10 +57,10 @@ def test_an_overwritten_crank_stays_wrong_on_the_loop_as_shipped_and_a_servo_lag
     assert stays(found["mujoco default, overwritten crank"][1:])
     assert stays(found["mujoco tuned, servo"])
     assert falls(found["mujoco tuned"])
-    if rows := found.get("mujoco tuned, overwritten crank"):  # the newest of these cells
-        assert outcomes(rows)[0] == Outcome.TORN
-        assert falls(rows)
-        assert all(row.angle > 100 * other.angle for row, other in zip(rows, found["mujoco tuned"], strict=True))
+    rows = found["mujoco tuned, overwritten crank"]
+    assert outcomes(rows)[0] == Outcome.TORN
+    assert falls(rows)
+    assert all(row.angle > 100 * other.angle for row, other in zip(rows, found["mujoco tuned"], strict=True))
 
 
 def test_about_half_of_the_runs_at_steps_far_too_large_end_on_a_torn_loop_and_the_one_that_estimates_says_so() -> None:
@@ -102,10 +102,8 @@ def test_sweeps_on_a_heavy_tip() -> None:
     for name in ("pymunk default", "pymunk tuned", "pymunk 10 sweeps, all of the gap"):
         assert comparable(found[name]) == [False, True, True]
     assert comparable(found["pymunk 1000 sweeps, all of the gap"]) == [False, True, False]
-    if rows := found.get(f"mujoco {pendulum_failures.SWEPT.variant}"):  # these and the next are the newest cells
-        assert all(outcome in BROKEN for outcome in outcomes(rows))
-    if rows := found.get(f"mujoco {pendulum_failures.PATIENT.variant}"):
-        assert comparable(rows) == [True]
+    assert all(outcome in BROKEN for outcome in outcomes(found[f"mujoco {pendulum_failures.SWEPT.variant}"]))
+    assert comparable(found[f"mujoco {pendulum_failures.PATIENT.variant}"]) == [True]
     assert comparable(found["mujoco tuned"]) == [False, True, True]
     # They divide a step that is too long, and say that their estimate is above what they claim.
     for name in ("mujoco extended", "mujoco extended, free, sparse Newton"):

@@ -238,3 +238,23 @@ def test_a_spiral_winds_round_its_pole_without_end():
     path = rolling.position(rolling.theta + np.linspace(-2.0, 8.0, 7))
     along, across = np.diff(path, axis=0).T
     assert across / along == pytest.approx(np.full(6, across[0] / along[0]), rel=1e-9)
+
+
+@pytest.mark.parametrize("body_arc", [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+def test_a_ring_about_an_ellipse_is_refused_by_the_ellipses_length_wherever_the_rings_centre_of_mass_is(body_arc):
+    ring = Placed(Ring(1.0), turn=0.4, shift=(0.3, 0.1))
+    # It touches at an end of its long axis, which has room across a circle of 1 m up to 2 m.
+    Rolling.at_arcs(ring, Ellipse(0.99, 0.5), 0.0, body_arc)
+    with pytest.raises(InvalidMechanism, match=r"reaches 0\.02 m beyond"):
+        Rolling.at_arcs(ring, Ellipse(1.01, 0.5), 0.0, body_arc)
+
+
+def test_an_ellipse_in_a_tight_ring_rolls_until_its_flat_side_fits_both_ways():
+    shape, ring = Ellipse(0.5, 0.3), Ring(0.7)
+    for start in (0.0, 0.1, -0.1):
+        rolling = Rolling.at_arcs(shape, Placed(ring), 0.0, start)
+        # As bent as the ring, to NEAR_CONFORMAL, at the nearest place on either side.
+        ends = np.array(rolling._parameter_limits)
+        assert shape.curvature_of(ends) == pytest.approx([1 / 0.7, 1 / 0.7], rel=1e-8)
+        assert np.ptp(shape.arc_of(ends)) < shape.length / 2
+        assert rolling.limits[0] < rolling.theta < rolling.limits[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from dataclasses import replace
 
 import numpy as np
@@ -233,3 +234,87 @@ BAD = {
 def test_bad_numbers_are_refused(case):
     with pytest.raises(InvalidMechanism):
         BAD[case]()
+
+
+# ----------------------------------------------------------------------------------------------- the first instant
+
+
+def watched(scene, looks=4001):
+    """By looking, at so many instants: when the contact would first pull, and first needs more than its friction."""
+    t = np.linspace(0, scene.duration, looks)
+    tangent, normal = scene.motion_law.forces(t)
+    rounding = 1e-11 * (1 + scene.friction) * np.abs([tangent, normal]).max()
+    out = []
+    for spare in (normal, scene.friction * normal - np.abs(tangent)):
+        below = np.flatnonzero(spare < -rounding)
+        out.append((t[max(0, below[0] - 1)], t[below[0]]) if below.size else None)
+    return out
+
+
+def some_scene(seed):
+    """Any start: at rest, next to a balance, fast; in any unit of length and of time."""
+    rng = random.Random(seed)
+    length, time = 10 ** rng.choice([0.0, -9.0, 9.0]), 10 ** rng.choice([0.0, -9.0, 9.0])
+    given = {
+        "start_rate": rng.choice([0.0, 1e-6, 1e-3, rng.uniform(-6, 6)]) / time,
+        "start_angle": rng.choice([0.0, rng.uniform(-3, 3)]),
+        "gravity": (0.0, -GRAVITY * length / time**2),
+        "friction": 10 ** rng.uniform(-2, 1.5),
+        "duration": 3 * time,
+    }
+    if rng.random() < 0.6:
+        sizes = {"hill": rng.uniform(0.3, 3) * length, "radius": rng.uniform(0.1, 1) * length}
+        return RollingOnCircle(**given, **sizes, eccentricity=rng.choice([0.0, rng.uniform(0, 0.09)]) * length)
+    if rng.random() < 0.5:
+        return RollingDisc(**given, radius=0.4 * length, eccentricity=rng.uniform(0, 0.39) * length)
+    return RollingEllipse(**given, along_x=0.5 * length, along_y=rng.uniform(0.3, 0.7) * length)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_hops_and_slips_are_the_first_that_looking_finds(seed):
+    scene = some_scene(seed)
+    law = scene.motion_law
+    slips = law.slip(scene.friction, scene.duration)
+    for told, seen in zip((scene.hop, slips), watched(scene), strict=True):
+        if seen is None:
+            assert told is None
+        else:
+            assert seen[0] * (1 - 1e-12) <= present(told) <= seen[1]
+
+
+def test_a_disc_that_hardly_moves_on_a_hill_hops_where_one_from_rest_does():
+    scene = RollingOnCircle(eccentricity=0.0, start_rate=1e-3, duration=6.0)
+    law = scene.motion_law
+    x, y = law.rolling.position(law.states(present(scene.hop))[0])[0]
+    # Energy 3/4 m v^2 and m v^2 / (R + r) = m g cos(angle): 4/7, and the start's own 1e-9 of it.
+    assert y / math.hypot(x, y) == pytest.approx(4 / 7, abs=1e-8)
+    assert scene.comparable_until < present(scene.hop)
+    # It has hopped long before, and nobody has to follow it for an hour.
+    assert law.hop(3600.0) == pytest.approx(scene.hop, rel=1e-9)
+
+
+def test_a_contact_that_lets_go_for_a_thousandth_of_a_second_is_seen():
+    at = {"eccentricity": 0.2, "start_angle": -1.0}
+    rates = [5.0, 12.0]  # between them it begins to jump; then the rate at which it jumps for a moment is bracketed
+    for _ in range(30):
+        middle = 0.5 * (rates[0] + rates[1])
+        rates[RollingDisc(**at, start_rate=middle).hop is not None] = middle
+    for rate in rates:
+        law, t = RollingDisc(**at, start_rate=rate).motion_law, np.linspace(0, 2.0, 2001)
+        for _ in range(3):  # nearer and nearer to where the contact presses least
+            normal = law.forces(t)[1]
+            place = t[int(np.argmin(normal))]
+            t = np.clip(place + (t[1] - t[0]) * np.linspace(-2, 2, 201), 0, 2.0)
+        assert normal.min() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_hop_does_not_depend_on_how_far_the_motion_is_known():
+    scene = RollingDisc(start_rate=-5.0, start_angle=2.0, eccentricity=0.2, friction=0.12)
+    before = scene.motion_law.slip(scene.friction, 2.0)
+    scene.motion_law.states([10.0])
+    assert present(scene.motion_law.slip(scene.friction, 2.0)) == pytest.approx(before, rel=1e-12)
+
+
+@pytest.mark.parametrize("scene", [RollingEllipse(), RollingDisc(eccentricity=0.1), RollingInRing()])
+def test_a_body_that_has_shown_all_its_forces_is_not_followed_for_ever(scene):
+    assert scene.motion_law.hop(1e9) is None

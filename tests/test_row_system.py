@@ -153,3 +153,13 @@ def test_a_symmetric_system_is_solved_in_any_unit_and_shared_equally_where_it_is
     matrix = np.array([[2e-12, 1e-12], [1e-12, 2e-12]])
     assert solve_symmetric(matrix, np.array([3e-12, 3e-12])) == pytest.approx([1.0, 1.0])
     assert solve_symmetric(np.ones((2, 2)), np.array([1.0, 1.0])) == pytest.approx([0.5, 0.5])
+
+
+def test_a_row_that_takes_a_thousandth_part_in_idle_forces_is_undetermined_too():
+    rows = np.zeros((4, 6))
+    rows[0, 0] = 1.0
+    rows[1, :2] = 1.0, 1e-3
+    rows[2, 1] = 1.0  # the second is the first and a thousandth of the third
+    rows[3, 4] = 1.0  # and this one stands alone
+    assert undetermined(rows, 1.0).tolist() == [True, True, True, False]
+    assert undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0).tolist() == [[True, True, True, False], [False] * 4]

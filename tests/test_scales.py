@@ -6,9 +6,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from reference.joints import Pin
+from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Pin, Rod
 from reference.mechanism import Body, Mechanism
-from reference.scales import convex_hull, diameter
+from reference.scales import convex_hull, diameter, length_scale, time_scale
 
 RNG = np.random.default_rng(5)
 TURN = 0.3  # rad: no side of a turned figure is parallel to an axis, and parallel sides are so up to rounding only
@@ -73,3 +74,43 @@ def test_a_body_with_many_joints_has_its_length_without_a_look_at_every_pair():
     wheel = Body("wheel", 1.0, 1.0, (0.0, 0.0, 0.0))
     pins = tuple(Pin(f"pin {i}", None, "wheel", (x, y), (x, y)) for i, (x, y) in enumerate(rim))
     assert Mechanism((wheel,), pins).length_scale == pytest.approx(2.0, rel=1e-15)
+
+
+BODY = Body("b", 2.0, 0.5, (0.0, 0.0, 0.0))
+AT = (0.3, 0.4)  # half a metre from the centre: a force there feels 1/2 + 0.25/0.5 = 1 per kilogram
+
+
+@pytest.mark.parametrize(
+    ("force", "rate"),
+    [
+        (Spring("f", None, "b", (1.0, 1.0), AT, 9.0, 1.0), 3.0),
+        (Damper("f", None, "b", (1.0, 1.0), AT, 7.0), 7.0),
+        (TorsionSpring("f", None, "b", 8.0), 4.0),
+        (TorsionDamper("f", None, "b", 3.0), 6.0),
+        (Torque("f", None, "b", 2.0), 2.0),
+        (Torque("f", None, "b", -2.0), 2.0),
+        (Force("f", "b", AT, (0.0, -12.0)), 4.0),
+    ],
+    ids=lambda each: type(each).__name__ if not isinstance(each, float) else "",
+)
+def test_a_force_alone_sets_the_time_by_what_it_does_to_its_body(force, rate):
+    assert time_scale(0.75, (0.0, 0.0), [BODY], [], [force]) == pytest.approx(1 / rate, rel=1e-14)
+
+
+def test_two_bodies_of_a_spring_count_together_and_a_faster_start_more():
+    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
+    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)
+    assert time_scale(0.75, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / 4, rel=1e-14)  # 1 + 1 per kilogram
+    turning = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), (0.0, 0.0, -5.0))]
+    assert time_scale(0.75, (0.0, 0.0), turning, [], [spring]) == pytest.approx(1 / 5, rel=1e-14)
+    moving = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), (-3.0, 4.0, 0.0))]
+    assert time_scale(0.5, (0.0, 0.0), moving, [], [spring]) == pytest.approx(1 / 10, rel=1e-14)
+
+
+def test_a_rod_is_as_long_as_the_mechanism_even_between_centres_of_mass():
+    pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0))]
+    rod = Rod("r", "b", "c", (0.0, 0.0), (0.0, 0.0), 3.0)
+    assert length_scale(pair, [rod]) == 3.0
+    assert length_scale(pair, [rod], [Spring("s", None, "b", (0.0, 0.0), (3.0, 4.0), 1.0)]) == 5.0
+    assert length_scale(pair, [], [Spring("s", "b", "c", (0.0, 0.0), (0.0, 0.0), 1.0, 0.2)]) == 0.2
+    assert length_scale(pair, []) == 1.0

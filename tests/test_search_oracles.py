@@ -163,15 +163,21 @@ class InItsUnits(Lagrange):
         return super().build(replace(mechanism, bodies=bodies), dt)
 
 
-@pytest.mark.parametrize(("name", "wrong"), [("in other masses", {"mass": 0.01}), ("in other lengths", {"arm": 0.01})])
-def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: dict[str, float]) -> None:
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("in other masses", InItsUnits("rk4", "projection", mass=0.01)),
+        ("in other lengths", InItsUnits("rk4", "projection", arm=0.01)),
+    ],
+)
+def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: Lagrange) -> None:
     def found(engine: Any) -> set[str]:
         subject, number = Adapted(engine), NAMES.index(name)
         cases = [subject.draw(SEED, case, ("pin",), 0) for case in range(8)]
         return {fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults}
 
     assert found(Lagrange("rk4", "projection")) == set()
-    assert found(InItsUnits("rk4", "projection", **wrong)) == {name}
+    assert found(wrong) == {name}
 
 
 @dataclass(frozen=True)

@@ -147,12 +147,6 @@ def test_wrong_sleighs_are_caught(wrong):
     assert np.abs(end - sleigh.skate_pose(3.0)[0]).max() > 0.1
 
 
-def test_zeroing_the_lateral_velocity_of_the_centre_of_mass_is_another_motion():
-    """The common trick has no slip at the wrong point: slip alone proves nothing."""
-    sleigh = ChaplyginSleigh()
-    assert np.abs(ChaplyginSleigh(offset=0.0).skate_pose(3.0) - sleigh.skate_pose(3.0)).max() > 0.1
-
-
 def test_bad_sleighs_are_refused_and_a_point_mass_goes_straight():
     with pytest.raises(InvalidMechanism, match="nothing resists turning"):
         ChaplyginSleigh(inertia=0.0, offset=0.0)

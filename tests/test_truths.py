@@ -39,11 +39,14 @@ def test_what_is_kept_is_the_motion_to_the_last_bit_and_is_not_worked_out_again(
         kept_motion(SCENE, T, "other", tmp_path)
 
 
-@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"no archive at all", None])
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"no archive at all", None, "packed otherwise"])
 def test_a_damaged_file_is_made_anew(tmp_path, content):
     right = kept_motion(SCENE, T, "name", tmp_path)
     (file,) = tmp_path.iterdir()
     whole = file.read_bytes()
+    if content == "packed otherwise":  # the compression's number of the first part, in the list of all parts at the end
+        place = whole.index(b"PK\x01\x02") + 10
+        content = whole[:place] + b"\x63" + whole[place + 1 :]
     file.write_bytes(whole[: len(whole) // 2] if content is None else content)
     np.testing.assert_array_equal(kept_motion(SCENE, T, "name", tmp_path).pose, right.pose)
     assert file.read_bytes() == whole

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -160,6 +161,24 @@ def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monk
     assert first.is_relative_to(here / "cache")
     assert first.name == "site-packages"  # so that rows depend on its version, and not on its files
     assert [path.name for path in first.parents[1].iterdir()] == ["mujoco-3.6.0"]
+
+
+def test_of_versions_those_used_last_are_kept_and_one_that_can_not_be_had_leaves_no_folder(here, monkeypatch):
+    monkeypatch.setattr(subprocess, "run", Pip({"pymunk==9.9": none_of("pymunk==9.9", "none")}))
+    monkeypatch.setattr(installation, "MOST", 3)
+    folders = []
+    for minor in range(5):
+        folders.append(installed(("pymunk",), f"7.{minor}").parent)
+        os.utime(folders[-1], (minor, minor))
+        installed(("pymunk",), "7.0")
+    with pytest.raises(BadInput):
+        installed(("pymunk",), "9.9")
+    wheel = here / "broken.whl"
+    wheel.write_bytes(b"no wheel")
+    monkeypatch.setattr(subprocess, "run", Pip({str(wheel): "ERROR: no wheel\n"}))
+    with pytest.raises(BadInput, match="no wheel"):
+        built(wheel)
+    assert set(folders[0].parent.iterdir()) == {folders[0], *folders[-2:]}
 
 
 @pytest.mark.parametrize(

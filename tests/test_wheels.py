@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from reference.joints import Pin, Skate
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
 from reference.wheels.car_and_trailer import CarAndTrailer
@@ -137,8 +138,6 @@ def test_no_axle_of_a_train_skids_whatever_is_steered():
     along = np.cos(heading) * velocity[..., 0] + np.sin(heading) * velocity[..., 1]
     assert np.abs(across).max() < 1e-8  # order 6 of rates about 2/s, and 1e-12/h
     assert np.abs(along - middle.speed).max() < 1e-8
-    wrong = along - middle.speed * (1 + 1e-3)
-    assert np.abs(wrong).max() > 1e-4
 
 
 def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
@@ -293,14 +292,47 @@ def test_a_wrong_car_is_caught(wrong):
     assert np.abs(wrong(car).motion([5.0]).pose - car.motion([5.0]).pose).max() > 1e-5
 
 
-def test_a_cart_that_forgets_the_rates_of_its_allowed_motions_is_caught():
-    class Forgetful(Cart):
-        def allowed(self, coordinates):
-            kept = super().allowed(np.real(coordinates))
-            return kept + 0j if np.iscomplexobj(coordinates) else kept
+def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
+    """Written down by hand, in metres from each body's centre of mass: the truth takes its places from `Casters`."""
+    cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()
+    points = {joint.name: joint.second_point for joint in cart.joints if isinstance(joint, Skate)}
+    assert points["left wheel"] == pytest.approx((-0.3, 0.25))
+    assert points["right wheel"] == pytest.approx((-0.3, -0.25))
+    for side, sign in (("left", 1), ("right", -1)):
+        kingpin = next(joint for joint in cart.joints if joint.name == f"{side} caster's kingpin")
+        assert isinstance(kingpin, Pin)
+        assert (kingpin.first, kingpin.second) == ("cart", f"{side} caster")
+        assert kingpin.first_point == pytest.approx((0.5, sign * 0.25))
+        assert kingpin.second_point == pytest.approx((0.04, 0.0))
+        assert points[f"{side} caster's wheel"] == pytest.approx((0.04 - 0.12, 0.0))
 
-    gone = Forgetful(**{name: getattr(Cart(), name) for name in ("angles", "speed")}).motion([3.0]).pose
-    assert np.abs(gone - Cart().motion([3.0]).pose).max() > 1e-3
+
+@pytest.mark.parametrize(("bends", "which"), [((0.1, -2.0), 2), ((2.0, 0.1), 1), ((0.1, 0.2), None)])
+@pytest.mark.parametrize("times", [[0.0], [0.0, 1e-3]])
+def test_a_trailer_that_is_folded_at_the_start_is_told_by_its_number(bends, which, times):
+    found = CarWithTrailers(1.0, (0.9, 1.1), (0.2, 0.0)).drive(1.0, 0.0, (0.0, 0.0, 0.0), bends, times)
+    assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
+
+
+def test_the_second_trailer_that_folds_to_the_right_is_told_by_its_number():
+    car = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
+    found = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, -0.3), [4.0], limit=1.0)
+    assert found.jackknifed == 2
+    # Straight behind the car, the first trailer's axle pushes the second as a tow.
+    at = present(found.jackknifed_at)
+    assert Tow(1.1, 0.3).relative_angle(-at) == pytest.approx(1.0, abs=1e-11)
+
+
+def test_a_joint_that_passes_the_limit_for_a_moment_is_dated():
+    car = CarWithTrailers(1.0, (1.0,), (0.0,))
+
+    def drive(limit):
+        return car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), [6.0], limit)
+
+    t = np.linspace(0, 6, 6001)
+    largest = np.abs(car.drive(1.0, lambda t: 0.9 * np.sin(3 * t), (0.0, 0.0, 0.0), (0.0,), t).bends).max()
+    assert drive(largest + 1e-5).jackknifed_at is None
+    assert drive(largest - 1e-9).jackknifed == 1
 
 
 def test_bad_vehicles_are_refused():
@@ -329,3 +361,19 @@ def test_a_vehicle_at_rest_stays():
         motion = scene.motion([0.0, 3.0])
         assert np.abs(np.diff(motion.pose, axis=0)).max() == 0
         assert np.abs(motion.reaction).max() == 0
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("angle", [0.4, -math.pi / 2, 2.9])
+def test_a_tow_on_a_circle_of_nearly_its_own_radius_is_the_integral_of_its_law(off, side, angle):
+    tow = Tow(0.8, angle, side * 0.8 * (1 + off))
+    way = np.array([0.0, 0.1, 1.0, 5.0, 20.0])
+
+    def law(s, state):
+        return [-math.sin(state[0]) / 0.8 - tow.curvature, math.cos(state[0])]
+
+    for sign in (1, -1):
+        exact = solve_ivp(law, (0, sign * 20.0), [angle, 0.0], t_eval=sign * way, **TIGHT).y
+        assert np.abs(tow.relative_angle(sign * way) - exact[0]).max() < 1e-10
+        assert np.abs(tow.wheel_advance(sign * way) - exact[1]).max() < 1e-10

@@ -205,6 +205,7 @@ def written_into(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
     def call(samples: int, every: int) -> Trajectory:
         given = run(samples, every)
+        mechanism.twist.flags.writeable = True  # against numpy's own refusal
         mechanism.twist[:] = given.twist[-1]
         return given
 

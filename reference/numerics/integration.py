@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import DOP853
 
+from reference.validation import InvalidMechanism
+
 Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 
@@ -28,8 +30,17 @@ MOST_STEPS = 20_000  # a motion that needs more is creeping up to a singularity
 FIRST_STEP = 1e-3
 
 
-class IntegrationFailed(ArithmeticError):
+# After so many steps, a motion that would take too many even if all others were so much longer is given up.
+ENOUGH, LENGTHENED = 200, 100.0
+
+
+class IntegrationFailed(ArithmeticError, InvalidMechanism):
     """The motion could not be carried on: it meets a singularity, or the numbers overflow."""
+
+
+def hopeless(now: float, until: float, longest: float, taken: int, most: int) -> bool:
+    """Whether a motion can't come from `now` to `until` [s] in `most` steps, `longest` [s] of those `taken`."""
+    return taken > ENOUGH and until - now > LENGTHENED * longest * (most - taken)
 
 
 @dataclass(frozen=True)
@@ -68,9 +79,11 @@ def integrate(
     first = min(until, FIRST_STEP / pace) if math.isfinite(pace) and pace > 0 else until
     passed: Any = tolerance * units  # scipy's types have a number only
     solver = DOP853(lambda _, y: rates(y), 0.0, state, until, first_step=first, rtol=tolerance, atol=passed)
-    times, states = [0.0], [state]
+    times, states, longest = [0.0], [state], 0.0
     while solver.status == "running":
-        message = solver.step() if len(times) < MOST_STEPS else f"it takes more than {MOST_STEPS} steps"
+        longest = max(longest, times[-1] - times[-2]) if len(times) > 1 else 0.0
+        many = hopeless(times[-1], until, longest, len(times), MOST_STEPS)
+        message = f"it takes more than {MOST_STEPS} steps" if many else solver.step()
         if message or not np.all(np.isfinite(solver.y)):
             raise IntegrationFailed(f"the motion stops at t = {solver.t:.6g} s: {message or 'a number is not finite'}")
         times.append(float(solver.t))

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.numerics import integration
 from reference.numerics.collocation import Extended, Rule, legendre, rule_of
-from reference.numerics.integration import COARSER, IntegrationFailed, Rates
+from reference.numerics.integration import COARSER, IntegrationFailed, Rates, hopeless
 
 Array = NDArray[np.float64]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
@@ -105,10 +105,10 @@ def integrate(
     pace = max(float(np.abs(speed).max()), math.sqrt(float(np.abs(start).max())))  # rad/s
     now, length = 0.0, min(until, FIRST_WINDOW / pace) if pace > 0 else until
     times, states, slopes = [now], [np.concatenate([place, speed])], []
-    guess, tries = np.broadcast_to(start, (stages, len(place))), 0
+    guess, tries, longest = np.broadcast_to(start, (stages, len(place))), 0, 0.0
     while now < until:
         tries += 1
-        if tries > most or not now + length > now:
+        if tries > most or not now + length > now or hopeless(now, until, longest, tries, most):
             raise IntegrationFailed(f"the motion stops at t = {now:.6g} s: its steps become too small or too many")
         length = min(length, until - now)
         then = until if length == until - now else now + length
@@ -128,6 +128,7 @@ def integrate(
             lost[part] = step + lost[part] - (new - old)
             moved.append(new)
         place, speed = moved
+        longest = max(longest, then - now)
         now = then
         times.append(now)
         states.append(np.concatenate(moved))

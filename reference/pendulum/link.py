@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.memory import LARGEST, require_room
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene
@@ -122,8 +123,9 @@ class Pendulum(Valid):
         if math.isfinite(self.period):
             cycle = speed * self.period
             bases = [first] if self.excess > 0 else [first, cycle / 2 - first]
-            count = math.ceil(until / self.period) + 2
-            arguments = np.array([base + cycle * j for base in bases for j in range(-2, count)])
+            turns = until / self.period + 4
+            require_room("Pendulum.passages: the times", (len(bases), math.ceil(min(turns, LARGEST))))
+            arguments = np.add.outer(bases, cycle * np.arange(-2, math.ceil(turns) - 2)).ravel()
         times = np.sort((arguments - start) / speed)
         return times[(times >= 0) & (times <= until)]
 

@@ -99,8 +99,8 @@ class RollingBody(Valid):
 
     @kept
     def _units(self) -> Array:
-        """Next to a balance, a start that hardly moves is known no better than its angle's rounding lets it fall."""
-        unknown = np.finfo(float).eps * max(0.0, self._leaving) / windows.TOLERANCE
+        """Next to a rest, a start that hardly moves is known no better than the rounding of its angle lets it go."""
+        unknown = np.finfo(float).eps * self._pace_of_rest / windows.TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
 
     @cached_property
@@ -176,7 +176,7 @@ class RollingBody(Valid):
             found = first_below(spare, np.unique(np.clip(motion.times, seen, reach)))
             if found is not None:
                 return found[0]
-            angle, rate = motion(motion.times).T
+            angle, rate = motion(np.append(motion.times[motion.times < reach], reach)).T  # it may be known further
             turned_back = int(np.count_nonzero(rate[1:] * rate[:-1] < 0)) + (rate[0] == 0)
             if reach >= until or turned_back > 1 or (self._level and np.ptp(angle) >= 2 * math.pi):
                 return None
@@ -184,24 +184,24 @@ class RollingBody(Valid):
 
     @property
     def _level(self) -> bool:
-        ground = self.rolling.ground
-        along = np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent
-        return ground.curvature_range == (0.0, 0.0) and along == 0
+        """Whether the ground is straight and, to rounding, across gravity."""
+        along = abs(float(np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent))
+        flat = self.rolling.ground.curvature_range == (0.0, 0.0)
+        return flat and along <= 4 * np.finfo(float).eps * math.hypot(*self.gravity)
 
     @property
     def _short(self) -> float:
-        """A time in which the start changes little [s]: of its rate, its acceleration, and a fall from a balance."""
+        """A time in which the start changes little [s]: of its rate, its acceleration, and the pace of a rest."""
         theta, rate = self.start
         pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
-        return 1 / (max(abs(rate), pull, abs(self._leaving)) or 1.0)
+        return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)
 
     @property
-    def _leaving(self) -> float:
-        """The rate [1/s] at which a body at rest at the start leaves a balance there; negative: at which it swings."""
+    def _pace_of_rest(self) -> float:
+        """The rate [1/s] at which a body at rest at the start would leave a balance there, or swing about it."""
         theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
-        stiffness = float(self.stiffness(theta))
-        return -math.copysign(math.sqrt(abs(stiffness) / mass), stiffness)
+        return math.sqrt(abs(float(self.stiffness(theta))) / mass)
 
     @validated
     def equilibrium(self, near: float, within: Positive = 0.5) -> float:

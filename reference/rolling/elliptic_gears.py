@@ -13,7 +13,7 @@ from reference.body import Triple
 from reference.curves.curve import Array
 from reference.curves.ellipse import Ellipse
 from reference.joints import Drive, Pin
-from reference.kinds import from_to
+from reference.kinds import from_to, of_shape
 from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.kinematics import Rolling
@@ -84,7 +84,7 @@ class EllipticGears(Scene):
         return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
 
     @validated
-    def kinematics(self, t: Array) -> tuple[Array, Array, Array]:
+    def kinematics(self, t: Annotated[Array, of_shape("times")]) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, 2, 3)."""
         first = self.start_angle + self.turning_rate * t
         rate, angular_acceleration = self.second_rate(first)

@@ -10,17 +10,20 @@ adding them until nothing new appears gives the configurations that can be reach
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
+from reference.kinds import of_shape
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
 from reference.validation import InvalidMechanism, validated
 
 Array = NDArray[np.float64]
+Place = Annotated[Array, of_shape("coordinates")]
+Pose = Annotated[Array, of_shape("bodies", 3)]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
 COMPLEX_STEP = 1e-100
@@ -35,7 +38,7 @@ PLACES = 4
 
 
 @validated
-def null_space(rows: Array) -> Array:
+def null_space(rows: Annotated[Array, of_shape("rows", "coordinates")]) -> Array:
     """An orthonormal basis (coordinates, freedoms) of the motions that rows (rows, coordinates) allow."""
     _, singular, right = np.linalg.svd(np.atleast_2d(rows))
     rank = int(np.sum(singular > RANK_TOLERANCE * max(float(singular[0]) if singular.size else 0.0, 1.0)))
@@ -43,7 +46,7 @@ def null_space(rows: Array) -> Array:
 
 
 @validated
-def exterior_derivatives(rows: Rows, place: Array) -> Array:
+def exterior_derivatives(rows: Rows, place: Place) -> Array:
     """dw_i (rows, coordinates, coordinates) of the one-forms w_i at a place: d_j w_ik - d_k w_ij, by complex step."""
     shifted = place + 1j * COMPLEX_STEP * np.eye(len(place))
     slope = np.stack(
@@ -53,14 +56,14 @@ def exterior_derivatives(rows: Rows, place: Array) -> Array:
 
 
 @validated
-def obstruction(rows: Rows, place: Array) -> Array:
+def obstruction(rows: Rows, place: Place) -> Array:
     """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions: zero everywhere iff integrable."""
     basis = null_space(rows(place))
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
 
 @validated
-def curl_along(form: Rows, place: Array) -> float:
+def curl_along(form: Rows, place: Place) -> float:
     """w . curl w of a one-form in three coordinates: Frobenius' test for one row; -1 everywhere for a skate (18.64)."""
     if len(place) != 3:
         raise InvalidMechanism(f"w . curl w needs three coordinates, not {len(place)}; use obstruction instead")
@@ -69,13 +72,13 @@ def curl_along(form: Rows, place: Array) -> float:
     return float(form(place)[0] @ curl)
 
 
-def _around(place: Array) -> list[Array]:
+def _around(place: Place) -> list[Array]:
     angles = np.outer(np.arange(1, PLACES), np.arange(1, len(place) + 1)) * np.sqrt(2.0) + np.arange(1, PLACES)[:, None]
     return [place, *(place + SPREAD * np.sin(angles))]
 
 
 @validated
-def is_integrable(rows: Rows, place: Array) -> bool:
+def is_integrable(rows: Rows, place: Place) -> bool:
     """Whether the obstruction vanishes at a place and around it. Raises InvalidMechanism where the rank changes."""
     places = _around(place)
     ranks = {null_space(rows(each)).shape[1] for each in places}
@@ -97,7 +100,7 @@ def _bracket(one: Rows, two: Rows) -> Rows:
     return lambda place: _along(two, place, one(place)) - _along(one, place, two(place))
 
 
-def _fields(rows: Rows, place: Array) -> list[Rows]:
+def _fields(rows: Rows, place: Place) -> list[Rows]:
     """Analytic fields that span the allowed motions near the place: its null space, projected along the motion."""
     here = rows(place)
     _, upper, pivot = qr(here.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
@@ -118,7 +121,7 @@ def _fields(rows: Rows, place: Array) -> list[Rows]:
 
 
 @validated
-def growth(rows: Rows, place: Array) -> tuple[int, ...]:
+def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]], ... at a place, until nothing is added.
 
     The first is the number of velocity freedoms, the last that of configuration freedoms: (1,) for a pinned body,
@@ -173,7 +176,7 @@ def mechanism_rows(mechanism: Mechanism) -> Rows:
 
 
 @validated
-def mechanism_place(mechanism: Mechanism, pose: Array | None = None) -> Array:
+def mechanism_place(mechanism: Mechanism, pose: Pose | None = None) -> Array:
     """The coordinates of `mechanism_rows` for a pose (bodies, 3), the start unless given."""
     scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
     pose = mechanism.pose if pose is None else pose
@@ -181,13 +184,13 @@ def mechanism_place(mechanism: Mechanism, pose: Array | None = None) -> Array:
 
 
 @validated
-def mechanism_is_integrable(mechanism: Mechanism, pose: Array | None = None) -> bool:
+def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> bool:
     """Whether all rows together are derivatives of positions (and time), near a pose, the start unless given."""
     return is_integrable(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
 
 
 @validated
-def freedoms_by_brackets(mechanism: Mechanism, pose: Array | None = None) -> tuple[int, ...]:
+def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
     """The growth of a mechanism's freedoms, time left out: first of velocity, last of configuration.
 
     Nothing here reads a joint's own `holonomic`, so it checks `Mechanism.degrees_of_freedom`. With one freedom of

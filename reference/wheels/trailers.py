@@ -12,12 +12,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.body import Triple
+from reference.kinds import of_shape
+from reference.numerics.events import first_below
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.skate.path import SkatePath
 from reference.validation import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
@@ -101,8 +103,11 @@ class CarWithTrailers(Valid):
             )
 
     @validated
-    def axle_rates(self, headings: Complexes, speed: Complexes, turning_rate: Complexes) -> tuple[Any, Any]:
+    def axle_rates(
+        self, headings: Annotated[Complexes, of_shape("...", "vehicles")], speed: Complexes, turning_rate: Complexes
+    ) -> tuple[Any, Any]:
         """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from the car's."""
+        headings = np.asarray(headings)
         speeds, rates = [speed], [turning_rate]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):
             bend = headings[..., index] - headings[..., index + 1]
@@ -117,7 +122,9 @@ class CarWithTrailers(Valid):
         return speed * np.tan(steering) / self.wheelbase
 
     @validated
-    def bend_rates(self, bends: ArrayLike, speed: float, steering: float) -> Array:
+    def bend_rates(
+        self, bends: Annotated[ArrayLike, of_shape("...", "trailers")], speed: float, steering: float
+    ) -> Array:
         """Rates of the joint angles theta_trailer - theta_before (..., trailers) [rad/s]; speed < 0 reverses."""
         bends = np.asarray(bends, dtype=float)
         headings = np.concatenate([np.zeros((*bends.shape[:-1], 1)), np.cumsum(bends, axis=-1)], axis=-1)
@@ -188,24 +195,20 @@ class CarWithTrailers(Valid):
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first instant that a joint passes the limit, found between the integration's own steps by halving."""
-        if motion is None:
-            bent = np.abs(np.diff(first[3:])) - limit
-            return (0.0, int(np.argmax(bent)) + 1) if bent.size and bent.max() > 0 else (None, None)
-        knots = np.interp(np.arange(8 * len(motion.times) - 7) / 8, np.arange(len(motion.times)), motion.times)
-        states = motion(knots)
-        bent = np.abs(np.diff(states[:, 3:], axis=1)) - limit
-        over = np.flatnonzero((bent > 0).any(axis=1)) if bent.shape[1] else np.zeros(0, dtype=int)
-        if not over.size:
-            return None, None
-        late = int(over[0])
-        if late == 0:
-            return 0.0, int(np.argmax(bent[0])) + 1
-        before, after = knots[late - 1], knots[late]
-        while True:
-            middle = 0.5 * (before + after)
-            if middle in (before, after):
-                break
-            passed = np.abs(np.diff(motion(middle)[0, 3:])).max() > limit
-            before, after = (before, middle) if passed else (middle, after)
-        return float(after), int(np.argmax(np.abs(np.diff(motion(after)[0, 3:])))) + 1
+        """The first instant that a joint passes the limit, and which trailer's, counted from 1."""
+
+        def spare(states: Array) -> Array:
+            bends = np.diff(states[..., 3:], axis=-1)
+            return np.concatenate([limit - bends, limit + bends], axis=-1)
+
+        count = len(self.lengths)
+        if motion is None or not count:
+            folded = np.flatnonzero(spare(first) < 0)
+            return (0.0, int(folded[0]) % count + 1) if folded.size else (None, None)
+
+        def values(t: Array) -> tuple[Array, Array]:
+            states = motion(t)
+            return spare(states).T, limit + np.abs(states[:, 3:]).max(axis=-1)
+
+        when, which = first_below(values, motion.times) or (None, None)
+        return when, None if which is None else which % count + 1

@@ -40,7 +40,7 @@ def animate(
     from reports.cli.selection import choose_scenes
     from reports.grid.files import folder_for
 
-    known, names, _ = with_words(registered(), [scene], None, settings or ())
+    known, names, _ = with_words(registered(), [scene], None, settings or (), motion=True)
     chosen = choose_scenes(names, known.scenes, known.pages)
     if len(chosen) != 1:
         told = ", ".join(one.name for one in chosen)

@@ -29,7 +29,7 @@ LIMIT = 600.0  # CPU seconds of one page
 def known_to(store: Store, publish: bool) -> Known:
     """What a report tells of: published is what is registered; a report of one's own shows what else was run."""
     own = registered()
-    return own if publish else with_remembered(own, store.remembered())
+    return own if publish else with_remembered(own, store.remembered(), motion=True)
 
 
 def material_of(page: Page, store: Store) -> Material:

@@ -98,7 +98,7 @@ def _scene(word: str) -> Scene:
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
 
-    known, names, _ = with_words(registered(), [word], None, ())
+    known, names, _ = with_words(registered(), [word], None, (), motion=True)
     found = choose_scenes(names, known.scenes, known.pages)
     if len(found) != 1:
         raise BadInput(f"{word} is {len(found)} scenes: {', '.join(each.name for each in found)}; name one")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -56,13 +57,12 @@ class Known:
 
     def with_(self, given: Given) -> tuple[Known, tuple[Any, ...]]:
         """(this and what is given, the scenes or engines that it stands for). Raises ValueError, a sentence."""
+        found = values_of(given)
         if given.kind == "engine":
-            found = registry.load(given.word, Path(given.folder))
             new = _new(found, self.engines, registry.method, given)
             pages = catalogue.with_engines(self.pages, new)
             out = replace(self, engines=(*self.engines, *new), pages=pages)
         else:
-            found = told_apart(tuple(with_settings(each, dict(given.settings)) for each in self._scenes_of(given)))
             new = _new(found, self.scenes, lambda scene: scene.name, given)
             compared = tuple(dict.fromkeys([*registry.VARIANTS, *self._given_engines()]))
             pages = catalogue.with_scenes(self.pages, new, compared)
@@ -73,13 +73,18 @@ class Known:
         registered = set(known_engines(catalogue.PAGES))
         return tuple(engine for engine in self.engines if engine not in registered)
 
-    def _scenes_of(self, given: Given) -> tuple[Scene, ...]:
-        if is_reference(given.word):
-            return load(given.word, catalogue.SCENE, Path(given.folder))
-        by_name = {scene.name: scene for scene in catalogue.SCENES}
-        if given.word not in by_name:
-            raise ValueError(f"no scene is called {given.word!r}")
-        return (by_name[given.word],)
+
+def values_of(given: Given) -> tuple[Any, ...]:
+    """The scenes or engines that are given. Raises ValueError, a sentence."""
+    if given.kind == "engine":
+        return registry.load(given.word, Path(given.folder))
+    if is_reference(given.word):
+        scenes = load(given.word, catalogue.SCENE, Path(given.folder))
+    else:
+        scenes = tuple(scene for scene in catalogue.SCENES if scene.name == given.word)
+    if not scenes:
+        raise ValueError(f"no scene is called {given.word!r}")
+    return told_apart(tuple(with_settings(each, dict(given.settings)) for each in scenes))
 
 
 def _new(found: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], given: Given) -> tuple[Any, ...]:
@@ -102,23 +107,38 @@ def registered() -> Known:
     return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
-def with_remembered(known: Known, texts: Iterable[str]) -> Known:
-    """What a store remembers too. What can't be found any more is told on stderr, a line each, and left out."""
+def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) -> Known:
+    """What a store remembers too. What can't be found any more is told on stderr, a line each, and left out.
+
+    motion: of a command that asks scenes for their motion.
+    """
+    from reports.cli.trial import refused
+
+    given = []
     for text in texts:
+        with suppress(ValueError):  # a text of another version
+            given.append(Given.of_text(text))
+    bad = refused(given, motion)
+    for each in given:
         try:
-            known, _ = known.with_(Given.of_text(text))
+            if each in bad:
+                raise ValueError(bad[each])
+            known, _ = known.with_(each)
         except ValueError as reason:
             print(f"crosscheck: left out, since it is not as it was when it was run: {reason}", file=sys.stderr)
     return known
 
 
 def with_words(
-    known: Known, scenes: Sequence[str], engine: str | None, settings: Sequence[str] = ()
+    known: Known, scenes: Sequence[str], engine: str | None, settings: Sequence[str] = (), motion: bool = False
 ) -> tuple[Known, tuple[str, ...], tuple[Engine, ...]]:
     """(this and what the words bring, the names of the scenes meant, the engines meant if `engine` is a reference).
 
-    Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. Raises BadInput.
+    Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. motion: of a command
+    that asks scenes for their motion. Raises BadInput.
     """
+    from reports.cli.trial import refused
+
     folder = str(Path.cwd())
     values = _settings(settings)
     if values and not scenes:
@@ -126,15 +146,20 @@ def with_words(
     names: list[str] = []
     engines: tuple[Engine, ...] = ()
     try:
-        if engine is not None and is_reference(engine):
-            known, engines = known.with_(Given("engine", engine, folder))
-        for word in scenes:
-            for each in _words_of(known, word) if values else [word]:
-                if values or is_reference(each):
-                    known, found = known.with_(Given("scene", each, folder, tuple(values.items())))
-                    names += [scene.name for scene in found]
-                else:
-                    names.append(each)
+        given = [Given("engine", engine, folder)] if engine is not None and is_reference(engine) else []
+        words = [each for word in scenes for each in (_words_of(known, word) if values else [word])]
+        own = {each: Given("scene", each, folder, tuple(values.items())) for each in words}
+        own = {each: given for each, given in own.items() if values or is_reference(each)}
+        for reason in refused([*given, *own.values()], motion).values():
+            raise BadInput(reason)
+        for each in given:
+            known, engines = known.with_(each)
+        for word in words:
+            if word in own:
+                known, found = known.with_(own[word])
+                names += [scene.name for scene in found]
+            else:
+                names.append(word)
     except ValueError as reason:
         raise BadInput(str(reason)) from None
     return known, tuple(names), engines

@@ -116,7 +116,7 @@ def theory(
                 bound, parts = _without_promise(quantity, prediction, [*usable, row])
             else:
                 bound, parts = _promised(quantity, prediction, promise, softness, row, usable, as_soft)
-            told = ", no number" if math.isnan(measured) else ""
+            told = ", no number: who can't tell it promises NaN of it" if math.isnan(measured) else ""
             checks.append(Check(name, quantity, measured, bound, parts, told))
     return tuple(checks)
 

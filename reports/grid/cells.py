@@ -12,7 +12,9 @@ from engines import Engine
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.validation import Count, Valid
+from reports.grid.ending import BadInput
 from reports.grid.fingerprint import digest_of, modules_behind, modules_of
+from reports.grid.worker import describe
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
@@ -108,7 +110,13 @@ def estimated_seconds(cell: Cell) -> float:
 
 @lru_cache(maxsize=4096)
 def _step_cost(scene: Scene, engine: Engine) -> float:
-    return engine.step_cost(mechanism_of(scene))
+    try:
+        cost = float(engine.step_cost(mechanism_of(scene)))
+    except Exception as error:  # whatever somebody else's engine does
+        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name}: {describe(error)}") from error
+    if not cost >= 0:
+        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name} is {cost}; it must be a time [s]")
+    return cost
 
 
 @lru_cache(maxsize=512)

@@ -27,6 +27,8 @@ NAME = re.compile(rf"{re.escape(PREFIX)}[a-z0-9_]{{8}}{re.escape(SUFFIX)}")  # o
 TRIES = 20  # to remove a folder into which a process writes that is just being ended
 
 _own: dict[Path, int | None] = {}  # folder -> what holds its lock
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_own.clear)  # they stay those of the process that made them
 
 
 @contextmanager

@@ -8,8 +8,10 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+import struct
 import time
 import zipfile
+import zlib
 from contextlib import suppress
 from pathlib import Path
 
@@ -21,6 +23,11 @@ from reference.trajectory import Trajectory
 
 FOLDER = "truths"
 SHORT = 5e-3  # s: a motion that takes less is worked out again sooner than it is read
+# What reading a damaged file raises; RuntimeError: parts that say that they are encrypted, or packed in another way.
+DAMAGES = (
+    *(OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError),
+    *(struct.error, zlib.error, zipfile.BadZipFile),
+)
 PARTS = ("t", "pose", "twist", "reaction")
 
 
@@ -32,8 +39,7 @@ def kept_motion(scene: Scene, t: Floats, name: str, folder: Path | None) -> Traj
     if folder is None or not folder.is_dir():
         return scene.motion(t)
     file = folder / f"{hashlib.sha256(name.encode() + t.tobytes()).hexdigest()[:32]}.npz"
-    damages = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
-    with suppress(*damages), np.load(io.BytesIO(file.read_bytes())) as kept:
+    with suppress(*DAMAGES), np.load(io.BytesIO(file.read_bytes())) as kept:
         return Trajectory(*(kept[part] for part in PARTS))
     begin = time.process_time()
     found = scene.motion(t)

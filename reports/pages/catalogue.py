@@ -8,6 +8,7 @@ registered or not. Ours are in pyproject.toml, and pages are told in the order t
 from __future__ import annotations
 
 import inspect
+import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
@@ -17,6 +18,7 @@ from engines import Engine, registry
 from engines.entry_points import registered
 from engines.loading import Kind
 from reference.scene import Scene
+from reference.validation import LARGEST_COUNT
 from reports.pages.page import Page
 
 # Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
@@ -37,6 +39,12 @@ def _no_scene(value: Any) -> str:
         word = getattr(value, name, None)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
+    for name in ("duration", "horizon"):
+        number = getattr(value, name, None)
+        if not (isinstance(number, int | float) and number > 0 and (name == "horizon" or number < math.inf)):
+            return f"its {name} is {number!r}; it must be a finite time above zero [s]"
+    if not (isinstance(value.samples, int) and 0 < value.samples <= LARGEST_COUNT):
+        return f"its samples are {value.samples!r}; they must be a whole number above zero"
     return ""
 
 

@@ -31,6 +31,7 @@ VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
+MOST = 60  # versions and builds that are kept; more than any command uses in one go
 SHOWN = 6  # versions that are named when another was asked for
 # Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
@@ -52,14 +53,12 @@ def installed(names: Sequence[str], version: str) -> Path:
     places = {name: _place(f"{name}-{version}") for name in names}
     for folder in places.values():
         if folder.is_dir():
-            return folder
+            return _used(folder)
     reasons = []
     for name, folder in places.items():
         why = _install([f"{name}=={version}"], folder)
         if not why:
-            return folder
-        with suppress(OSError):  # what else is in it is another process's
-            folder.parent.rmdir()
+            return _used(folder)
         reasons.append((name, why))
     raise BadInput(_sentence(version, reasons))
 
@@ -85,12 +84,22 @@ def built(path: Path) -> Path:
         why = _install([str(path)], folder, wheels_only=path.is_file())
         if why:
             raise BadInput(f"{path} can't be installed: {why}")
-    return folder
+    return _used(folder)
 
 
 def _place(name: str) -> Path:
     python = f"{sys.implementation.cache_tag}-{sysconfig.get_platform()}"
     return cache_folder() / "versions" / python / name / PACKAGES
+
+
+def _used(folder: Path) -> Path:
+    """The folder, marked as used now; of all that were installed the MOST that were used last are kept."""
+    with suppress(OSError):
+        os.utime(folder.parent)
+        others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]
+        for old in sorted(others, key=lambda each: each.stat().st_mtime, reverse=True)[MOST:]:
+            shutil.rmtree(old, ignore_errors=True)
+    return folder
 
 
 def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str:
@@ -116,6 +125,9 @@ def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str
                     raise
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
+    finally:
+        with suppress(OSError):  # it has something in it: what was installed, or another process's part
+            folder.parent.rmdir()
     return ""
 
 
