@@ -232,7 +232,7 @@ def test_a_baseline_is_read_as_it_was_written_with_the_versions_beside_it(tmp_pa
 
 def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_line(tmp_path):
     errors = as_csv([row(), row(every=3)], timings=False)
-    files = {"errors.csv": errors, "index.md": "# Results", "disc.md": "0.5", "disc.svg": "<svg/>"}
+    files = {"errors.csv": errors, "index.md": "# Results", "disc.md": "0.5", "disc.svg": "<svg/>", "timings.csv": ""}
 
     def told(**changed: str) -> str:
         for name, text in {**files, DIGESTS: digests_csv(files), **changed}.items():
@@ -241,6 +241,7 @@ def test_a_baseline_that_was_edited_or_lies_beside_other_pages_is_told_in_one_li
 
     assert told() == ""
     assert told(**{"disc.svg": "<other/>"}) == ""
+    assert told(**{"timings.csv": "# another day"}) == ""
     fewer = as_csv([row()], timings=False)
     for changed in ({"errors.csv": fewer}, {"disc.md": "0.4"}):
         line = told(**changed)

@@ -38,7 +38,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("pendulum_1", "lagrange euler projection", "error"): Deviation(EULER, 1.3),
     ("pendulum_1", "lagrange euler projection", "rate"): Deviation(EULER, 1.3),
     ("pendulum_1", "lagrange euler projection", "reaction"): Deviation(EULER, 1.4),
-    ("pendulum_100", "pymunk extended", "rate"): Deviation(ADDED, 1.1),
     ("pendulum_100", "pymunk extended", "reaction"): Deviation(ADDED, 2.3),
     ("pendulum_100", "mujoco default", "energy"): Deviation(EULER, 1.2),
     ("pendulum_100", "lagrange euler projection", "energy"): Deviation(EULER, 1.7),
