@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 import tempfile
@@ -30,11 +31,21 @@ def _is_found(module: str) -> bool:
     return find_spec(module) is not None
 
 
+@cache
+def _is_loaded(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
 class Optional(Valid):
     """The base of an engine whose package is an extra of this project: a value even where the package is missing.
 
     `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
-    belong to; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
+    belong to; `library`: a shared library of Linux that their wheel needs and has not, with the package of Debian that
+    has it; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
     takes to build [s], where that is no matter of milliseconds; `forces_by`: who works out what springs, dampers and
     the like do. A package is imported when the first mechanism is built, because some take seconds.
     """
@@ -42,6 +53,7 @@ class Optional(Valid):
     extra: ClassVar[str]
     modules: ClassVar[tuple[str, ...]]
     distributions: ClassVar[tuple[str, ...]]
+    library: ClassVar[tuple[str, str] | None] = None
     apart: ClassVar[str] = ""
     building: ClassVar[float] = 0.0
     forces_by: ClassVar[Holder] = "engine"
@@ -60,10 +72,15 @@ class Optional(Valid):
 
     @property
     def missing(self) -> str:
-        """One sentence that says which extra installs it; empty where it is installed."""
+        """One sentence that says how to install it; empty where it is installed."""
         absent = [module for module in self.modules if not _is_found(module)]
         if not absent:
-            return ""
+            if sys.platform != "linux" or self.library is None or _is_loaded(self.library[0]):
+                return ""
+            name, package = self.library
+            return (
+                f"{self.extra} needs the shared library {name}, which is not on this system: apt-get install {package}"
+            )
         then = f", then {self.apart}" if self.apart else ""
         return f"{self.extra} needs the package {absent[0]}: pip install -e '.[{self.extra}]'{then}"
 

@@ -34,6 +34,7 @@ class Exudyn(Optional):
     extra: ClassVar[str] = "exudyn"
     modules: ClassVar[tuple[str, ...]] = ("exudyn",)
     distributions: ClassVar[tuple[str, ...]] = ("exudyn",)
+    library: ClassVar[tuple[str, str] | None] = ("libGL.so.1", "libgl1")  # its window's, which is never opened here
 
     variant: Name
     integrator: Integrator = "GeneralizedAlpha"
