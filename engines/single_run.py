@@ -32,7 +32,7 @@ def _is_found(module: str) -> bool:
 
 
 @cache
-def _opens(library: str) -> bool:
+def _is_loaded(library: str) -> bool:
     try:
         ctypes.CDLL(library)
     except OSError:
@@ -44,16 +44,16 @@ class Optional(Valid):
     """The base of an engine whose package is an extra of this project: a value even where the package is missing.
 
     `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
-    belong to; `libraries`: those of the system that its wheel asks for on Linux; `apart`: what has to be installed
-    besides, since pip can't in one go; `building`: about how long a model takes to build [s], where that is no matter
-    of milliseconds; `forces_by`: who works out what springs, dampers and the like do. A package is imported when the
-    first mechanism is built, because some take seconds.
+    belong to; `library`: a shared library of Linux that their wheel needs and has not, with the package of Debian that
+    has it; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
+    takes to build [s], where that is no matter of milliseconds; `forces_by`: who works out what springs, dampers and
+    the like do. A package is imported when the first mechanism is built, because some take seconds.
     """
 
     extra: ClassVar[str]
     modules: ClassVar[tuple[str, ...]]
     distributions: ClassVar[tuple[str, ...]]
-    libraries: ClassVar[tuple[str, ...]] = ()
+    library: ClassVar[tuple[str, str] | None] = None
     apart: ClassVar[str] = ""
     building: ClassVar[float] = 0.0
     forces_by: ClassVar[Holder] = "engine"
@@ -72,11 +72,15 @@ class Optional(Valid):
 
     @property
     def missing(self) -> str:
-        """One sentence that says which extra or library it lacks; empty where it can be imported."""
+        """One sentence that says how to install it; empty where it is installed."""
         absent = [module for module in self.modules if not _is_found(module)]
         if not absent:
-            shut = [name for name in self.libraries if sys.platform == "linux" and not _opens(name)]
-            return f"{self.extra} needs {shut[0]}, a library of the system that can't be loaded" if shut else ""
+            if sys.platform != "linux" or self.library is None or _is_loaded(self.library[0]):
+                return ""
+            name, package = self.library
+            return (
+                f"{self.extra} needs the shared library {name}, which is not on this system: apt-get install {package}"
+            )
         then = f", then {self.apart}" if self.apart else ""
         return f"{self.extra} needs the package {absent[0]}: pip install -e '.[{self.extra}]'{then}"
 

@@ -7,6 +7,7 @@ seconds to compile, so its tests are slow ones, in tests/test_mjx.py.
 from __future__ import annotations
 
 import os
+import sys
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -257,12 +258,17 @@ def test_an_engine_whose_package_is_missing_names_the_extra(monkeypatch):
             inner.build(pins, 1e-2)
 
 
-def test_an_engine_whose_system_library_is_missing_names_it(monkeypatch):
+@pytest.mark.skipif(sys.platform != "linux", reason="the library is one of Linux")
+def test_an_engine_whose_shared_library_is_missing_names_it(monkeypatch):
+    """As on a small Debian, where Exudyn is installed and can't be imported."""
+    monkeypatch.setattr(single_run, "_is_loaded", lambda library: False)
+    engine = shipped("box2d")  # which needs none
+    assert not registry.missing(engine)
     monkeypatch.setattr(single_run, "_is_found", lambda module: True)
-    monkeypatch.setattr(single_run, "_opens", lambda library: False)
-    monkeypatch.setattr(single_run.sys, "platform", "linux")
-    lacking = {engine.name: registry.missing(engine) for engine in registry.OTHERS if registry.missing(engine)}
-    assert lacking == {"exudyn": "exudyn needs libGL.so.1, a library of the system that can't be loaded"}
+    lacking = next(each for each in registry.OTHERS if each.name == "exudyn")
+    assert registry.missing(lacking).startswith("exudyn needs the shared library libGL.so.1")
+    with pytest.raises(Unsupported, match=r"apt-get install libgl1"):
+        lacking.build(BY_NAME["pendulum_1"].mechanism(), 1e-2)
 
 
 def test_a_missing_engine_is_refused_by_name_in_one_line(monkeypatch):

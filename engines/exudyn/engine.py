@@ -34,7 +34,7 @@ class Exudyn(Optional):
     extra: ClassVar[str] = "exudyn"
     modules: ClassVar[tuple[str, ...]] = ("exudyn",)
     distributions: ClassVar[tuple[str, ...]] = ("exudyn",)
-    libraries: ClassVar[tuple[str, ...]] = ("libGL.so.1",)  # for its viewer; a machine without a screen may have none
+    library: ClassVar[tuple[str, str] | None] = ("libGL.so.1", "libgl1")  # its window's, which is never opened here
 
     variant: Name
     integrator: Integrator = "GeneralizedAlpha"

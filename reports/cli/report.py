@@ -83,12 +83,13 @@ def report(
         words = () if publish else store.remembered()
     made = made_of(material, words, command, published(), results / KEPT) if many else {}
     files = render_all(material, command, searched, made)
+    timings = published() / "timings.csv"
+    if publish and timings.is_file() and "timings.csv" in files:
+        old = timings.read_text(encoding="utf-8")
+        files["timings.csv"] = old if same_but_for_the_date(old, files["timings.csv"]) else files["timings.csv"]
     files[DIGESTS] = digests_csv(files)
     texts = {folder / name: text for name, text in files.items()}
     if publish:
-        timings = folder / "timings.csv"
-        if timings.is_file() and same_but_for_the_date(timings.read_text(encoding="utf-8"), texts[timings]):
-            del texts[timings]
         readme = CHECKOUT / "README.md"
         texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
     write_files(texts, f"{len(files)} files written. Read this first: {folder / 'index.md'}")
