@@ -23,7 +23,6 @@ import engines
 import reference
 from engines import registry
 from engines.pymunk.contraction import Sweeping
-from engines.pymunk.reflection import Reflected
 from reference.kinds import NOT_FINITE as MAY_BE_INFINITE
 from reference.kinds import Floats
 from reference.rolling.scenes import RollingDisc
@@ -206,9 +205,8 @@ def _object_of(owner: type) -> Any:
     for each in (*INSTANCES, RUN):
         if isinstance(each, owner):
             return each
-    for engine in (*registry.ENGINES, Reflected("mine")):
-        mechanism = RollingDisc().mechanism() if isinstance(engine, Reflected) else four_bar()
-        run = engine.build(mechanism, 1e-3)
+    for engine in registry.ENGINES:
+        run = engine.build(four_bar(), 1e-3)
         if isinstance(run, owner):
             return run
     raise AssertionError(f"there is no instance of {owner.__name__} to try: add one to INSTANCES")

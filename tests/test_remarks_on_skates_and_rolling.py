@@ -54,15 +54,6 @@ def test_a_soft_contacts_error_is_its_time_constants_and_a_stiff_ones_is_the_ste
     assert angle[2e-4, 100] > angle[6e-4, 100]
 
 
-def test_in_a_nearly_conformal_hole_the_reflection_loses_the_rotation_with_its_gap_closed():
-    for clearance, lost in ((0.1, False), (0.01, True), (1e-3, True)):
-        cells = [Cell(DiscInHole(clearance=clearance), CONSTRAINTS[1], every, "failure") for every in (1, 10, 100)]
-        rows = list(committed_rows(cells).values())
-        assert len(rows) == 3
-        assert all((row.angle > 0.5) == lost for row in rows)
-        assert rows[0].gap > 10 * rows[1].gap > 100 * rows[2].gap
-
-
 def test_a_second_wheel_on_an_axle_changes_no_methods_position_error():
     for scene, doubled in ((CarAndTrailer(), CarAndTrailer(redundant=True)), (Cart(), Cart(redundant=True))):
         for engine in (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED):
