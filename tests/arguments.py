@@ -25,7 +25,6 @@ from engines import registry
 from engines.pymunk.contraction import Sweeping
 from reference.kinds import NOT_FINITE as MAY_BE_INFINITE
 from reference.kinds import Floats
-from reference.rolling.scenes import RollingDisc
 from reference.validation import (
     AnyComplexes,
     Complexes,

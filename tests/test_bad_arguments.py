@@ -20,7 +20,6 @@ from engines.extrapolated import Extrapolated
 from reference.four_bar import FourBar, OverdrivenFourBar
 from reference.four_bar.linkage import Unreachable
 from reference.mechanism import Body
-from reference.rolling.scenes import RollingDisc
 from reference.scenes import SCENES
 from reference.skate.parking import park
 from reference.validation import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated

@@ -11,7 +11,6 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from engines.pymunk.methods import SETTLED
 from reference.n_four_bar import NFourBar
 from reference.pendulum.scenes import LinkPendulum
 from reference.person.two_feet import TwoFeet

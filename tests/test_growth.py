@@ -15,7 +15,7 @@ from engines.mujoco import methods as mujoco_methods
 from engines.registry import VARIANTS
 from reference.centrodes import Centrodes
 from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.pendulum.scenes import HundredLinks, TenLinks
 from reference.skate.sleigh import ChaplyginSleigh
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.grid import timing

@@ -26,7 +26,7 @@ from reference.rolling.scenes import (
     RollingOnCircle,
 )
 from reference.scene import Scene
-from reference.trajectory import Trajectory, energy
+from reference.trajectory import Trajectory
 
 ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()
 SCENES = (ELLIPSE, DISC, RING, HILL, RollingCam(), RollingDownhill())

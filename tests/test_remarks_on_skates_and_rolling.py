@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from engines import mujoco, pymunk
-from reference.rolling.singular_cases import DiscInHole
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reports.grid.cells import Cell
@@ -13,7 +12,6 @@ from reports.grid.measure import measure
 from reports.grid.outcomes import Outcome
 from reports.pages.rolling import experiments as rolling_failures
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
-from reports.pages.rolling.methods import CONSTRAINTS
 from reports.pages.skate import experiments as skate_failures
 from tests.committed_rows import committed_rows
 
