@@ -208,9 +208,7 @@ def test_lists_and_numbers_of_numpy_are_taken_by_functions():
     assert (type(cell.every), type(cell.samples)) == (int, int)
 
 
-@pytest.mark.parametrize(
-    "engine", [*registry.ENGINES, Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))]
-)
+@pytest.mark.parametrize("engine", [*registry.ENGINES, Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))])
 def test_every_engine_takes_numpys_steps_and_counts_and_refuses_others_alike(engine):
     mechanism = four_bar()
     plain = engine.build(mechanism, 0.0009765625)(2, 1)

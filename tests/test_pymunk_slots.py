@@ -287,7 +287,11 @@ def test_masses_too_far_apart_for_numbers_are_a_result_and_not_an_exception(meth
         assert method.build(odd, 1e-3)(5, 2).pose.shape == (6, 2, 3)
 
 
-@pytest.mark.parametrize("scene", [FreeFourBar(), DrivenSliderCrank(offset=0.693), NFourBar(duration=0.5, horizon=0.5), CarAndTrailer()])
+@pytest.mark.parametrize(
+    "scene",
+    [FreeFourBar(), DrivenSliderCrank(offset=0.693), NFourBar(duration=0.5, horizon=0.5), CarAndTrailer()],
+    ids=lambda scene: scene.name,
+)
 def test_contractions_of_many_poses_are_those_of_each(scene):
     own = scene.mechanism()
     poses = scene.motion(np.linspace(0.0, scene.duration, 5)).pose
