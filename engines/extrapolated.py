@@ -23,7 +23,8 @@ Array = NDArray[np.float64]
 # Of the largest force that acts: reactions whose estimate is above it are told.
 FORCES = 1e-3
 # How many times the next difference that two successive ones let expect counts as the error. Chosen after 270 random
-# mechanisms with three steps each, and frozen before 268 others were tried: of them no motion was wrong without a word.
+# mechanisms with three steps each, and frozen before 298 others were tried: of these 894 motions one was wrong without
+# a word, by 4e-6 with an estimate of 9e-8.
 CAUTION = 4
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
