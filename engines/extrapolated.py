@@ -61,8 +61,8 @@ class Extrapolated(Valid):
     and the rounding of all steps. It is worked out at every step of dt, whichever of them are sampled, and where it
     is above `engines.CLAIM`, of a radian or of the mechanism's length, the motion is `unresolved_at` that time, and a
     warning tells it. So it is from the start where a damper is so strong that it ends a motion within a step of the
-    coarsest run: what it does then all may miss alike. Reactions whose own estimate is above FORCES of the largest force that
-    acts are told as well.
+    coarsest run: what it does then all may miss alike. Reactions whose own estimate is above FORCES of the largest
+    force that acts are told as well.
 
     Where the estimate is more than what the finest run seems to miss (the distance to the extrapolation of the two
     finest), the runs are no series in the step: one has gone another way at a singular position, say. From there on the
