@@ -21,8 +21,7 @@
 8. `step_cost(mechanism)` is about the CPU time of a step [s]. It decides which small steps are worth running, so it is
    a formula and no measurement: the same on every machine.
 9. `holder(joint, mechanism)` says who holds a joint: the engine by a joint, contact or coordinate of its own; the
-   engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies. Where
-   that depends on what a motion of some length passes, an engine has `holder_within(joint, mechanism, duration)` too.
+   engine by rows that our code writes anew while it steps; or our code alone, between steps of free bodies.
 10. `softness(mechanism, dt)` says how its joints give way by its own settings: a Softness, or None where they don't.
 
 More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
@@ -153,20 +152,6 @@ class Engine(Protocol):
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder: ...
     def softness(self, mechanism: Mechanism, dt: Positive) -> Softness | None: ...
     def build(self, mechanism: Mechanism, dt: Positive) -> Run: ...
-
-
-@runtime_checkable
-class HoldingWithin(Protocol):
-    """An engine that may hold joints otherwise in a motion that lasts so long that it passes worse poses."""
-
-    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder: ...
-
-
-def holder_within(engine: Engine, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
-    """Who holds a joint in a motion of `duration` [s]: sentence 9."""
-    if isinstance(engine, HoldingWithin):
-        return engine.holder_within(joint, mechanism, duration)
-    return engine.holder(joint, mechanism)
 
 
 # Of a step: far below the half step by which a state can belong to another instant, far above what products round.

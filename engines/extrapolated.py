@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
-from engines.contract import holder_within
 from engines.finer import Division, Lasting, division, tells_itself
 from reference.joints import Joint
 from reference.mechanism import Mechanism
@@ -151,11 +150,6 @@ class Extrapolated(Valid):
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         """Whoever holds it in the runs that are combined."""
         return self.engine.holder(joint, mechanism)
-
-    @validated
-    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
-        """The same in a motion of `duration` [s]."""
-        return holder_within(self.engine, joint, mechanism, duration)
 
     def softness(self, mechanism: Mechanism, dt: float) -> None:
         """Nothing is declared: a softness that is tied to the step is extrapolated too."""

@@ -24,9 +24,7 @@ import engines
 import reference
 from engines import registry
 from engines.pymunk.contraction import Sweeping
-from engines.pymunk.reflection import Reflected
 from reference.kinds import Floats, Rule
-from reference.rolling.scenes import RollingDisc
 from reference.validation import (
     AnyComplexes,
     Complexes,
@@ -219,9 +217,8 @@ def _object_of(owner: type) -> Any:
     for each in (*INSTANCES, RUN):
         if isinstance(each, owner):
             return each
-    for engine in (*registry.ENGINES, Reflected("mine")):
-        mechanism = RollingDisc().mechanism() if isinstance(engine, Reflected) else four_bar()
-        run = engine.build(mechanism, 1e-3)
+    for engine in registry.ENGINES:
+        run = engine.build(four_bar(), 1e-3)
         if isinstance(run, owner):
             return run
     raise AssertionError(f"there is no instance of {owner.__name__} to try: add one to INSTANCES")

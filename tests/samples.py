@@ -16,7 +16,6 @@ from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 from engines.pymunk.engine import Pymunk
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
-from engines.pymunk.reflection import Reflected
 from engines.single_run import Recorded, SingleRun
 from reference import centrodes, shapes
 from reference.andrews import Dyad
@@ -92,7 +91,7 @@ INSTANCES: tuple[Any, ...] = (
     ),
     *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
-    *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,)), Reflected("mine")),
+    *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,))),
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
     *(limited_groove(5.0), limited_tendon(5.0)),
     *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),

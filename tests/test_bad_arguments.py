@@ -18,11 +18,9 @@ import pytest
 
 from engines import registry
 from engines.extrapolated import Extrapolated
-from engines.pymunk.reflection import Reflected
 from reference.four_bar import FourBar, OverdrivenFourBar
 from reference.four_bar.linkage import Unreachable
 from reference.mechanism import Body
-from reference.rolling.scenes import RollingDisc
 from reference.scene import Scene
 from reference.scenes import SCENES
 from reference.skate.parking import park
@@ -217,11 +215,9 @@ def test_lists_and_numbers_of_numpy_are_taken_by_functions():
     assert (type(cell.every), type(cell.samples)) == (int, int)
 
 
-@pytest.mark.parametrize(
-    "engine", [*registry.ENGINES, Reflected("r"), Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))]
-)
+@pytest.mark.parametrize("engine", [*registry.ENGINES, Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))])
 def test_every_engine_takes_numpys_steps_and_counts_and_refuses_others_alike(engine):
-    mechanism = RollingDisc().mechanism() if isinstance(engine, Reflected) else four_bar()
+    mechanism = four_bar()
     plain = engine.build(mechanism, 0.0009765625)(2, 1)
     build: Any = engine.build  # what its types allow is not asked here
     numpys = build(mechanism, np.float32(0.0009765625))(np.int64(2), np.int32(1))

@@ -11,7 +11,6 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from engines.pymunk.methods import SETTLED
 from reference.n_four_bar import NFourBar
 from reference.pendulum.scenes import LinkPendulum
 from reference.person.two_feet import TwoFeet
@@ -220,7 +219,7 @@ def test_a_pages_observations_are_computed_and_say_something(page):
 
 def test_very_dear_quick_steps_are_left_out_but_never_the_coarsest():
     page = n_four_bar.PAGE
-    engines = (*page.engines, replace(pymunk.EXTENDED.pins, engine=replace(SETTLED, projects=False)))
+    engines = page.engines
     cells = sweep_cells(page.scenes, engines, (1, 3, 10))
     for scene in page.scenes:
         for engine in engines:

@@ -61,9 +61,8 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
         "engines/__init__",
     } <= files
     assert not [name for name in files if name.startswith(others)]
-    # Compiled code is imported by name, and only to step; pymunk's projections take rows from it too.
-    assert ("engines/lagrange/compiled/rows" in files) == (own != "engines/mujoco")
-    assert ("engines/pymunk/compiled/entry" in files) == (own == "engines/pymunk")
+    # Compiled code is imported by name, and only to step.
+    assert ("engines/lagrange/compiled/rows" in files) == (own == "engines/lagrange")
     assert not [
         name for name in files if name.startswith(("reference/pendulum", "reference/skate", "reference/wheels"))
     ]

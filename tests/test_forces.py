@@ -11,7 +11,6 @@ import pytest
 from engines import EXACT, Promise, Unsupported, registry
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco.methods import SKATES
-from engines.pymunk.reflection import Reflected
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
@@ -222,10 +221,6 @@ def test_a_spring_without_rest_length_may_start_with_its_points_together():
 def test_a_method_that_knows_no_forces_says_so():
     skate = Skate("k", None, "b", (0.2, 0.0))
     sliding = replace(one_body(Torque("t", None, "b", 1.0)), joints=(skate,))
-    with pytest.raises(
-        Unsupported, match="force 't' is a Torque; the adapter of a reflection knows no force but gravity"
-    ):
-        Reflected("mine").build(sliding, 1e-3)
     for engine in SKATES:
         if engine.skates in ("passive", "leapfrog"):
             with pytest.raises(Unsupported, match="force"):

@@ -13,7 +13,6 @@ from engines.pymunk import methods as pymunk_methods
 from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Drive, Joint, Slot
 from reference.mechanism import Mechanism
-from reference.n_four_bar import NFourBar
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse
 from reference.skate.sleigh import ChaplyginSleigh
@@ -33,7 +32,7 @@ SHARED = "engine, our rows"
     [
         (pymunk.DEFAULT, "ours", "engine; skate: ours", "engine", "engine", "engine"),
         (pymunk.TUNED, SHARED, f"engine; skate: {SHARED}", "engine", "engine", "engine"),
-        (pymunk.EXTENDED, "ours", f"engine; skate: {SHARED}", "ours", f"engine; roll: {SHARED}", "engine"),
+        (pymunk.EXTENDED, SHARED, f"engine; skate: {SHARED}", SHARED, f"engine; roll: {SHARED}", "engine"),
         (mujoco.DEFAULT, "engine", "engine", "engine", "engine", "engine"),
         (mujoco.TUNED, SHARED, f"engine; skate: {SHARED}", "engine", "engine", "engine"),
         (mujoco.EXTENDED, SHARED, f"engine; skate: {SHARED}", SHARED, f"engine; roll: {SHARED}", "engine"),
@@ -49,7 +48,7 @@ def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, c
 
 def test_every_construction_of_a_skate_says_who_holds_it():
     ours = {"skate: centre's velocity zeroed", "skate: point's velocity zeroed", "skate: impulse at the blade"}
-    ours |= {"skate: reflection", "skate: reflection, extrapolated", "applied force", "passive force"}
+    ours |= {"applied force", "passive force"}
     engines = {"skate: friction", "friction blade", "thin wheel", "velocity servo"}
     for engine in (*pymunk_methods.SKATES, *mujoco_methods.SKATES):
         expected = "ours" if engine.variant in ours else "engine" if engine.variant in engines else SHARED
@@ -62,7 +61,6 @@ def test_every_construction_of_a_rolling_contact_says_who_holds_it():
     }
     for engine in (pymunk_methods.ROLL_STALE_PIVOT, pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_PIVOT_EXTRAPOLATED):
         assert held_by(engine, ROLL) == SHARED
-    assert held_by(pymunk_methods.ROLL_REFLECTED, ROLL) == "ours"
     stiff, equality, completed = mujoco_methods.ROLLS
     assert [held_by(engine, ROLL) for engine in (stiff, equality, completed)] == ["engine", SHARED, SHARED]
 
@@ -101,15 +99,3 @@ def test_joints_of_one_kind_that_differ_are_told_by_name():
 
 def test_free_bodies_have_no_joints_to_hold():
     assert held_by(pymunk.DEFAULT, Mechanism(SKATE.bodies, ())) == "no joints"
-
-
-def test_joints_are_ours_where_a_motion_is_projected_that_the_start_tells_nothing_of():
-    mechanism = NFourBar().mechanism()  # singular after 0.71 s
-    assert [held_by(pymunk.EXTENDED, mechanism, duration) for duration in (0.0, 0.1, 1.0)] == [
-        "engine",
-        "engine",
-        "ours",
-    ]
-    assert [held_by(pymunk.TUNED, mechanism, duration) for duration in (0.0, 1.0)] == ["engine", "engine"]
-    told = pymunk.EXTENDED.build(mechanism, 0.01)(10, 10).warnings
-    assert any("velocities are projected" in warning for warning in told)

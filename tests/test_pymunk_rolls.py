@@ -1,4 +1,4 @@
-"""Rolling in pymunk: by a moved pivot, by reflection, by contact; what each reaches and where it stops."""
+"""Rolling in pymunk: by a moved pivot and by contact; what each reaches and where it stops."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from reference.rolling.scenes import (
     RollingOnCircle,
 )
 from reference.scene import Scene
-from reference.trajectory import Trajectory, energy
+from reference.trajectory import Trajectory
 
 ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()
 SCENES = (ELLIPSE, DISC, RING, HILL, RollingCam(), RollingDownhill())
@@ -64,27 +64,20 @@ def roll_of(scene: Scene) -> Roll:
 
 @every_scene
 def test_extended_rolling_is_exact_to_rounding_with_forces(scene):
-    trajectory = run(EXTENDED, scene, 1)
+    trajectory = run(EXTENDED, scene, 3)
     exact = truth(scene)
     assert largest(trajectory.pose - exact.pose) < 1e-11
     mechanism = scene.mechanism()
-    assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-12
-    assert largest(trajectory.reaction - exact.reaction) < 1e-8 * largest(exact.reaction)
+    assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-11
+    missed = np.abs(trajectory.reaction - exact.reaction).max(axis=1) / largest(exact.reaction)
+    # The first samples have what is left of the first steps, which is no series in the step.
+    assert missed[:2].max() < 1e-6
+    assert missed[2:].max() < 1e-8
 
 
 @every_scene
 def test_a_pivot_at_the_predicted_contact_is_of_second_order(scene):
     assert order(methods.ROLL_PIVOT, scene, 10) == pytest.approx(2, abs=0.2)  # in the ring the next power still shows
-
-
-@pytest.mark.parametrize("scene", [ELLIPSE, DISC, RING], ids=lambda scene: scene.name)
-def test_a_reflection_is_of_second_order_and_keeps_the_energy(scene):
-    # The contact of round pairs is exact, so that only the power two remains.
-    assert order(methods.ROLL_REFLECTED, scene, 10) == pytest.approx(2, abs=0.1)
-    mechanism, trajectory = scene.mechanism(), run(methods.ROLL_REFLECTED, scene, 10)
-    kinetic = 0.5 * np.sum(mechanism.inertias * truth(scene).twist ** 2, axis=(1, 2)).max()
-    # Half drifts and half kicks do not commute: the energy wavers by h^2 of gravity's work, and does not drift.
-    assert np.ptp(energy(mechanism, trajectory)) < 1e-4 * kinetic
 
 
 def test_a_pivot_at_the_contact_of_now_loses_half_of_the_rolling_acceleration_of_a_step():
@@ -212,7 +205,7 @@ def test_contact_settings_that_would_abort_the_process_are_refused(given):
         Contact(**given)
 
 
-@pytest.mark.parametrize("engine", [*METHODS, methods.ROLL_REFLECTED], ids=lambda each: each.variant)
+@pytest.mark.parametrize("engine", METHODS, ids=lambda each: each.variant)
 @pytest.mark.parametrize("scene", [ELLIPSE, HILL], ids=lambda scene: scene.name)
 def test_rolling_that_blows_up_is_a_result_and_not_an_exception(engine, scene):
     trajectory = engine.build(scene.mechanism(), 1e200)(10, 2)

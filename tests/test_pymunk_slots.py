@@ -14,7 +14,7 @@ from pymunk.constraints import GrooveJoint
 from engines import Size, Unsupported
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, methods
-from engines.pymunk.contraction import contraction, contraction_at, gain, sweeps
+from engines.pymunk.contraction import contraction, contraction_at, contractions, gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Slot
@@ -25,6 +25,7 @@ from reference.person.one_foot import OneFoot
 from reference.scene import Scene
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import Trajectory, energy, joint_gap
+from reference.wheels.car_and_trailer import CarAndTrailer
 from tests.mechanisms import four_bar
 
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -284,3 +285,14 @@ def test_masses_too_far_apart_for_numbers_are_a_result_and_not_an_exception(meth
     odd = replace(mechanism, bodies=(mechanism.bodies[0], replace(mechanism.bodies[1], mass=mass, inertia=mass)))
     with np.errstate(all="ignore"):
         assert method.build(odd, 1e-3)(5, 2).pose.shape == (6, 2, 3)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [FreeFourBar(), DrivenSliderCrank(offset=0.693), NFourBar(duration=0.5, horizon=0.5), CarAndTrailer()],
+    ids=lambda scene: scene.name,
+)
+def test_contractions_of_many_poses_are_those_of_each(scene):
+    own = scene.mechanism()
+    poses = scene.motion(np.linspace(0.0, scene.duration, 5)).pose
+    assert contractions(own, poses) == pytest.approx([contraction_at(own, pose) for pose in poses], abs=1e-12)

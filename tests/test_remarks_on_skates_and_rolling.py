@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from engines import mujoco, pymunk
-from reference.rolling.singular_cases import DiscInHole
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reports.grid.cells import Cell
@@ -13,7 +12,6 @@ from reports.grid.measure import measure
 from reports.grid.outcomes import Outcome
 from reports.pages.rolling import experiments as rolling_failures
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
-from reports.pages.rolling.methods import CONSTRAINTS
 from reports.pages.skate import experiments as skate_failures
 from tests.committed_rows import committed_rows
 
@@ -52,15 +50,6 @@ def test_a_soft_contacts_error_is_its_time_constants_and_a_stiff_ones_is_the_ste
     assert angle[2e-3, 10] > 2 * angle[2e-3, 100]
     # The shortest constant is not the best one.
     assert angle[2e-4, 100] > angle[6e-4, 100]
-
-
-def test_in_a_nearly_conformal_hole_the_reflection_loses_the_rotation_with_its_gap_closed():
-    for clearance, lost in ((0.1, False), (0.01, True), (1e-3, True)):
-        cells = [Cell(DiscInHole(clearance=clearance), CONSTRAINTS[1], every, "failure") for every in (1, 10, 100)]
-        rows = list(committed_rows(cells).values())
-        assert len(rows) == 3
-        assert all((row.angle > 0.5) == lost for row in rows)
-        assert rows[0].gap > 10 * rows[1].gap > 100 * rows[2].gap
 
 
 def test_a_second_wheel_on_an_axle_changes_no_methods_position_error():

@@ -31,9 +31,8 @@ from importlib import import_module
 from itertools import repeat
 from typing import Any
 
-from engines import Engine, Unsupported
+from engines import Engine
 from engines.extrapolated import Extrapolated
-from engines.pymunk.batched import Recorder
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
 from engines.pymunk.extended import Extended
 from engines.pymunk.joints.roll import Contact
@@ -46,28 +45,21 @@ from reference.validation import Count, Positive, validated
 def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
     """CPU seconds of `steps` steps of dt [s] with nothing recorded: the floor under the stepping of a run.
 
-    Steps that compiled code takes in a run (`engines.pymunk.marching`) it takes here, and keeps the last state. An
-    extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels. Raises
-    ValueError for an engine that is not pymunk, and Unsupported for one that does not step a model of joints.
+    An extrapolated engine counts as it runs: `level` times as many steps, of dt / level, for each of its levels. Raises
+    ValueError for an engine that is not pymunk.
     """
     if isinstance(engine, Extended):
         engine = engine.chosen(mechanism)
     if isinstance(engine, Extrapolated):
         inner = engine.engine
         return sum(bare_loop(inner, mechanism, dt / level, steps * level) for level in engine.levels)
-    if engine.name != "pymunk":
-        raise ValueError(f"bare_loop: the engine is {engine.name}; it must be pymunk")
     if not isinstance(engine, Pymunk):
-        raise Unsupported("bare_loop: a reflection has no model of joints to step")
+        raise ValueError(f"bare_loop: the engine is {engine.name}; it must be pymunk")
     model = engine.model(mechanism, dt, duration=dt * steps)
     step, space = model.stepper(raw=engine.leapfrog)
     dt /= model.unit
-    marching = model.marching if engine.leapfrog else None
-    kept = Recorder(model.space, model.bodies, states=2, velocities=1).values
     begin = time.process_time()
-    if marching is not None:
-        marching.march(dt, 1, steps, kept)
-    for _ in repeat(None, steps if marching is None else 0):
+    for _ in repeat(None, steps):
         step(space, dt)
     return time.process_time() - begin
 

@@ -150,7 +150,7 @@ class Sweeping:
     """How a model is swept: `iterations` in a step, the `gain` that they allow, and what of the slowest mode is `left`.
 
     `converged` is the number of iterations that leaves nothing of it, as far as CONVERGED_WORK allows, and `unsettled`
-    what these leave. `projected`: no number of sweeps would do, and our code takes out what they leave after each step.
+    what these leave.
     """
 
     iterations: int
@@ -158,7 +158,6 @@ class Sweeping:
     left: float = 0.0
     converged: int = 1000
     unsettled: float = 0.0
-    projected: bool = False
 
 
 @validated

@@ -17,8 +17,7 @@ from engines.pymunk.joints.roll import SHIPPED_CONTACT, Contact, RollConstructio
 from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
-from engines.pymunk.projection import COST, DEAR, DEAR_AIMED, DEAR_ROLLING
-from engines.pymunk.running import UNSETTLED, PymunkRun
+from engines.pymunk.running import PymunkRun
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -49,8 +48,6 @@ class Pymunk(Valid):
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
     more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
-    `projects`: where these sweeps don't converge, or take longer than a projection, our code takes out what one leaves
-    (`engines.pymunk.projection`).
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -74,7 +71,6 @@ class Pymunk(Valid):
     settled: bool = False
     fewest: Count = FEWEST
     work: Whole = 0
-    projects: bool = False
 
     @property
     def name(self) -> str:
@@ -104,18 +100,12 @@ class Pymunk(Valid):
         return self._cost(mechanism, self.sweeping(mechanism, duration))
 
     def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
-        sweeps = SWEEP_COST * len(mechanism.joints) * swept.iterations
-        return STEP_COST * over_three(mechanism) + sweeps + (COST * mechanism.row_count if swept.projected else 0.0)
+        return STEP_COST * over_three(mechanism) + SWEEP_COST * len(mechanism.joints) * swept.iterations
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         """See `engines.pymunk.theory`."""
         return theory.holder(self, joint, mechanism)
-
-    @validated
-    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
-        """The same in a motion of `duration` [s], swept for its worst pose."""
-        return theory.holder(self, joint, mechanism, duration)
 
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How joints give way with steps of dt [s], None where they are set for the pose after the drift.
@@ -155,18 +145,9 @@ class Pymunk(Valid):
         if isinstance(self.iterations, int):
             return swept_by(rho, self.iterations)
         found = sweeping(rho, max(1, len(mechanism.joints)), self.fewest, self.work)
-        if self.projects and (found.gain < 1 or found.unsettled > UNSETTLED or self._are_dear(mechanism, found)):
-            # Whatever sweeps do, a projection ends at the same velocities.
-            return Sweeping(1, left=found.left, converged=1, projected=True)
         if self.roll == "contact" and any(isinstance(joint, Roll) for joint in mechanism.joints):
             found = replace(found, converged=max(found.converged, CONTACT_CONVERGED))
         return found
-
-    def _are_dear(self, mechanism: Mechanism, found: Sweeping) -> bool:
-        """Whether a projection takes less than so many sweeps."""
-        rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
-        most = DEAR_ROLLING if rolling else DEAR_AIMED if theory.is_aimed(self, mechanism) else DEAR
-        return found.iterations * len(mechanism.joints) > most
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, duration: NonNegative = 0.0) -> Model:
@@ -187,6 +168,5 @@ class Pymunk(Valid):
             self.roll,
             self.slot,
             self.contact,
-            projected=dt if sweeping.projected else 0.0,
         )
         return build_model(mechanism, settings)

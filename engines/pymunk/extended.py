@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from engines import Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
-from engines.pymunk.reflection import reflectable
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
 from reference.validation import Name, Positive, Valid, validated
@@ -14,14 +13,13 @@ from reference.validation import Name, Positive, Valid, validated
 
 @dataclass(frozen=True)
 class Extended(Valid):
-    """An engine in the sense of `engines.Engine` that takes one of three others, by the mechanism's joints and forces.
+    """An engine in the sense of `engines.Engine` that takes one of two others, by the mechanism's joints and forces.
 
-    `single`: bodies each on one skate or contact of their own. `skates`: skates among other joints, or dampers, which
-    act at the end of a step instead of around it, so of first order. `pins`: all others.
+    `skates`: skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`: all
+    others.
     """
 
     variant: Name
-    single: Extrapolated
     skates: Extrapolated
     pins: Extrapolated
 
@@ -52,11 +50,6 @@ class Extended(Valid):
         """That of the chosen engine."""
         return self.chosen(mechanism).holder(joint, mechanism)
 
-    @validated
-    def holder_within(self, joint: Joint, mechanism: Mechanism, duration: Positive) -> Holder:
-        """That of the chosen engine, in a motion of `duration` [s]."""
-        return self.chosen(mechanism).holder_within(joint, mechanism, duration)
-
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """That of the chosen engine."""
         return self.chosen(mechanism).softness(mechanism, dt)
@@ -64,8 +57,6 @@ class Extended(Valid):
     @validated
     def chosen(self, mechanism: Mechanism) -> Extrapolated:
         """The engine that this one takes for a mechanism."""
-        if reflectable(mechanism):
-            return self.single
         if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
             return self.skates
         return self.pins

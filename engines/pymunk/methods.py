@@ -1,7 +1,7 @@
 """Every method of pymunk as a value: the three variants, what lies between them, and each construction of a joint.
 
 METHODS are for every scene. SKATES, ROLLS and SLOTS hold one kind of joint in one way each, for a page that compares
-them; what each way is stands in `engines.pymunk.joints` and `.reflection`.
+them; what each way is stands in `engines.pymunk.joints`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from engines.extrapolated import Extrapolated
 from engines.pymunk.engine import Pymunk
 from engines.pymunk.extended import Extended
 from engines.pymunk.joints.roll import Contact
-from engines.pymunk.reflection import Reflected
 
 DEFAULT = Pymunk("default")
 # Contact: all of the overlap is left alone, because pushing bodies apart rolls them too. That is `bias`, of which
@@ -23,7 +22,7 @@ LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate
 # What is extrapolated has to be smooth in the step from the first sample on, and stable: about two milliseconds a step
 # for the few mechanisms whose rows nearly depend on each other, where 300 sweeps leave nearly all.
 WORK = 200_000
-SETTLED = replace(LEAPFROG, settled=True, work=WORK, projects=True)
+SETTLED = replace(LEAPFROG, settled=True, work=WORK)
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
 # To aim a groove takes as long as these forty.
 AIMED = Pymunk(
@@ -35,15 +34,11 @@ AIMED = Pymunk(
     settled=True,
     fewest=40,
     work=WORK,
-    projects=True,
 )
 # The leapfrog's error has all powers from the second, not only even ones; with a skate from the first.
 FIVE = (2, 3, 4, 6, 8)
-# Even numbers of steps only, as a reflection asks for, and even powers, as it gives.
-EVEN, EVEN_POWERS = (2, 4, 6, 8), (2, 4, 6)
 EXTENDED = Extended(
     "extended",
-    single=Extrapolated(Reflected("reflection"), "extended", levels=EVEN, powers=EVEN_POWERS),
     skates=Extrapolated(AIMED, "extended", levels=FIVE, powers=(1, 2, 3, 4), divides=True),
     pins=Extrapolated(SETTLED, "extended", levels=FIVE, powers=(2, 3, 4, 5), divides=True),
 )
@@ -56,22 +51,16 @@ SKATE_POINT = Pymunk("skate: point's velocity zeroed", skate="point")
 SKATE_PROJECTED = Pymunk("skate: impulse at the blade", skate="projection")
 SKATE_STALE_GROOVE = Pymunk("skate: groove, stale heading", skate="stale groove")
 SKATE_GROOVE = Pymunk("skate: groove, predicted heading", skate="groove")
-SKATE_REFLECTED = Reflected("skate: reflection")
 SKATE_FRICTION = Pymunk("skate: friction", skate="friction")
 SKATE_GROOVE_EXTRAPOLATED = Extrapolated(AIMED, "skate: groove, extrapolated", levels=FIVE, powers=(1, 2, 3, 4))
-SKATE_REFLECTED_EXTRAPOLATED = Extrapolated(
-    SKATE_REFLECTED, "skate: reflection, extrapolated", levels=EVEN, powers=EVEN_POWERS
-)
 SKATES: tuple[Engine, ...] = (
     SKATE_CENTRE,
     SKATE_POINT,
     SKATE_PROJECTED,
     SKATE_STALE_GROOVE,
     SKATE_GROOVE,
-    SKATE_REFLECTED,
     SKATE_FRICTION,
     SKATE_GROOVE_EXTRAPOLATED,
-    SKATE_REFLECTED_EXTRAPOLATED,
 )
 
 # A round body is one shape without corners, so the methods that differ in corners only are one method for it.
@@ -86,20 +75,14 @@ ROLL_THIN_GROUND = Pymunk(
 )
 ROLL_STALE_PIVOT = Pymunk("roll: pivot, stale contact", 5, 0.0, leapfrog=True, roll="stale pivot")
 ROLL_PIVOT = Pymunk("roll: pivot, predicted contact", 5, 0.0, leapfrog=True, roll="pivot")
-ROLL_REFLECTED = Reflected("roll: reflection")
 ROLL_PIVOT_EXTRAPOLATED = Extrapolated(ROLL_PIVOT, "roll: pivot, extrapolated", levels=FIVE, powers=(2, 3, 4, 5))
-ROLL_REFLECTED_EXTRAPOLATED = Extrapolated(
-    ROLL_REFLECTED, "roll: reflection, extrapolated", levels=EVEN, powers=EVEN_POWERS
-)
 ROLLS: tuple[Engine, ...] = (
     ROLL_SHIPPED,
     *ROLL_FACETED,
     ROLL_THIN_GROUND,
     ROLL_STALE_PIVOT,
     ROLL_PIVOT,
-    ROLL_REFLECTED,
     ROLL_PIVOT_EXTRAPOLATED,
-    ROLL_REFLECTED_EXTRAPOLATED,
 )
 
 # On a slider of its own, with the groove at its centre, both are the same; on the end of a rod the first is a trap.

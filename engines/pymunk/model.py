@@ -20,8 +20,6 @@ from engines.pymunk.joints.rod_gear_weld import gear, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
-from engines.pymunk.marching import Marching
-from engines.pymunk.projection import Projection
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -34,8 +32,7 @@ ROWS = {PivotJoint: 2, SimpleMotor: 1, GrooveJoint: 1, PinJoint: 1, GearJoint: 1
 class Settings:
     """What a model is built with: sweeps, the part of a gap that is left after a unit of time, constructions.
 
-    `unit` [s] is the engine's second: its velocities, gravity and steps are counted in it. `projected` [s]: velocities
-    are projected after steps of this length (`engines.pymunk.projection`); 0 for none.
+    `unit` [s] is the engine's second: its velocities, gravity and steps are counted in it.
     """
 
     iterations: int
@@ -45,7 +42,6 @@ class Settings:
     roll: RollConstruction
     slot: SlotConstruction
     contact: Contact
-    projected: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -88,12 +84,6 @@ class Model:
                 each()
 
         return handled, space
-
-    @property
-    def marching(self) -> Marching | None:
-        """What steps this model in compiled code, where that can: nothing is done in Python between its steps."""
-        only = self.repairs[0] if len(self.repairs) == 1 and not self.aims else None
-        return only.marching if isinstance(only, Projection) else None
 
     def kick(self, dt: float) -> None:
         """Forces and joints of one step of dt [units] act on the velocities, and no body moves."""
@@ -162,9 +152,6 @@ class _Builder:
         size = Size(bodies=count, coordinates=3 * count, rows=self.rows, solver_rows=self.solver_rows)
         origins = np.array([self._origin(name) for name in self.bodies])
         unit = self.settings.unit
-        if self.settings.projected:
-            bodies = tuple(self.bodies.values())
-            self.repairs.append(Projection(self.mechanism, self.space, bodies, origins, self.settings.projected, unit))
         return Model(
             self.space, tuple(self.bodies.values()), origins, size, unit, tuple(self.aims), tuple(self.repairs)
         )

@@ -73,12 +73,9 @@ def record(
         lib.cpSpaceSetIterations(pointer, own)
         steps_left -= 1
 
-    marching = model.marching if raw and settling <= own else None
     begin = time.process_time()
     try:
-        if marching is not None:
-            marching.march(dt, samples, every, recorder.values)
-        for _ in repeat(None, samples if marching is None else 0):
+        for _ in repeat(None, samples):
             move = settle if steps_left > 0 else step
             if velocities:
                 for _ in steps_between:
@@ -217,7 +214,7 @@ class PymunkRun:
             return 4 * third - 3 * fourth if self._leapfrog else third
 
     def _unconverged(self, sweeping: Sweeping) -> str:
-        """What is to be said of the sweeps; nothing of a projection that `Pymunk.holder` tells, by the start alone."""
+        """What is to be said of the sweeps."""
         if sweeping.gain < 1:
             return f"ours: not converged, {sweeping.iterations} sweeps leave {sweeping.left:.0%} of the slowest mode"
         if sweeping.unsettled > UNSETTLED:
@@ -225,6 +222,4 @@ class PymunkRun:
                 "ours: the reactions at the start are not converged, "
                 f"{sweeping.unsettled:.0e} of the slowest mode is left"
             )
-        if sweeping.projected and not self._swept(0.0).projected:
-            return "ours: velocities are projected after every step, as sweeps are too many on a part of the way"
         return ""

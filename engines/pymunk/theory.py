@@ -10,7 +10,6 @@ from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.pymunk.joints.skate import along_blade
 from engines.pymunk.joints.slot import groove_is_exact
-from reference.forces import Force, Torque
 from reference.joints import Joint, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 
@@ -73,14 +72,8 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
     return FROM_REST if starts_at_rest(mechanism) else CLOSING
 
 
-def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism, duration: float = 0.0) -> Holder:
-    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared.
-
-    Where velocities are projected after every step, in a motion of `duration` [s] that may meet worse poses than the
-    start, what the engine's joints did decides nothing.
-    """
-    if engine.sweeping(mechanism, duration).projected:
-        return "ours"
+def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
+    """Pivots, grooves, motors, bodies of known motion and contacts are pymunk's; what is aimed every step is shared."""
     match joint:
         case Slot() if engine.slot == "exact" and _is_rewritten(joint, mechanism):
             return "engine, our rows"
@@ -91,15 +84,6 @@ def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism, duration: float =
         case Roll() if engine.roll != "contact":
             return "engine, our rows"
     return "engine"
-
-
-def is_aimed(engine: Pymunk, mechanism: Mechanism) -> bool:
-    """Whether Python does something before the engine's steps: aims a joint, or sets a force."""
-    joints = any(
-        isinstance(joint, Skate | Roll) or (engine.slot == "exact" and _is_rewritten(joint, mechanism))
-        for joint in mechanism.joints
-    )
-    return joints or any(isinstance(force, Force | Torque) for force in mechanism.forces)
 
 
 def _is_off_centre(joint: Joint) -> bool:

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from engines import Engine, Holder
-from engines.contract import holder_within
-from reference.joints import Joint
 from reference.mechanism import Mechanism
 
 NOTHING_HELD = "no joints"
 
 
-def held_by(engine: Engine, mechanism: Mechanism, duration: float = 0.0) -> str:
-    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones, in so many seconds.
+def held_by(engine: Engine, mechanism: Mechanism) -> str:
+    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
 
     Joints are named by kind; where those of one kind differ, by their own names.
     """
     found: dict[Holder, list[str]] = {}
     kinds: dict[str, set[Holder]] = {}
-    holders: list[Holder] = [_holder(engine, joint, mechanism, duration) for joint in mechanism.joints]
+    holders: list[Holder] = [engine.holder(joint, mechanism) for joint in mechanism.joints]
     for joint, holder in zip(mechanism.joints, holders, strict=True):
         kinds.setdefault(_kind(joint), set()).add(holder)
         found.setdefault(holder, [])
@@ -29,10 +27,6 @@ def held_by(engine: Engine, mechanism: Mechanism, duration: float = 0.0) -> str:
             found[holder].append(name)
     others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
     return "; ".join(["engine", *others] if "engine" in found else others)
-
-
-def _holder(engine: Engine, joint: Joint, mechanism: Mechanism, duration: float) -> Holder:
-    return holder_within(engine, joint, mechanism, duration) if duration > 0 else engine.holder(joint, mechanism)
 
 
 def _kind(joint: object) -> str:

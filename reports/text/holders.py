@@ -14,7 +14,7 @@ from reports.grid.holding import held_by
 @cache
 def held_in(scene: Scene, engine: Engine) -> str:
     """Who holds a scene's joints; kept, because a method asks its whole model about each of a hundred joints."""
-    return held_by(engine, mechanism_of(scene), scene.duration)
+    return held_by(engine, mechanism_of(scene))
 
 
 def holders(cells: Iterable[Cell]) -> dict[str, str]:

@@ -6,8 +6,6 @@
 - "pivot": a `PivotJoint` whose anchors, one on each curve, are set before every step where the curves will touch after
   its drift. Both are found by arc length from the start, so the gap it closes is the whole gap since the start.
 - "stale pivot": the same where they touch now: half of the rolling acceleration is missing.
-
-For one body on the ground a Roll can also be held by reflection: `engines.pymunk.reflection`.
 """
 
 from __future__ import annotations

@@ -148,14 +148,17 @@ FAILURES: tuple[Failure, ...] = (
             "pulled straight by forces that are large against their weight, and oscillate about that line with up to "
             f"{number(fastest(tip(1e4)))} rad/s."
         ),
-        cells=_cells(tip(1e4), HEAVY, (1, 10, 100)) + _cells(tip(1e4), (PATIENT,), (10,)),
+        # A run of pymunk extended at the smaller steps takes half a minute and four minutes.
+        cells=_cells(tip(1e4), [engine for engine in HEAVY if engine != pymunk.EXTENDED], (1, 10, 100))
+        + _cells(tip(1e4), (pymunk.EXTENDED,), (1,))
+        + _cells(tip(1e4), (PATIENT,), (10,)),
         remark=(
             "The impulse of one joint moves the light link, and undoes what its neighbour's did. A sweep removes only "
             "about $1 / r$ of the error, where $r$ is the ratio of the masses, so even a thousand sweeps are too few. "
             "Ten sweeps, the number as shipped, are worse if they close all of the gap. At 1e-3 s and below pymunk "
             "finishes, as shipped and tuned. A thousand sweeps that close all of the gap fail at 1e-4 s. The extended "
-            "variant makes one sweep and projects velocities after every step. It says of the largest step alone that "
-            "the error is not resolved. MuJoCo's PGS is a sweep too. In free "
+            "variant is run at the largest step alone, and says that its error is not resolved: at the others a run "
+            "takes up to four minutes. MuJoCo's PGS is a sweep too. In free "
             "coordinates the extended variant tears or starts anew with it at each step: it divides the regularisation "
             "by 1e8, far beyond what `solimp` admits, and stops after 100 sweeps. With the documented stiffness and "
             "10000 sweeps PGS finishes at 1e-3 s. MuJoCo's Newton solver factorises a matrix, and needs a step that "

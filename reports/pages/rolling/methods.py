@@ -16,7 +16,7 @@ CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mu
 EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
 
 
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_REFLECTED, mujoco.EXTENDED, EQUALITY)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, EQUALITY)
 
 
 def cells(

@@ -15,7 +15,6 @@ STRAIGHT = "by design: it never turns round, a naive zeroing makes a stable vehi
 SOFT = "by design: a contact as shipped is a spring of 0.02 s and gives way, whatever the step"
 LATE = "by design: a row at the old heading has no slip to stop in the first step, so its first force is none"
 COMPLIANT = "by design: a row with its shipped compliance gives way, whatever the step"
-ALTERNATES = "by design: what a reflection lacks in velocities changes sign with every step, and starts at its largest"
 THIN = "by design: a wheel has a width on which it rolls, and an inertia of its own, whatever the step"
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
@@ -23,8 +22,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("sleigh", "pymunk skate: centre's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
     ("sleigh", "pymunk skate: point's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
-    ("sleigh", "pymunk skate: reflection", "rate"): Deviation(ALTERNATES, 2.3),
-    ("sleigh", "pymunk skate: reflection", "gap"): Deviation(ALTERNATES, 4.1),
     ("sleigh", "mujoco friction blade", "reaction"): Deviation(LATE, 5.9),
     ("sleigh", "mujoco thin wheel", "reaction"): Deviation(LATE, 5.9),
     ("sleigh", "mujoco thin wheel", "order"): Deviation(THIN, 2.5),

@@ -53,8 +53,7 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 CHARTED = (
     "pymunk skate: groove, stale heading",
     "pymunk skate: groove, predicted heading",
-    "pymunk skate: reflection",
-    "pymunk skate: reflection, extrapolated",
+    "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
     "mujoco thin wheel",
     "mujoco tendon",
@@ -66,8 +65,8 @@ LISTED = {*CHARTED, "pymunk skate: point's velocity zeroed"} - {"pymunk skate: g
 
 
 def featured(row: Measurement) -> bool:
-    """The variants of every scene, and the two cheap constructions of second order."""
-    return row.variant in FEATURED or row.method in ("pymunk skate: reflection", "mujoco leapfrog")
+    """The variants of every scene, and the cheap construction of second order."""
+    return row.variant in FEATURED or row.method == "mujoco leapfrog"
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
