@@ -130,7 +130,7 @@ def test_a_ring_hardened_too_far_goes_wrong_with_its_joints_closed_and_without_a
     assert wrong.energy > 0.1
     assert wrong.gap < 1e-3 * scene.length
     said = [part for part in wrong.sentence.split("; ") if part]
-    assert all(part.startswith("ours:") for part in said)
+    assert all(part.startswith(("ours:", "its own estimate")) for part in said)
     chosen = measure(Cell(scene, mujoco.EXTENDED, 1, "failure"), repeat=False)
     assert chosen.energy < 1e-6
 
@@ -232,7 +232,8 @@ def test_very_dear_quick_steps_are_left_out_but_never_the_coarsest():
 def test_the_hundred_links_of_a_tree_and_of_free_bodies_agree():
     scene = next(scene for scene in pendulum.PAGE.scenes if scene.name == "pendulum_100")
     tree, free = (measure(Cell(scene, engine, 1), repeat=False) for engine in (mujoco.EXTENDED, pendulum.FREE[1]))
-    assert Outcome(free.outcome).comparable
+    assert Outcome(free.outcome) == Outcome(tree.outcome) == Outcome.UNRESOLVED  # 4e-4 rad, as both say
+    assert tree.angle < 2 * tree.estimate
     # The same integrator at the same step: what differs is the coordinates, and errors of one size.
     assert free.angle < 10 * tree.angle
     assert (tree.coordinates, tree.rows) == (100, 0)

@@ -76,7 +76,10 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
                 f"grid/{name}"
                 for name in ("ending", "expected", "imports", "processors", "requirements", "spending", "supervisor")
             ),
-            *(f"grid/{name}" for name in ("tasks", "timing", "truths", "waiting", "worker", "worker_process")),
+            *(
+                f"grid/{name}"
+                for name in ("tasks", "temporary", "timing", "truths", "waiting", "worker", "worker_process")
+            ),
         )
     }
 

@@ -45,8 +45,9 @@ def test_pymunk_gets_through_the_change_points_and_the_better_the_smaller_the_st
     rows = [run(Parallelogram(revolutions=1.0), engine, every) for every in steps]
     for coarse, fine in pairwise(rows):
         assert fine.angle < coarse.angle / 5
-    assert Outcome(rows[0].outcome) == (Outcome.UNRESOLVED if engine is pymunk.EXTENDED else Outcome.FINISHED)
-    assert all(Outcome(row.outcome).comparable for row in rows[1:])
+    # The extended one falls short of its claim there, and says so.
+    outcome = Outcome.UNRESOLVED if engine is pymunk.EXTENDED else Outcome.FINISHED
+    assert {Outcome(row.outcome) for row in rows} == {outcome}
 
 
 def test_where_few_sweeps_close_the_whole_gap_a_smaller_step_makes_the_change_point_worse():
@@ -60,7 +61,8 @@ def test_at_change_points_mujoco_starts_anew_at_one_step_and_is_accurate_at_anot
     for engine, lost, kept in ((mujoco.TUNED, 1, 10), (mujoco.EXTENDED, 10, 1)):
         assert Outcome(run(Parallelogram(), engine, lost).outcome) == Outcome.RESET
         row = run(Parallelogram(), engine, kept)
-        assert Outcome(row.outcome).comparable
+        # The extended one's estimate is 5e-4 rad there, above its claim; the run is better than it can know.
+        assert Outcome(row.outcome) == (Outcome.UNRESOLVED if engine is mujoco.EXTENDED else Outcome.FINISHED)
         assert row.angle < 1e-3
 
 

@@ -226,7 +226,7 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_maps_too()
         (["run", "fuor_bar"], "four_bar"),
         (["run", "--engine", "pymonk"], "pymunk"),
         (["run", "--variant", "tunde"], "tuned"),
-        (["run", "--every", "0"], "greater than zero"),
+        (["run", "--every", "0"], "greater than or equal to 1"),
         (["run", "--every", "2.5"], "--every"),
         (["run", "--step", "0.0033"], "does not divide"),
         (["run", "--step", "-1"], "greater than zero"),

@@ -92,7 +92,8 @@ def test_what_a_kill_left_is_swept_and_what_somebody_holds_or_has_named_is_not(t
     assert sorted(tmp_path.iterdir()) == sorted(mine)
 
 
-def test_all_folders_of_a_process_go_at_once(tmp_path):
+def test_all_folders_of_a_process_go_at_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(temporary, "_own", {})  # of this process' own, its workers' stays
     with temporary_folder(tmp_path), temporary_folder(tmp_path):
         remove_all()
         assert [*tmp_path.iterdir()] == []
