@@ -96,7 +96,8 @@ class Promise:
     `order` is that of poses, and of the others unless they are given. `integrator`: the order of what the step alone
     costs, where a softness that is tied to the step sets the others. `differences`: reactions are a change of velocity
     over the step divided by this number; 0 where they are read as forces. `amplified`: how many times the usual
-    rounding of velocities a combination of runs carries. `reaction` is NaN where the engine can't tell any.
+    rounding of poses, velocities and energies a combination of runs carries, and so that of reactions which are changes
+    of velocity. `reaction` is NaN where the engine can't tell any.
     """
 
     order: float

@@ -29,6 +29,7 @@ from reference.validation import (
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2
 Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # of all bodies; NaN where an engine gave up
+TIMES = (("duration", Positive), ("horizon", Positive), ("samples", Count))  # what a scene's times may be
 
 
 class Scene(Valid, ABC):
@@ -47,7 +48,7 @@ class Scene(Valid, ABC):
     def __post_init__(self) -> None:
         super().__post_init__()
         own = {field.name for field in fields(self)}  # type: ignore[arg-type]
-        for name, annotation in (("duration", Positive), ("horizon", Positive), ("samples", Count)):
+        for name, annotation in TIMES:
             # What a class sets without a field; a property is worked out only when it is asked for.
             value = inspect.getattr_static(self, name)
             if name not in own and not hasattr(value, "__get__"):

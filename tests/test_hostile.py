@@ -112,6 +112,7 @@ def test_what_a_scene_s_own_code_does_is_one_line(here, capfd, name, deed):
         ("horizon: ClassVar[float] = 0.0", "horizon is 0.0"),
         ("samples: ClassVar[int] = 0", "samples is 0"),
         ("samples: ClassVar[int] = 2**40", "samples is 1099511627776"),
+        ("samples = property(lambda self: 0)", "samples is 0"),
     ],
 )
 def test_a_scene_of_no_duration_or_samples_is_refused(here, text, telling):

@@ -97,7 +97,7 @@ def test_rows_that_are_not_known_are_left_to_python(monkeypatch: pytest.MonkeyPa
     assert not isinstance(callback(sleigh), Native)
 
 
-def test_machine_code_that_writes_otherwise_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_machine_code_that_writes_otherwise_is_not_taken_and_somebody_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     right = row_callback.row_writer
 
     def turned(*given: Any) -> Any:
@@ -110,7 +110,8 @@ def test_machine_code_that_writes_otherwise_is_not_taken(monkeypatch: pytest.Mon
         return other
 
     monkeypatch.setattr(row_callback, "row_writer", turned)
-    assert not isinstance(callback(ChaplyginSleigh().mechanism()), Native)
+    with pytest.warns(UserWarning, match="machine code writes other rows"):
+        assert not isinstance(callback(ChaplyginSleigh().mechanism()), Native)
 
 
 def test_a_law_is_a_function_of_its_numbers() -> None:

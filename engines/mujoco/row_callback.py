@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -57,14 +58,26 @@ def reserve_plan(spec: Any, tree: Tree, joints: Sequence[WrittenJoint]) -> None:
 def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], softening: float
 ) -> Callback:
-    """What writes the joints' rows, the last of the model's equalities, each made as soft as `softening` says."""
+    """What writes the joints' rows, the last of the model's equalities, each made as soft as `softening` says.
+
+    Warns where machine code would write other rows than Python does; then Python writes them.
+    """
     rows, data = row_writer(tree, address, joints, compiled.nv), mujoco.MjData(compiled)
     scale_placeholders(compiled, data, rows, softening)
     before = equality_rows(compiled) - sum(joint.size for joint in joints)
     short = writing_free(tree, address, joints, before, compiled.nv)
     python = short or writing(rows, before, compiled.nv)
     native = _native(compiled, tree, address, joints, before) if compiled.nnumeric else None
-    return Native(python, native) if native is not None and _agree(compiled, data, native, rows, before) else python
+    if native is None:
+        return python
+    if not _agree(compiled, data, native, rows, before):
+        warnings.warn(
+            f"machine code writes other rows into MuJoCo {mujoco.__version__} than Python does, which is a mistake of "
+            "ours: the rows are written by Python, more slowly",
+            stacklevel=2,
+        )
+        return python
+    return Native(python, native)
 
 
 def _native(

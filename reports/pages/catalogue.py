@@ -8,7 +8,6 @@ registered or not. Ours are in pyproject.toml, and pages are told in the order t
 from __future__ import annotations
 
 import inspect
-import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
@@ -17,8 +16,8 @@ from typing import Any
 from engines import Engine, registry
 from engines.entry_points import registered
 from engines.loading import Kind
-from reference.scene import Scene
-from reference.validation import LARGEST_COUNT
+from reference.scene import TIMES, Scene
+from reference.validation import InvalidMechanism, take
 from reports.pages.page import Page
 
 # Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
@@ -39,12 +38,11 @@ def _no_scene(value: Any) -> str:
         word = getattr(value, name, None)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
-    for name in ("duration", "horizon"):
-        number = getattr(value, name, None)
-        if not (isinstance(number, int | float) and number > 0 and (name == "horizon" or number < math.inf)):
-            return f"its {name} is {number!r}; it must be a finite time above zero [s]"
-    if not (isinstance(value.samples, int) and 0 < value.samples <= LARGEST_COUNT):
-        return f"its samples are {value.samples!r}; they must be a whole number above zero"
+    try:  # a scene has looked at these when it was made, but not at those that a property works out
+        for name, annotation in TIMES:
+            take(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
+    except InvalidMechanism as reason:
+        return str(reason)
     return ""
 
 
