@@ -46,11 +46,15 @@ def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, .
     folder = Path.cwd() if folder is None else folder
     module = _module_of_file(folder / place) if place.endswith(".py") else _module(place, folder)
     try:
-        values = _named(module, name) if name else tuple(_at_top(module, kind))
+        values = _named(module, name) if name else tuple(_at_top(module, kind, reference))
     except AttributeError:
         raise ValueError(f"{reference}: {place} has no {name}") from None
     for each in values:
-        if why := kind.trouble(each) or _unhashable(each):
+        try:
+            why = kind.trouble(each) or _unhashable(each)
+        except Exception as error:
+            why = f"its own code can't be used: {describe(error)}"
+        if why:
             raise ValueError(f"{reference}: a value of the type {type(each).__name__} is no {kind.word}: {why}")
     if not values:
         where = "it is empty" if name else "nothing at the top level of this file is one"
@@ -82,7 +86,7 @@ def _unhashable(value: Any) -> str:
     return ""
 
 
-def _at_top(module: ModuleType, kind: Kind) -> Iterator[Any]:
+def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
     """The values of a module in their order, and its own classes by their defaults where no value is of that class."""
     values = list(vars(module).values())
     given = {type(value) for value in values}
@@ -94,7 +98,7 @@ def _at_top(module: ModuleType, kind: Kind) -> Iterator[Any]:
             try:
                 made = kind.defaults(value)
             except Exception as error:
-                raise ValueError(f"{value.__name__}() can't be made: {describe(error)}") from None
+                raise ValueError(f"{reference}: {value.__name__}() can't be made: {describe(error)}") from None
             if made is not None:
                 yield made
 

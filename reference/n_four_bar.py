@@ -23,11 +23,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.joints import Joint, Pin
+from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.memory import require_room
 from reference.pendulum.link import Pendulum, direction_of
 from reference.plane import rotation_acceleration, rotation_velocity
-from reference.scene import Poses, Scene
+from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reference.validation import Count, NonNegative, Positive, validated
 
@@ -148,14 +149,12 @@ class NFourBar(Scene):
             left = -(coupler[:, 0] - on_coupler)
         return out
 
-    @validated
-    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 while every loop is a parallelogram, -1 once one has folded: its coupler then lies on one of its cranks.
 
         Equal bars fold in two ways: one crank lies along the ground and the other under the coupler. The way whose
         angles fit best is taken; at a singular position all fit, and it is +1.
         """
-        pose = np.asarray(pose)
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         left, right = cranks[..., :-1], cranks[..., 1:]
         parallel = 2 - np.cos(couplers) - np.cos(left - right)

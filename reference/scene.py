@@ -110,8 +110,18 @@ class Scene(Valid, ABC):
 
     @validated
     def branch_of(self, pose: Poses) -> NDArray[np.int_]:
-        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one."""
-        return np.zeros(np.shape(pose)[:-2], dtype=int)
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1, -1; 0 where a scene has only one.
+
+        Raises InvalidMechanism for poses of another number of bodies than its mechanism has.
+        """
+        bodies, given = len(self.mechanism().bodies), np.shape(pose)[-2]
+        if given != bodies:
+            raise InvalidMechanism(f"{self._owner()}: pose is of {given} bodies; it must be of {bodies}")
+        return self._branch_of(np.asarray(pose))
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """The same of poses that `branch_of` has checked."""
+        return np.zeros(pose.shape[:-2], dtype=int)
 
     @property
     def comparable_until(self) -> float:

@@ -247,6 +247,14 @@ TOO_LATE = [[1e16], [1e300], [0.0, 1e6]]
 
 
 @pytest.mark.parametrize("scene", [*SCENES, *SCENES_OF_LIMITS], ids=lambda scene: scene.name)
+def test_poses_of_another_number_of_bodies_are_of_no_branch(scene):
+    bodies = len(scene.mechanism().bodies)
+    for count in (0, bodies - 1, bodies + 1):
+        with pytest.raises(InvalidMechanism, match=f"pose is of {count} bodies; it must be of {bodies}"):
+            scene.branch_of(np.zeros((4, count, 3)))
+
+
+@pytest.mark.parametrize("scene", [*SCENES, *SCENES_OF_LIMITS], ids=lambda scene: scene.name)
 def test_a_scene_refuses_times_that_are_none(scene):
     for times in NO_TIMES:
         with pytest.raises(InvalidMechanism, match=f"scene '{scene.name}': t is .*must be finite numbers in one row"):

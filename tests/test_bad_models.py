@@ -5,10 +5,15 @@ from __future__ import annotations
 import re
 
 import pytest
+from mujoco import MjModel
+from pymunk import Space
 
 from engines import Unsupported
+from engines.mujoco.reading.other_settings import switch_off as of_mujoco
+from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check import settings
 from reports.check.request import Answer, Refused, Request, answered
+from reports.cli.check import SWITCHED_OFF
 from tests.test_check import FOUR_BAR, found_in
 
 
@@ -123,3 +128,13 @@ def test_a_motion_that_meets_a_contact_is_refused_with_a_duration_that_does_not(
 def test_a_step_longer_than_the_motion_is_refused(tmp_path):
     with pytest.raises((ValueError, Unsupported), match="give a longer one"):
         found_in(tmp_path, FOUR_BAR, duration=0.0004)
+
+
+@pytest.mark.parametrize(
+    ("switch_off", "model"), [(of_mujoco, lambda: MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
+)
+def test_the_help_names_all_that_can_be_switched_off(switch_off, model):
+    with pytest.raises(ValueError, match="--without is 'rain'") as told:
+        switch_off(model(), "rain")
+    words = str(told.value).split("must be one of ")[1].split(", ")
+    assert [word for word in words if word not in re.findall(r"\w+", SWITCHED_OFF)] == []

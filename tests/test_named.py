@@ -17,6 +17,7 @@ from reference.variation import told_apart, with_settings
 from reports.cli.terminal import PULSE, Terminal, progress
 from reports.grid.ending import FINE, REFUSED
 from reports.pages import catalogue
+from tests.present import present
 from tests.test_command_line import call, one_line
 
 # Files as a user writes them: a scene and an engine in a few lines, made of ours.
@@ -84,7 +85,7 @@ def test_the_folder_of_an_engine_hides_no_module_that_is_installed(here):
     written(here, "folder/mine_1.py", FALLING)
     written(here, "folder/this.py", "")
     registry.load(f"{here}/folder/mine_1.py:ENGINES")
-    assert not str(find_spec("this").origin).startswith(str(here))
+    assert not str(present(find_spec("this")).origin).startswith(str(here))
 
 
 @pytest.mark.parametrize(

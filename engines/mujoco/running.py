@@ -123,7 +123,7 @@ class MuJoCoRun:
     def _as_built(self, counts: Counts, read: Counts) -> Trajectory:
         """The motion by the steps of the model, after so many of them; reactions are read after `read`, of these."""
         step = self._dt
-        t = counts * step
+        t = counts.astype(float) * step
         with _listening(self.data) as complaints, self.model.hooked():
             position, velocity, clock, stepping = self._step(counts)
             # The clock falls behind when MuJoCo starts anew; the listener hears it, but only once per kind of trouble.
@@ -153,7 +153,7 @@ class MuJoCoRun:
         even = np.union1d(before, after)
         every = np.union1d(even, counts)
         found = self._as_built(every, read)
-        apart, spent = self._apart(found.pose[np.searchsorted(every, even)], even // 2, 2.0)
+        apart, spent = self._apart(found.pose[np.searchsorted(every, even)], np.floor_divide(even, 2), 2.0)
         apart = np.maximum(*(apart[np.searchsorted(even, around)] for around in (before, after)))
         return replace(_at(found, np.searchsorted(every, counts)), stepping=found.stepping + spent), apart
 

@@ -24,10 +24,11 @@ from numpy.typing import ArrayLike, NDArray
 from reference.andrews.dyad import Dyad, Moving, direction
 from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector
+from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics import windows
 from reference.plane import from_complex
-from reference.scene import Poses, Scene
+from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism, NonNegative, Positive, validated
 
@@ -236,10 +237,9 @@ class Andrews(Scene):
         pose, twist, acceleration = self._placement(times)
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
-    @validated
-    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """1 while the joints of all three pairs are on the sides where they started (...,), -1 after one has folded."""
-        angle = np.asarray(pose)[..., 2]
+        angle = pose[..., 2]
         folds = (
             (angle[..., 2] - QUARTER, angle[..., 1]),
             (angle[..., 4], angle[..., 3] - QUARTER),

@@ -14,11 +14,12 @@ from reference.four_bar.free_motion import BarAngles, CurveMotion
 from reference.four_bar.linkage import FourBar, Unreachable
 from reference.four_bar.moving import MovingFourBar
 from reference.joints import Drive, Joint, Pin, Vector
+from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
-from reference.scene import Poses, Scene
+from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism, Positive, Sign, validated
+from reference.validation import InvalidMechanism, Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -64,10 +65,9 @@ class FourBarScene(Scene):
         """Of crank, coupler and rocker [kg]."""
         return self.moving.masses
 
-    @validated
-    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
-        angle = np.asarray(pose)[..., 2]
+        angle = pose[..., 2]
         return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)
 
     def _mechanism(self, motion: BarAngles, *drives: Joint) -> Mechanism:

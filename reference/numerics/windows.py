@@ -51,6 +51,7 @@ class Motion(Protocol):
     @property
     def times(self) -> Array:
         """The ends of the steps (steps + 1,) [s]."""
+        ...
 
     def __call__(self, t: ArrayLike, /) -> Array: ...
 

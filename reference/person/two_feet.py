@@ -13,10 +13,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.kinds import Floats
 from reference.person.one_foot import OneFoot
 from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, THIGH, Segment
-from reference.scene import Poses
-from reference.validation import InvalidMechanism, Positive, Sign, validated
+from reference.validation import InvalidMechanism, Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -100,10 +100,8 @@ class TwoFeet(OneFoot):
         hip = np.arccos((square + thigh**2 - shank**2) / (2 * thigh * reach))
         return bearing + self.knees * ankle, bearing - self.knees * hip
 
-    @validated
-    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 where both knees bend to the left of their legs, -1 where both bend to the right, 0 otherwise."""
-        pose = np.asarray(pose)
         left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
         right = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))
         return np.where(left == right, left, 0).astype(int)

@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.joints import Drive, Joint, Pin, Slot
+from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics import windows
 from reference.numerics.integration import Rates, units_of_motion
-from reference.scene import Poses, Scene
+from reference.scene import Scene
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.trajectory import Trajectory
-from reference.validation import Positive, Sign, validated
+from reference.validation import Positive, Sign
 
 Array = NDArray[np.float64]
 
@@ -130,10 +131,9 @@ class DrivenSliderCrank(Scene):
         pose, twist, acceleration = self._placement(*self.crank_motion(times))
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
-    @validated
-    def branch_of(self, pose: Poses) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
-        pin = 2 * np.asarray(pose)[..., 0, 0]  # the crank's centre is halfway out to its pin
+        pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway out to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.joints import Pin, Slot
+from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.scene import Poses
 from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.trajectory import Trajectory
@@ -43,10 +43,9 @@ class RodEndInSlot(DrivenSliderCrank):
         pose, twist, acceleration = (part[:, :2] for part in self._placement(*self.crank_motion(times)))
         return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
-    @validated
-    def branch_of(self, pose: Poses) -> Any:
+    def _branch_of(self, pose: Floats) -> Any:
         """+1 where the rod points to the right, -1 to the left."""
-        return np.sign(np.cos(np.asarray(pose)[..., 1, 2])).astype(int)
+        return np.sign(np.cos(pose[..., 1, 2])).astype(int)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
 LONGEST = 1000.0  # s of motion
 SUFFIX = ".svg"
+# The words of `switch_off` in engines/mujoco/reading and engines/pymunk/reading, which are not imported for a help.
+SWITCHED_OFF = (
+    "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
+    "spring, damper, gravity or equality"
+)
 
 
 class Missed(Broken):
@@ -37,7 +42,7 @@ def check(
     as_json: Annotated[bool, typer.Option("--json", help="Print all numbers as JSON instead of the report.")] = False,
     without: Annotated[
         list[str] | None,
-        typer.Option("--without", help="Switch off contact, limit, frictionloss, armature ... (repeatable)."),
+        typer.Option("--without", help=f"Switch off {SWITCHED_OFF} (repeatable)."),
     ] = None,
     key: Annotated[str, typer.Option(help="The stored state to begin with, or none; the first unless given.")] = "",
     step: Annotated[float | None, typer.Option(help="Your step [s], instead of the model's own.")] = None,

@@ -59,7 +59,7 @@ def _moved(part: Part, random: np.random.Generator, lone: tuple[str, ...] = ()) 
     return replace(part, **found)  # type: ignore[type-var]
 
 
-def _rounded(values: tuple[float, ...], random: np.random.Generator) -> Any:
+def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
     signs = random.integers(-1, 2, len(values))
     return tuple(float(value * (1 + EPSILON * sign)) for value, sign in zip(values, signs, strict=True))
 
