@@ -22,6 +22,11 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, Positive, validated
 
+# All of these numbers are fitted: chosen by what random mechanisms of the seeds 1 and 22 needed (pins, slots, skates,
+# drives), MOST and DEAREST by what rough runs cost. They have not been changed since they were tried on 372 others of
+# all kinds (seed 501), in MuJoCo at 1, 3, 10 ms with 1, 2, 3, 10 steps a sample: of 4464 runs 3460 finished, wrong by
+# 8.6e-8 at most, and 1004 were unresolved, 57 of them although they were right. There one run in ten asked for a rough
+# one, and four mechanisms had their steps divided, by 3 to 21.
 SAMPLES = 16  # a motion that is fast for a while is met by some of them, and an error stays
 SHARE, FEWEST, MOST = 100, 64, 1024  # rough steps in the mechanism's time scale; at least; at most, or it is too long
 DEAREST = 1.0  # s, by the method's own formula: a rough run of long chains would cost more than smaller steps bring

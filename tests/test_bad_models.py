@@ -1,11 +1,13 @@
 """`crosscheck check` and what it can't check: each bad model is refused in one sentence, with what to do."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 import re
 
+import mujoco
 import pytest
-from mujoco import MjModel
 from pymunk import Space
 
 from engines import Unsupported
@@ -131,7 +133,7 @@ def test_a_step_longer_than_the_motion_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("switch_off", "model"), [(of_mujoco, lambda: MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
+    ("switch_off", "model"), [(of_mujoco, lambda: mujoco.MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
 )
 def test_the_help_names_all_that_can_be_switched_off(switch_off, model):
     with pytest.raises(ValueError, match="--without is 'rain'") as told:

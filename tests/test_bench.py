@@ -1,7 +1,7 @@
 """`crosscheck bench`: what it compares is the same motion, and what is missing is told."""
 
+import re
 import sys
-from functools import partial
 
 import pytest
 
@@ -132,17 +132,16 @@ def test_truths_stand_by_their_cost_and_a_scene_without_one_is_left_out():
     assert [seconds for _, seconds in found] == sorted((seconds for _, seconds in found), reverse=True)
 
 
-@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
-def test_crosscheck_bench_judge_prints_truths_figures_and_factors(monkeypatch, capsys):
-    monkeypatch.setattr("reports.cli.bench_judge.FEW", 3)
-    monkeypatch.setattr(judge, "REPEATS", 1)
-    monkeypatch.setattr(judge, "COST_LIMIT", 0.01)
-    monkeypatch.setattr(judge, "figures", partial(judge.figures, (3,)))
-    monkeypatch.setattr("reports.cli.selection.choose_cells", lambda *_: [Cell(BarPendulum(), pymunk.DEFAULT, 1)])
-    monkeypatch.setattr("engines.registry.ENGINES", (pymunk.DEFAULT, Lagrange("rk4")))
+def test_crosscheck_bench_judge_prints_what_was_measured_beside_what_is_asked_for(monkeypatch, capsys):
+    monkeypatch.setattr("reports.cli.selection.choose_cells", lambda *_: [Cell(Disc(), Toy(), 1)])
+    monkeypatch.setattr(judge, "truth_costs", lambda scenes: [(scene, 0.25) for scene in scenes])
+    monkeypatch.setattr(judge, "figures", lambda: [judge.Figure("one evaluation", 3e-6, "s", 5e-6)])
+    monkeypatch.setattr(judge, "batch_figures", lambda count: [judge.Figure(f"{count} four-bars", 7.0, "s")])
+    monkeypatch.setattr(judge, "beside_others", lambda *_: [judge.Beside(1e-6, 2e-3, 9e-3, "pymunk extended")])
     bench(["judge"])
-    told = capsys.readouterr().out
-    assert "the dearest truths" in told
-    assert "four-bar: one evaluation" in told
-    assert "3 four-bars: making them" in told
-    assert "factor [1]" in told
+    told = [re.split(r" *│ *| {2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
+    assert ["the dearest truths, of 0.25 s for the 1 of the full grid"] in told
+    assert [repr(Disc()), "0.25"] in told
+    assert ["one evaluation", "3.0e-6", "5.0e-6", "s"] in told
+    assert ["2000 four-bars", "7", "", "s"] in told
+    assert ["1.0e-6", "2", "9", "pymunk extended", "4.5"] in told  # milliseconds

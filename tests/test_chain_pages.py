@@ -22,7 +22,7 @@ from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
 from reports.charts.stroboscope import Strip, outline, stroboscope
 from reports.charts.theme import svg
-from reports.grid.cells import QUICK_LIMIT, Cell, estimated_cost, sweep_cells
+from reports.grid.cells import Cell, sweep_cells
 from reports.grid.measure import measure
 from reports.grid.outcomes import Outcome
 from reports.grid.tasks import answered
@@ -36,6 +36,7 @@ from reports.pages.slider_crank.experiments import GROOVE, LEVER
 from reports.text.rendering import render_page
 from tests import test_any_rows as rendering
 from tests.present import present
+from tests.toys import Disc, Toy
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
@@ -217,16 +218,15 @@ def test_a_pages_observations_are_computed_and_say_something(page):
     assert told
 
 
-def test_very_dear_quick_steps_are_left_out_but_never_the_coarsest():
-    page = n_four_bar.PAGE
-    engines = page.engines
-    cells = sweep_cells(page.scenes, engines, (1, 3, 10))
-    for scene in page.scenes:
-        for engine in engines:
-            own = [cell for cell in cells if (cell.scene, cell.engine) == (scene, engine)]
-            assert own[0].every == 1
-            assert all(estimated_cost(cell) <= QUICK_LIMIT for cell in own[1:])
-    assert len(cells) < 3 * len(page.scenes) * len(engines)
+@pytest.mark.parametrize(
+    ("step_cost", "kept"),
+    [(1e-6, [1, 3, 10, 30]), (1e-2, [1, 3, 10]), (1.0, [1])],  # s; a run of 20 samples takes 20 steps and more
+    ids=["cheap", "dear", "very dear"],
+)
+def test_very_dear_quick_steps_are_left_out_but_never_the_coarsest(step_cost, kept, monkeypatch):
+    monkeypatch.setattr(Toy, "step_cost", lambda *_: step_cost)
+    assert Disc().samples == 20
+    assert [cell.every for cell in sweep_cells((Disc(),), (Toy(variant=f"of {step_cost} s"),), (1, 3, 10, 30))] == kept
 
 
 def test_the_hundred_links_of_a_tree_and_of_free_bodies_agree():

@@ -241,8 +241,11 @@ def test_two_runs_of_the_same_model_are_equal_to_the_last_bit() -> None:
     assert np.array_equal(first.reaction, second.reaction)
 
 
-def test_the_bare_loop_takes_some_time() -> None:
-    assert bare_loop(DEFAULT, FREE.mechanism(), 1e-3, 200) > 0
+def test_the_bare_loop_takes_all_steps_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    step, times = mujoco.mj_step, []
+    monkeypatch.setattr(mujoco, "mj_step", lambda model, data: (step(model, data), times.append(data.time)))
+    bare_loop(DEFAULT, FREE.mechanism(), 1e-3, 200)
+    assert times == pytest.approx(np.arange(1, 201) * 1e-3)
 
 
 ONE_OF_EACH = """

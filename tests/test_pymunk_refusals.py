@@ -91,9 +91,12 @@ def test_a_motion_that_blows_up_is_a_result_and_not_an_exception(method):
     assert np.all(np.isnan(trajectory.reaction[~np.all(np.isfinite(trajectory.pose), axis=(1, 2))]))
 
 
-@every_method
-def test_the_bare_loop_takes_time_and_belongs_to_pymunk(method):
-    assert bare_loop(method, FREE, 1e-4, 2000) > 0
+@pytest.mark.parametrize(("engine", "levels"), [(TUNED, (1,)), (Extrapolated(TUNED, "two", (1, 3), (1,)), (1, 3))])
+def test_the_bare_loop_takes_all_steps_of_a_run(engine, levels, monkeypatch):
+    steps = []
+    monkeypatch.setattr("engines.pymunk.repeat", lambda _, count: steps.append(count) or range(count))
+    bare_loop(engine, FREE, 1e-4, 20)
+    assert steps == [20 * level for level in levels]
 
 
 def test_the_bare_loop_of_another_engine_is_refused():

