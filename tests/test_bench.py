@@ -2,6 +2,7 @@
 
 import re
 import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -15,11 +16,22 @@ from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 from reports.bench.loops import loop_costs
 from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, timings_alike
 from reports.cli.bench import bench
+from reports.grid import spending
 from reports.grid.cells import Cell
 from reports.grid.outcomes import Outcome
 from reports.grid.pool import run_items
 from reports.grid.tasks import Motion
 from tests.toys import Disc, FailingToy, Toy
+
+
+def test_a_part_is_charged_without_the_parts_inside_it(monkeypatch):
+    clock = iter([0.0, 1.0, 4.0, 10.0])
+    spending.taken()
+    monkeypatch.setattr(spending, "time", SimpleNamespace(process_time=lambda: next(clock)))
+    with spending.spending("outer"), spending.spending("inner"):
+        pass
+    assert spending.taken() == {"outer": 7.0, "inner": 3.0}
+    assert spending.taken() == {}
 
 
 def test_the_bench_times_the_same_motion_as_pylinkage():

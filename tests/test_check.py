@@ -13,7 +13,10 @@ from engines.mujoco import TUNED
 from engines.mujoco.written_urdf import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
+from engines.reading import Give
 from reference.four_bar import FreeFourBar
+from reference.joints import Drive, Pin
+from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
 from reports.check import rendering, settings
 from reports.check.checked import check
@@ -193,6 +196,18 @@ def test_equations_of_the_check_are_those_of_the_scenes_forces():
         np.testing.assert_allclose(told, truth.reaction[0], rtol=0, atol=1e-8 * np.abs(truth.reaction).max())
 
 
+def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
+    joints = (Pin("hinge", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 3.0, 0.0))
+    at_rate = Mechanism((Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 3.0)),), joints)
+    none = np.zeros(3)
+    give = Give(none, np.full(3, 10.0), none, np.full(3, np.nan))
+    for rate in (3.0, 2.0):
+        twist = np.array([[0.0, 0.0, rate]])
+        found = accelerations(at_rate, at_rate.pose, twist, 0.0, give)
+        # Rows without compliance: the rate's own row is -damping times the slip, exactly.
+        assert found[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
+
+
 def test_freedoms_modes_and_singular_positions_are_told():
     mechanism = PENDULUM_1.mechanism()
     facts = facts_of(mechanism, judged(mechanism, 20, 0.01).trajectory)
@@ -254,6 +269,11 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     numbers = json.loads(json.dumps(data(found), allow_nan=False))
     assert numbers["error"] == found.own_errors.largest
     assert len(numbers["over_time"]["t"]) == len(found.own_errors.t)
+    for name, setting in (("advised", found.advised), ("next_decade", found.decade)):
+        assert numbers[name] == (setting and next(t for t in numbers["tried"] if t["words"] == setting.change.words))
+    for setting, each in zip(found.table, numbers["tried"], strict=True):
+        told = (setting.change.words, setting.error, setting.errors.worst("reaction"))
+        assert (each["words"], each["error"], each["reaction"]) == told
 
 
 def test_a_model_at_rest_says_that_nothing_moves(tmp_path):

@@ -76,6 +76,19 @@ def test_a_difference_in_the_inertia_would_be_noticed(monkeypatch: pytest.Monkey
     assert disagreement(mujoco.MjModel.from_xml_string(branching_tree())) > AGREEMENT
 
 
+def test_states_away_from_the_models_own_are_asked_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    right, places = mujoco.mj_forward, []
+
+    def noted(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        places.append(tuple(data.qpos))
+        right(model, data)
+
+    monkeypatch.setattr(factorisation.mujoco, "mj_forward", noted)
+    disagreement(mujoco.MjModel.from_xml_string(branching_tree()), states=4)
+    assert len(set(places)) == 4
+    assert places[0] == (0.0,) * len(PARENTS)
+
+
 @pytest.mark.slow
 def test_the_guard_catches_release_4_0_0(tmp_path: Path) -> None:
     home = tmp_path / "environment"

@@ -19,8 +19,8 @@ from engines.conformance import cases
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio.model import Model
-from reference.forces import Force, TorsionSpring
-from reference.joints import Drive, Pin, Rod, Slot
+from reference.forces import Force, Torque, TorsionSpring
+from reference.joints import Drive, Gear, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reports.cli.selection import choose_cells, choose_engines
@@ -354,6 +354,22 @@ CONFIGURATIONS = {
             (TorsionSpring("spring", None, "wheel", 0.1),),
         ),
         1.5,
+    ),
+    "a gear that turns half as fast, the other way": (
+        Mechanism(
+            (bar("first", (0.5, 0.0, 0.0)), bar("second", (2.5, 0.0, 0.0))),
+            (
+                HUNG[0],
+                Pin("other hinge", None, "second", (2.0, 0.0), (-0.5, 0.0)),
+                Gear("gear", "first", "second", -0.5, 0.0),
+            ),
+            (0.0, -9.81),
+        ),
+        0.3,
+    ),
+    "a torque between two bodies": (
+        Mechanism(TWO, HUNG, (0.0, 0.0), (Torque("torque", "first", "second", 1.0),)),
+        0.3,
     ),
     "two forces on a body": (
         Mechanism(

@@ -7,11 +7,13 @@ from dataclasses import fields, replace
 import pytest
 
 from engines import EXACT, Promise, Unpromised, mujoco, pymunk
+from engines.altered import Altered
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.mujoco.methods import DRIVES, ROLLS, SKATES
 from engines.pymunk.methods import ROLL_STALE_PIVOT, SKATE_PROJECTED
+from reference.forces import Torque
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.pendulum.link import BarPendulum
@@ -43,6 +45,19 @@ def test_a_motion_is_known_by_its_joints_loads_and_start():
     assert [is_prescribed(each) for each in (FREE, MOVING, DRIVEN, SKATE, GEARS)] == [False, False, True, False, True]
     assert [turns_steadily(each) for each in (SPINNING, HANGING, MOVING, SKATE)] == [True, False, False, False]
     assert not turns_steadily(replace(SPINNING, gravity=(0.0, -9.81)))
+    assert not turns_steadily(replace(SPINNING, forces=(Torque("brake", None, "disc", -1.0),)))
+    arm, rim = (
+        Body("arm", 1.0, 0.5, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0)),
+        Pin("rim", "disc", "arm", (1.0, 0.0), (0.0, 0.0)),
+    )
+    assert not turns_steadily(replace(SPINNING, bodies=(*SPINNING.bodies, arm), joints=(*SPINNING.joints, rim)))
+
+
+def test_an_altered_engine_is_held_to_what_is_promised_of_the_mechanism_as_it_is():
+    inside = mujoco.DEFAULT
+    altered = Altered(inside, lambda mechanism: replace(mechanism, joints=mechanism.joints[:2]))
+    assert altered.softness(FREE, 1e-3) == inside.softness(FREE, 1e-3) != inside.softness(altered.change(FREE), 1e-3)
+    assert altered.order(FREE) == inside.order(FREE) != inside.order(altered.change(FREE))
 
 
 @pytest.mark.parametrize(

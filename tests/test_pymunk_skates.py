@@ -16,6 +16,7 @@ from reference.mechanism import Body, Mechanism
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory, energy
 from reference.wheels.car_and_trailer import CarAndTrailer
+from tests.present import present
 
 SLEIGH, CAR = ChaplyginSleigh(), CarAndTrailer()
 SLED = SLEIGH.mechanism()
@@ -46,6 +47,17 @@ def slip(scene, trajectory: Trajectory) -> float:
 def test_a_row_held_at_the_end_of_each_step_is_of_first_order(engine):
     coarse, fine = (position_error(engine, SLEIGH, every) for every in (10, 40))
     assert np.log2(coarse / fine) / 2 == pytest.approx(1, abs=0.1)  # the next power of the step is 1e-2 of this
+
+
+def test_a_groove_says_that_it_slips_where_it_is_aimed_too_late_and_there_alone():
+    step, (late, aimed) = 1e-3, (methods.SKATE_STALE_GROOVE, methods.SKATE_GROOVE)
+    soft = present(late.softness(SLED, step))
+    assert (soft.rows, soft.complete) == ((True,), False)
+    assert aimed.softness(SLED, step) is None
+    # What the row's missing velocity term leaves after a step, about; the other's is rounding.
+    term = step * largest(SLED.bias(SLED.pose, SLED.twist))
+    slips = [slip(SLEIGH, engine.build(SLED, step)(2, 1)) for engine in (late, aimed)]
+    assert slips[0] > term > 1e9 * slips[1]
 
 
 def test_no_slip_proves_nothing_the_shifted_velocity_is_another_motion_at_any_step():

@@ -12,6 +12,7 @@ import pytest
 
 from engines import Unsupported
 from engines.mujoco.reading import read
+from engines.mujoco.reading.other_settings import switch_off
 from engines.mujoco.reading.places import positions
 from engines.reading import Obstacle, Reading
 from reports.check.comparing import refuse_disagreement
@@ -231,6 +232,18 @@ def test_an_element_that_explains_a_disagreement_is_named():
     reading = read(model, moving(model))
     with pytest.raises(Unsupported, match="agree without 'damper'"):
         refuse_disagreement(changed(reading, forces=()))
+
+
+@pytest.mark.parametrize("option", ['density="1000"', 'viscosity="10"'])
+def test_a_fluid_that_is_switched_off_moves_nothing(option):
+    model = model_of(PENDULUM, "", option)
+    data = moving(model)
+    wet = data.qacc.copy()
+    switch_off(model, "fluid")
+    mujoco.mj_forward(model, data)
+    dry = moving(model_of(PENDULUM)).qacc
+    assert np.array_equal(data.qacc, dry)
+    assert np.abs(wet - dry).max() > 1e-3 * np.abs(dry).max()
 
 
 def test_softness_as_declared_is_what_mujoco_does():

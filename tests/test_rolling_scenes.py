@@ -40,6 +40,16 @@ def times(scene):
     return np.linspace(0, scene.duration, scene.samples + 1)
 
 
+def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
+    scene = RollingDownhill()
+    truth = scene.motion(np.array([0.0, scene.duration]))
+    along, up = truth.pose[1, 0, :2] - truth.pose[0, 0, :2]
+    assert along < -2
+    # It sinks by the slope, but for the 0.1 m by which its half axes differ.
+    assert up == pytest.approx(math.tan(scene.slope) * along, abs=0.11)
+    assert abs(truth.twist[1, 0, 2]) > abs(truth.twist[0, 0, 2])
+
+
 @by_name(SCENES)
 def test_the_truth_keeps_energy_contact_and_newtons_law(scene):
     mechanism, t = scene.mechanism(), times(scene)

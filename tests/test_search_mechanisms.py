@@ -10,10 +10,12 @@ import pytest
 
 from engines.lagrange import TRUTH
 from reference.forces import Spring, TorsionSpring
+from reference.joints import Slot
 from reference.validation import InvalidMechanism
 from reports.search.mechanisms import ALL, mechanism, recipe
 from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim, as_text, from_text, ladder
 from reports.search.recipe import LEAST_RANK, build
+from reports.search.renumbered import renumbered
 
 CASES = range(40)
 
@@ -35,6 +37,14 @@ PUBLISHED = (
     'tion": -1, "mass": -1, "offset": [-7, -6], "size": 1, "velocity": [2, -2, -6]}, {"angle": -9, "gyrat'
     'ion": -2, "mass": -3, "offset": [-3, -3], "velocity": [0, 3, 1]}]}'
 )
+
+
+def test_the_point_of_a_slots_line_lies_beside_the_slide():
+    """Adapters meet lines whose own point is elsewhere: at `more` tenths of the size along it."""
+    slot = build(Recipe((Part(offset=(3, 4)),), (Link("slot", 0, 1, (1, 2), turn=2, more=-8),), (0, -10))).joints[0]
+    assert isinstance(slot, Slot)
+    along = -0.8 * np.array([np.cos(0.6), np.sin(0.6)])
+    assert slot.first_point == pytest.approx(np.array([0.4, 0.6]) + along, abs=1e-15)
 
 
 @pytest.mark.parametrize("decades", [0, 2])
@@ -117,6 +127,16 @@ def test_all_that_is_promised_comes_up():
         10 ** np.ptp([np.log10(float(ladder(part.mass))) for part in recipe(6, n, decades=3).parts]) for n in CASES
     ]
     assert max(masses) > 1e6
+
+
+def test_a_shape_keeps_its_ratios_of_gears_and_gets_other_numbers_for_all_else():
+    random = np.random.default_rng(3)
+    shape = next(drawn for n in CASES if "gear" in (drawn := recipe(5, n, ("pin", "gear", "drive"))).kinds)
+    others = [renumbered(shape, lambda low, high: int(random.integers(low, high + 1))) for _ in range(5)]
+    for link, *changed in zip(shape.links, *(other.links for other in others), strict=True):
+        assert {each.kind for each in changed} == {link.kind}
+        assert ({each.more for each in changed} == {link.more}) == (link.kind == "gear" or not link.more)
+    assert len({as_text(each) for each in (shape, *others)}) == 6
 
 
 def test_a_recipe_survives_being_written():

@@ -180,6 +180,14 @@ def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wron
     assert found(wrong) == {name}
 
 
+@pytest.mark.parametrize("name", ["in other masses", "in other lengths"])
+def test_a_case_that_is_written_in_units_of_its_own_is_asked_in_others_too(name: str) -> None:
+    subject, number = Adapted(Lagrange("rk4", "projection")), NAMES.index(name)
+    cases = [case for n in range(12) if all((case := subject.draw(SEED, n, ("pin",), 2)).decades[:2])]
+    told = [subject.ask(case, number, ("relations",)) for case in cases]
+    assert {name} == {each for one in told for each in one.errors} > {fault for one in told for fault in one.faults}
+
+
 @dataclass(frozen=True)
 class Single(Lagrange):
     """Computes in single precision, as it says, and feels so much of its gravity's part along x."""

@@ -154,6 +154,11 @@ def test_sections_that_lessons_quote_are_on_their_pages():
     assert section("# A\n\ntext\n", "Nothing") is None
 
 
+def test_a_comment_in_code_ends_no_section_and_a_heading_of_a_higher_rank_does():
+    page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
+    assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
+
+
 def test_a_picture_stands_without_a_script():
     drawing = picture(shown(take_of("rolling", "ellipse"), {}), "An ellipse")
     assert drawing.startswith('<svg class="stage" viewBox="')

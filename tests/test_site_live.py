@@ -16,13 +16,17 @@ from engines import Unsupported
 from engines import mujoco as mujoco_engine
 from engines import pymunk as pymunk_engine
 from engines.pymunk.methods import SKATE_GROOVE
+from reference.curves.circles_lines import Circle
 from reference.four_bar import DrivenFourBar
+from reference.plane import rotated
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
 from reference.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reports.site.embed import forces
-from reports.site.joints import demanded, loose, measure_of, opened
+from reports.site.joints import demanded, loose, measure_of, opened, place_of
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
@@ -179,6 +183,15 @@ def test_slips_and_openings_are_those_of_the_mechanism():
     (contact,) = loose(mechanism)
     lifted = motion.pose + np.array([1e-3, 2e-3, 0.0])
     assert opened(mechanism, contact, lifted, motion.twist) == pytest.approx(np.array([[1e-3, 2e-3]] * 2), abs=1e-9)
+
+
+def test_a_contact_turns_with_the_body_on_which_something_rolls():
+    joint = Roll("roll", "first", "second", Rolling.at_arcs(Circle(0.3), Circle(0.5)))
+    first, second = np.array([[0.0, 0.0, 0.0]]), np.array([[0.8, 0.0, 0.4]])
+    place, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
+    second_turned = [*(shift + rotated(turn, second[0, :2])), 0.4 + turn]
+    turned = place_of(joint, np.array([[*shift, turn]]), np.array([second_turned]))
+    assert turned[0] == pytest.approx(shift + rotated(turn, place[0]), abs=1e-14)
 
 
 def test_friction_that_is_demanded_is_that_of_the_rolling_body():

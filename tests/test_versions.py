@@ -17,7 +17,9 @@ from engines.mujoco import model as mujoco_model
 from engines.mujoco.written_model import Written
 from reference.four_bar import FreeFourBar
 from reference.scenes import SCENES
+from reports.cli import compare
 from reports.cli.commands import invoke
+from reports.cli.terminal import Terminal
 from reports.grid.cells import Cell
 from reports.grid.ending import BadInput, Broken
 from reports.grid.measure import blank
@@ -316,6 +318,22 @@ def test_worse_is_more_than_three_times_as_large_and_cost_is_told():
     ] == [("outcome", False)]
     orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)])
     assert [(round(turn.before), round(turn.after)) for turn in orders.turns] == [(2, 1)]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "verdict"),
+    [
+        (ended(Outcome.TORN), [row(1e-3)], "better"),
+        (ended(Outcome.TORN), ended(Outcome.RESET), "other"),
+        ([row(1e-3)], [row(1e-5)], "better"),
+        ([row(1e-3)], ended(Outcome.TORN), "WORSE"),
+    ],
+)
+def test_an_outcome_is_better_where_it_finishes_and_another_kind_of_end_is_none(capsys, before, after, verdict):
+    sides = [compare.Side(label, "mujoco", Path(), False) for label in ("old", "new")]
+    compare._print(Terminal(compare.WIDTH), compared(before, after), sides)
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if before[0].scene in line)
+    assert verdict in line.split()[-1]
 
 
 def test_random_trees_tell_ideal_constraints_from_wrong_ones():

@@ -314,9 +314,10 @@ def test_a_trailer_that_is_folded_at_the_start_is_told_by_its_number(bends, whic
     assert (found.jackknifed_at, found.jackknifed) == (None if which is None else 0.0, which)
 
 
-def test_the_second_trailer_that_folds_to_the_right_is_told_by_its_number():
+@pytest.mark.parametrize("bend", [-0.3, 0.3])
+def test_the_second_trailer_that_folds_to_either_side_is_told_by_its_number(bend):
     car = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
-    found = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, -0.3), [4.0], limit=1.0)
+    found = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
     assert found.jackknifed == 2
     # Straight behind the car, the first trailer's axle pushes the second as a tow.
     at = present(found.jackknifed_at)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reference.numerics import integration, windows
-from reference.numerics.integration import IntegrationFailed
+from reference.numerics.integration import IntegrationFailed, hopeless
 from reference.pendulum.scenes import LinkPendulum
 
 EXTENDED = np.finfo(np.longdouble).eps < 1e-18
@@ -100,6 +100,12 @@ def test_a_motion_that_does_not_last_is_refused():
         windows.integrate(lambda angle, rate: rate**2, [0.0], [1.0], 2.0, 1.0)  # 1 / (1 - t)
     with pytest.raises(ValueError, match="times must lie in"):
         windows.integrate(pull, [1.0, 1.0], [0.0, 1.0], 0.01, 1.0)([0.02])
+
+
+def test_a_motion_that_only_begins_in_small_steps_is_not_given_up():
+    # 201 of 20,000 steps are taken: those left must each be as long as 50 of the longest so far, or as 200.
+    assert not hopeless(0.0, 1.0, 1e-6, 201, 20_000)
+    assert hopeless(0.0, 4.0, 1e-6, 201, 20_000)
 
 
 def test_a_body_at_rest_stays_there():
