@@ -80,7 +80,8 @@ def test_forces_without_a_limit_are_too_much_for_pymunk_tuned_at_the_smallest_st
     assert stays(found["mujoco default"])
     assert max(row.angle for row in found["mujoco extended"]) < 1e-6
     assert not falls(found["mujoco extended"], 1.0)
-    assert max(row.angle for row in found["pymunk extended"]) < 1e-10
+    # Its sweeps don't converge there, whatever the step: it says so, and by how much it may be wrong.
+    assert all("unresolved" in f"{row.outcome} {row.sentence}" for row in found["pymunk extended"])
     assert all(row.estimate > row.angle for row in found["pymunk extended"])
 
 
@@ -107,9 +108,8 @@ def test_sweeps_on_a_heavy_tip() -> None:
     assert comparable(found["mujoco tuned"]) == [False, True, True]
     # They divide a step that is too long, and say that their estimate is above what they claim.
     for name in ("mujoco extended", "mujoco extended, free, sparse Newton"):
-        assert comparable(found[name]) == [False, True, True]
-        assert found[name][0].outcome == Outcome.UNRESOLVED
-        assert found[name][0].angle < 1e-2
+        assert outcomes(found[name]) == [Outcome.UNRESOLVED, Outcome.UNRESOLVED, Outcome.FINISHED]
+        assert [row.angle < most for row, most in zip(found[name], (1e-2, 1e-7, 1e-8), strict=True)] == 3 * [True]
 
 
 def test_beyond_the_horizon_only_methods_of_higher_order_are_right_and_only_at_the_small_step() -> None:
@@ -190,5 +190,10 @@ def test_what_the_map_of_slots_near_their_reach_says() -> None:
     *coarse, finest = found["pymunk default", nearest]
     assert set(coarse) == {Outcome.BRANCH_FLIP}
     assert finest.comparable
-    for name in ("pymunk tuned", "pymunk extended", "mujoco tuned", "mujoco extended"):
+    for name in ("pymunk tuned", "mujoco tuned"):
         assert all(o.comparable for reach in slider_crank_failures.REACHES for o in found[name, reach])
+    # Methods with a claim fall short of it at the longer steps, and say so.
+    for name in ("pymunk extended", "mujoco extended"):
+        own = [found[name, reach] for reach in slider_crank_failures.REACHES]
+        assert {o for each in own for o in each} == {Outcome.FINISHED, Outcome.UNRESOLVED}
+        assert all(each[-1] == Outcome.FINISHED for each in own)
