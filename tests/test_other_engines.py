@@ -292,8 +292,8 @@ def test_extras_stand_beside_the_grid_at_its_quick_steps_and_never_in_it():
 
 def test_whole_turns_are_taken_back_by_what_rates_predict():
     t = np.arange(50) * 0.1
-    angle = (3.0 * np.sin(2 * t) + 20 * t)[:, None]
-    rate = (6.0 * np.cos(2 * t) + 20)[:, None]
+    angle = (3.0 * np.sin(2 * t) + 50 * t)[:, None]
+    rate = (6.0 * np.cos(2 * t) + 50)[:, None]
     wrapped = np.arctan2(np.sin(angle), np.cos(angle))
     np.testing.assert_allclose(single_run.unwrapped(wrapped, rate, angle[0], 0.1), angle, atol=1e-12)
 
