@@ -81,13 +81,16 @@ def cluster(scheduler: str) -> Iterator[Cluster]:
             try:
                 where: Any = scheduler
                 if local:
-                    stack.enter_context(dask.config.set(QUIET))  # pyright: ignore[reportPrivateImportUsage]
+                    # The scheduler, and not its workers alone, keeps a folder where this says.
+                    scratch = str(stack.enter_context(temporary_folder()))
+                    own = {**QUIET, "temporary-directory": scratch}
+                    stack.enter_context(dask.config.set(own))  # pyright: ignore[reportPrivateImportUsage]
                     where = stack.enter_context(
                         distributed.LocalCluster(
                             n_workers=int(local[1]),
                             processes=False,  # cells have processes of their own (`foreman.Inside`)
                             threads_per_worker=1,
-                            local_directory=str(stack.enter_context(temporary_folder())),
+                            local_directory=scratch,
                             dashboard_address="127.0.0.1:0",  # any free port, seen from this machine alone
                             memory_limit=None,  # cells have processes of their own, which it would not see
                             silence_logs=logging.CRITICAL,
