@@ -92,6 +92,17 @@ def test_what_a_kill_left_is_swept_and_what_somebody_holds_or_has_named_is_not(t
     assert sorted(tmp_path.iterdir()) == sorted(mine)
 
 
+def test_a_folder_for_sockets_has_a_path_that_a_socket_can_have(tmp_path, monkeypatch):
+    long = tmp_path / ("a" * 60)
+    long.mkdir()
+    monkeypatch.setattr(temporary.tempfile, "gettempdir", lambda: str(long))
+    monkeypatch.setattr(temporary, "_own", {})
+    folder = temporary.lasting_folder.__wrapped__()
+    assert len(f"{folder}/listener-12345678") < 104
+    remove_all()
+    assert not folder.exists()
+
+
 def test_all_folders_of_a_process_go_at_once(tmp_path, monkeypatch):
     monkeypatch.setattr(temporary, "_own", {})  # of this process' own, its workers' stays
     with temporary_folder(tmp_path), temporary_folder(tmp_path):

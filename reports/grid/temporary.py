@@ -24,6 +24,9 @@ except ImportError:  # Windows: nothing is swept there
 
 PREFIX, SUFFIX = ".crosscheck-", ".part"
 NAME = re.compile(rf"{re.escape(PREFIX)}[a-z0-9_]{{8}}{re.escape(SUFFIX)}")  # of no folder that somebody else makes
+# Sockets stand in a folder that lasts, and systems take 104 bytes of their path at least: this is what is left of them
+# for the folder's place.
+LONGEST_PLACE = 104 - len(f"/{PREFIX}12345678{SUFFIX}/listener-12345678") - 1
 TRIES = 20  # to remove a folder into which a process writes that is just being ended
 
 _own: dict[Path, int | None] = {}  # folder -> what holds its lock
@@ -45,9 +48,14 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 @cache
 def lasting_folder() -> Path:
-    """A folder for as long as this process lives: for a library that removes its own only if nothing interrupts it."""
+    """A folder for as long as this process lives: for a library that removes its own only if nothing interrupts it.
+
+    It stands in the system's place for such, or in /tmp where the name of that one is too long for a socket.
+    """
     atexit.register(remove_all)
-    return _made(Path(tempfile.gettempdir()))
+    place = Path(tempfile.gettempdir())
+    too_long = len(os.fsencode(place)) > LONGEST_PLACE and os.access("/tmp", os.W_OK)
+    return _made(Path("/tmp") if too_long else place)
 
 
 def remove_all() -> None:
