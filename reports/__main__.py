@@ -36,7 +36,7 @@ def _ended(arguments: list[str]) -> int:
     """Run a command; its exit status. What is wrong is told on stderr."""
     from contextlib import suppress
 
-    from reports.grid.ending import REFUSED, UNREAD, BadInput, Ending
+    from reports.model.ending import REFUSED, UNREAD, BadInput, Ending
 
     try:
         from planar_crosscheck import clash

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from reports.cli.selection import shown_cells
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, blank
-from reports.grid.outcomes import Outcome
-from reports.pages.page import Page
-from reports.text.csv_files import digest
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank
+from reports.model.outcomes import Outcome
+from reports.model.page import Page
+from reports.write.csv_files import digest
 
 RESULTS = Path(__file__).parents[1] / "reports" / "results"
 KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module

@@ -12,11 +12,11 @@ from reports.gate.baseline import Old
 from reports.gate.change import moved
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.gate.verdicts import Case, checks
-from reports.grid.cells import FULL, Cell, estimated_cost
-from reports.grid.measure import Measurement, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.cells import FULL, Cell, estimated_cost
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
 from tests.mistakes import Mistake, mistaken
 
 

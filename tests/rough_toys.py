@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.trajectory import Trajectory
-from reports.grid.worker import LARGEST
+from reports.run.worker import LARGEST
 from tests.toys import Toy
 
 

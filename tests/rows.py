@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
 
 # Errors, step and costs are two-digit primes times a power of ten, so that a printed pair of digits names its field;
 # counts are three-digit primes.

@@ -43,7 +43,7 @@ from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
 from tests.mechanisms import four_bar
 
 SCENES_OF_LIMITS = (

@@ -14,8 +14,8 @@ import pytest
 from engines import mujoco, pymunk
 from reference.four_bar import FreeFourBar
 from reports.cli.commands import invoke
-from reports.grid.ending import BadInput, FileTrouble
-from reports.grid.tasks import answered
+from reports.model.ending import BadInput, FileTrouble
+from reports.model.tasks import answered
 from reports.site.animated import PAUSE, animation, decades
 from reports.site.embed import Shown, shown
 from reports.site.film import ffmpeg, film

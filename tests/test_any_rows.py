@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.charts import theme
 from reports.check.shown import Pose, Shown
 from reports.cli.selection import shown_cells
 from reports.gate.declared import Softened
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, blank
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
-from reports.grid.tasks import Answer, Motion, Task, answered
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page, no_words
+from reports.model.quantities import QUANTITIES
+from reports.model.tasks import Answer, Motion, Task, answered
 from reports.pages.engines.capabilities import ASKED, Capabilities
 from reports.pages.engines.open_work import OpenWork
 from reports.pages.engines.velocity_term import VelocityTerm
@@ -35,9 +35,9 @@ from reports.pages.faults.groove import Grooves, Offsets
 from reports.pages.faults.scripts import Script
 from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
-from reports.pages.page import Material, Page, no_words
 from reports.pages.pendulum.neighbours import Neighbours
 from reports.pages.published import acrobot, newton
+from reports.pages.rendering import render_index, render_page, render_readme
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
@@ -50,9 +50,9 @@ from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels.folding import Folding
 from reports.pages.your_model.answers import Walk
-from reports.text.rendering import render_index, render_page, render_readme
-from reports.text.templates import environment
-from reports.text.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
+from reports.plots import theme
+from reports.write.templates import environment
+from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, page_rows
 
 SUBSETS, MORE = 3, 16  # of every page: every day, and among the slow tests

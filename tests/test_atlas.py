@@ -16,14 +16,12 @@ from matplotlib.patches import PathPatch
 from engines import Softness
 from engines.registry import VARIANTS
 from reference.pendulum.scenes import LinkPendulum
-from reports.charts.stability import outcome_colour
-from reports.charts.theme import LIGHT
-from reports.grid.cells import Cell
-from reports.grid.ending import FINE, REFUSED
-from reports.grid.measure import TORN, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.store import Store
-from reports.grid.tasks import Answer
+from reports.model.cells import Cell
+from reports.model.ending import FINE, REFUSED
+from reports.model.measure import TORN, measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
+from reports.model.tasks import Answer
 from reports.pages.atlas import page
 from reports.pages.atlas.chart import atlas_map, edges
 from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps
@@ -43,8 +41,10 @@ from reports.pages.atlas.table import (
     read,
     read_costs,
 )
-from reports.pages.page import Material
-from reports.text.rendering import render_page
+from reports.pages.rendering import render_page
+from reports.plots.stability import outcome_colour
+from reports.plots.theme import LIGHT
+from reports.run.store import Store
 from tests.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
 

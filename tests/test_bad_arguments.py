@@ -25,7 +25,7 @@ from reference.scene import Scene
 from reference.scenes import SCENES
 from reference.skate.parking import park
 from reference.validation import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
 from tests.arguments import Trial, dataclasses_of_the_suite, functions_of_the_suite, trials
 from tests.mechanisms import four_bar
 from tests.samples import INSTANCES, SCENES_OF_LIMITS

@@ -16,11 +16,11 @@ from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 from reports.bench.loops import loop_costs
 from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, timings_alike
 from reports.cli.bench import bench
-from reports.grid import spending
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Outcome
-from reports.grid.pool import run_items
-from reports.grid.tasks import Motion
+from reports.model import spending
+from reports.model.cells import Cell
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Motion
+from reports.run.pool import run_items
 from tests.toys import Disc, FailingToy, Toy
 
 

@@ -20,20 +20,20 @@ from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCent
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
-from reports.charts.stroboscope import Strip, outline, stroboscope
-from reports.charts.theme import svg
-from reports.grid.cells import Cell, sweep_cells
-from reports.grid.measure import measure
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import answered
+from reports.model.cells import Cell, sweep_cells
+from reports.model.measure import measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
+from reports.model.tasks import answered
 from reports.pages.n_four_bar import page as n_four_bar
-from reports.pages.page import Material
 from reports.pages.pendulum import page as pendulum
 from reports.pages.pendulum.experiments import hardened
 from reports.pages.person import page as person
+from reports.pages.rendering import render_page
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
-from reports.text.rendering import render_page
+from reports.plots.stroboscope import Strip, outline, stroboscope
+from reports.plots.theme import svg
 from tests import test_any_rows as rendering
 from tests.present import present
 from tests.toys import Disc, Toy

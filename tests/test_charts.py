@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from engines import registry
-from reports.charts import families
-from reports.charts import work_precision as charts
-from reports.charts.families import role
-from reports.charts.theme import DARK, LIGHT, SERIES
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import quantity
-from reports.grid.scaling_fit import Point, Series, cost_exponent
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
+from reports.model.scaling_fit import Point, Series, cost_exponent
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.scaling.chart import _spread, scaling_chart
+from reports.plots import families
+from reports.plots import work_precision as charts
+from reports.plots.families import role
+from reports.plots.theme import DARK, LIGHT, SERIES
 from tests.drawn import annotation
 from tests.rows import falling, row_of
 from tests.toys import Toy

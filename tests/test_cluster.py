@@ -20,20 +20,20 @@ import pytest
 
 from engines.registry import VARIANTS
 from reference.four_bar.scenes import FreeFourBar
-from reports.grid import cluster as clusters
-from reports.grid import fingerprint
-from reports.grid.cells import Cell
-from reports.grid.cluster import cluster
-from reports.grid.ending import REFUSED, BadInput
-from reports.grid.fingerprint import digest_of, modules_of
-from reports.grid.foreman import Request, refused
-from reports.grid.measure import TIMINGS
-from reports.grid.outcomes import Loss, Outcome
-from reports.grid.pool import run_cells
-from reports.grid.running import run_into
-from reports.grid.store import Store
-from reports.grid.supervisor import WorkersLost
-from reports.grid.tasks import Motion
+from reports.model import fingerprint
+from reports.model.cells import Cell
+from reports.model.ending import REFUSED, BadInput
+from reports.model.fingerprint import digest_of, modules_of
+from reports.model.measure import TIMINGS
+from reports.model.outcomes import Loss, Outcome
+from reports.model.tasks import Motion
+from reports.run import cluster as clusters
+from reports.run.cluster import cluster
+from reports.run.foreman import Request, refused
+from reports.run.pool import run_cells
+from reports.run.running import run_into
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost
 from tests.rough_toys import end_the_supervisor
 from tests.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, SlowToy, Toy
@@ -293,6 +293,6 @@ def _foremen(before: set[int]) -> list[int]:
     found = []
     for process in psutil.process_iter(["pid", "cmdline"]):
         line = process.info["cmdline"] or []
-        if process.info["pid"] not in before and "reports.grid.foreman" in line:
+        if process.info["pid"] not in before and "reports.run.foreman" in line:
             found.append(process.info["pid"])
     return found

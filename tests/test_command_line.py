@@ -13,11 +13,11 @@ import pytest
 from reports import __main__ as program
 from reports.cli import commands, selection
 from reports.cli import report as report_command
-from reports.grid import files
-from reports.grid.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
-from reports.grid.files import write_whole
-from reports.grid.store import Store
-from reports.text.csv_files import as_csv
+from reports.model.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
+from reports.run import files
+from reports.run.files import write_whole
+from reports.run.store import Store
+from reports.write.csv_files import as_csv
 from tests.rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -118,9 +118,9 @@ def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
 
 def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
-    from reports.grid.cells import Cell
-    from reports.pages import catalogue
-    from reports.text import rendering
+    from reports.model import catalogue
+    from reports.model.cells import Cell
+    from reports.pages import rendering
     from tests.test_reports import PAGE
     from tests.toys import Disc, Toy
 
@@ -133,7 +133,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     )
     monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
-        from reports.grid.measure import measure
+        from reports.model.measure import measure
 
         store.put(measure(cell, repeat=False))
     assert call("report") == FINE

@@ -12,7 +12,6 @@ from engines import Promise, registry
 from reference.scene import Scene
 from reference.scenes import SCENES
 from reports.gate.baseline import Baseline, Old
-from reports.gate.checks import CHECKS
 from reports.gate.grid_tests import (
     GRID,
     pytest_generate_tests,
@@ -22,8 +21,9 @@ from reports.gate.grid_tests import (
     test_with_other_versions_no_method_is_worse_over_all_its_scenes,
 )
 from reports.gate.pytest_plugin import KNOWN
-from reports.grid.outcomes import Outcome
-from reports.pages.catalogue import PAGES, page_of, untaught
+from reports.model.catalogue import PAGES, page_of, untaught
+from reports.model.checks import CHECKS
+from reports.model.outcomes import Outcome
 from tests.conftest import GRID as FILE
 from tests.conftest import wants_the_grid_alone
 from tests.present import present

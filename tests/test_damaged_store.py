@@ -12,9 +12,9 @@ from contextlib import closing, suppress
 import numpy as np
 import pytest
 
-from reports.grid import store as store_module
-from reports.grid.ending import FileTrouble
-from reports.grid.store import Store
+from reports.model.ending import FileTrouble
+from reports.run import store as store_module
+from reports.run.store import Store
 from tests.test_store import CELLS, ROOT, TRUNCATIONS, filled, names, row, stored
 
 
@@ -198,9 +198,9 @@ def test_a_results_folder_that_is_a_file_or_lies_below_one_is_a_sentence(tmp_pat
 FULL_DISK = """
 import resource, sys
 from pathlib import Path
-from reports.grid.ending import FileTrouble
-from reports.grid.files import write_whole
-from reports.grid.store import Store
+from reports.model.ending import FileTrouble
+from reports.run.files import write_whole
+from reports.run.store import Store
 from tests.test_store import CELLS, row
 
 folder = Path(sys.argv[1])

@@ -13,14 +13,14 @@ from reports.cli import drawing, kept_pages
 from reports.cli.drawing import drawn, made_of, material_of
 from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.selection import shown_cells
-from reports.grid.cells import Cell
-from reports.grid.measure import blank, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.store import Store
-from reports.grid.tasks import Answer, Motion
-from reports.pages.catalogue import PAGES
-from reports.pages.page import Material, Page
-from reports.text.rendering import render_page
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.measure import blank, measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
+from reports.model.tasks import Answer, Motion
+from reports.pages.rendering import render_page
+from reports.run.store import Store
 
 
 def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_all_that_a_page_is_made_from_counts(monkeypatch):
 
 def test_sources_templates_and_what_the_atlas_is_drawn_from_count_and_what_a_report_writes_does_not():
     names = {path.relative_to(kept_pages.ROOT).as_posix() for path in kept_pages._sources()}
-    wanted = {"reports/charts/theme.py", "reports/pages/base.md", "engines/registry.py", "reference/scene.py"}
+    wanted = {"reports/plots/theme.py", "reports/pages/base.md", "engines/registry.py", "reference/scene.py"}
     assert wanted | {"reports/results/atlas.csv", "reports/pages/faults/versions.csv"} <= names
     assert not {"reports/results/errors.csv", "reports/results/timings.csv", "reports/results/index.md"} & names
 

@@ -15,13 +15,13 @@ from reference.errata.erratum import Values
 from reference.errata.rolling import rolling_acceleration
 from reference.joints import Pin
 from reports import __main__ as command_line
-from reports.grid.tasks import answered
+from reports.model.page import Material
+from reports.model.tasks import answered
 from reports.pages.errata import errata_engines as referees
 from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
 from reports.pages.errata.page import PAGE, SNIPPETS, digits, table
-from reports.pages.page import Material
-from reports.text.rendering import render_page
-from reports.text.templates import TEMPLATES
+from reports.pages.rendering import render_page
+from reports.write.templates import TEMPLATES
 
 IDS = [str(erratum.number) for erratum in ERRATA]
 

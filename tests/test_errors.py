@@ -14,7 +14,7 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reports.grid.errors import (
+from reports.model.errors import (
     branch_flips,
     constraint_errors,
     largest,

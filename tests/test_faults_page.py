@@ -17,14 +17,14 @@ import pytest
 
 from engines import registry, single_run
 from reports.cli.selection import page_tasks
-from reports.grid.tasks import answered
+from reports.model.page import Material
+from reports.model.tasks import answered
 from reports.pages.faults import groove, scripts
 from reports.pages.faults.equalities import KINDS, Bead, Equalities
 from reports.pages.faults.groove import CASES, Grooves, across, beside
 from reports.pages.faults.page import BEADS, EQUALITIES, GROOVES, OFFSETS, PAGE, SCRIPTS
 from reports.pages.faults.versions import RELEASES, found_with, recorded
-from reports.pages.page import Material
-from reports.text.rendering import render_page
+from reports.pages.rendering import render_page
 
 # A velocity or an acceleration by two routes of some twenty operations, with masses and arms over two decades.
 ROUNDING = 1e-12

@@ -12,18 +12,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.charts.theme import DARK
-from reports.grid.outcomes import Outcome
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
 from reports.pages.findings.finding import MILLISECOND, TENTH
 from reports.pages.findings.findings import FINDINGS, findings, pictures
 from reports.pages.findings.lookup import Rows
 from reports.pages.findings.pictures import HEIGHT, LOOKS, WIDTH, Line, draw
-from reports.pages.page import Material
 from reports.pages.symptoms import SYMPTOMS
-from reports.text.links import anchor, headings, link
-from reports.text.tables import number
-from reports.text.unmeasured import MARK
+from reports.plots.theme import DARK
+from reports.write.links import anchor, headings, link
+from reports.write.tables import number
+from reports.write.unmeasured import MARK
 from tests.committed_rows import RESULTS, page_rows
 from tests.rows import falling, row_of
 

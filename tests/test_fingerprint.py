@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from engines.extrapolated import Extrapolated
-from reports.grid import fingerprint as fingerprint_module
-from reports.grid.fingerprint import fingerprint, modules_behind
+from reports.model import fingerprint as fingerprint_module
+from reports.model.fingerprint import fingerprint, modules_behind
 from tests.toys import Toy
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -14,10 +14,10 @@ import pytest
 from engines import lagrange, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from reference.four_bar.scenes import FreeFourBar
-from reports.grid.cells import Cell
-from reports.grid.fingerprint import fingerprint
-from reports.grid.measure import blank
-from reports.grid.store import Store
+from reports.model.cells import Cell
+from reports.model.fingerprint import fingerprint
+from reports.model.measure import blank
+from reports.run.store import Store
 from tests.test_fingerprint import ROOT, _fresh, changed, forget, needed  # noqa: F401, a fixture of every test
 from tests.toys import Disc, FailingToy, Toy
 
@@ -94,9 +94,9 @@ def test_the_file_of_a_wrapped_engine_counts():
 @pytest.mark.parametrize(
     ("name", "scene", "engine"),
     [
-        ("reports/grid/measure.py", Disc(), Toy()),
-        ("reports/grid/errors.py", Disc(), Toy()),
-        ("reports/grid/pool.py", Disc(), Toy()),
+        ("reports/model/measure.py", Disc(), Toy()),
+        ("reports/model/errors.py", Disc(), Toy()),
+        ("reports/run/pool.py", Disc(), Toy()),
         ("reference/joints.py", Disc(), Toy()),
         ("tests/toys.py", Disc(), Toy()),
         ("engines/mujoco/model.py", Disc(), mujoco.TUNED),
@@ -117,7 +117,7 @@ def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name, s
 
 
 @pytest.mark.parametrize(
-    "name", ["reports/text/tables.py", "reports/charts/work_precision.py", "engines/mujoco/model.py", "tests/rows.py"]
+    "name", ["reports/write/tables.py", "reports/plots/work_precision.py", "engines/mujoco/model.py", "tests/rows.py"]
 )
 def test_a_change_elsewhere_leaves_a_stored_cell_alone(tmp_path, touch, name):
     assert (ROOT / name).is_file()

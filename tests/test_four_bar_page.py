@@ -9,11 +9,11 @@ import pytest
 
 from engines import mujoco, pymunk
 from reference.four_bar import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, measure
-from reports.grid.outcomes import Outcome
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
 from reports.pages.four_bar import experiments as failures
-from reports.pages.page import Material
 
 BROKEN = {Outcome.TORN, Outcome.RESET, Outcome.DIVERGED, Outcome.BRANCH_FLIP, Outcome.SATURATED}
 

@@ -12,19 +12,19 @@ import pytest
 
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.baseline import Baseline
-from reports.gate.checks import Check, Deviation, complaints, nearest
 from reports.gate.order_check import TOO_FEW, order
 from reports.gate.prediction import Prediction
 from reports.gate.table import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, idle, theory
 from reports.gate.verdicts import Case, cases, checks
 from reports.gate.walk import Verdict
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, blank, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
-from reports.pages.page import Page
-from reports.text.csv_files import as_csv
+from reports.model.cells import Cell
+from reports.model.checks import Check, Deviation, complaints, nearest
+from reports.model.measure import Measurement, blank, measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Page
+from reports.model.quantities import QUANTITIES
+from reports.write.csv_files import as_csv
 from tests.toys import Disc, Toy
 
 SCENE = Disc()

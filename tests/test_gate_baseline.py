@@ -20,11 +20,11 @@ from reports.gate.nudged import Nudge, nudged_cells
 from reports.gate.table import changes
 from reports.gate.verdicts import Case
 from reports.gate.walk import lost, remarks, vanished, walk
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import OF, agrees, quantity
-from reports.text.csv_files import DIGESTS, as_csv, digests_csv
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import Outcome
+from reports.model.quantities import OF, agrees, quantity
+from reports.write.csv_files import DIGESTS, as_csv, digests_csv
 from tests.test_gate import NAMES, SCENE, alone, of, row
 from tests.toys import Toy
 

@@ -18,12 +18,12 @@ from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, TenLinks
 from reference.skate.sleigh import ChaplyginSleigh
 from reports.cli.selection import BadInput, steps_per_sample
-from reports.grid import timing
-from reports.grid.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import quantity
-from reports.grid.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
-from reports.grid.timing import repeated_stepping
+from reports.model import timing
+from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
+from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
+from reports.model.timing import repeated_stepping
 from reports.pages.centrodes.centrode_check import returned
 from reports.pages.scaling.page import cost_table, crossing
 from reports.pages.skate.page import constructions, nearest_step

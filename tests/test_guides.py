@@ -15,10 +15,10 @@ import typer
 
 from reports.cli.commands import app
 from reports.cli.selection import choose_cells, page_cells, shown_cells
+from reports.model.page import Material
 from reports.pages.guides.page import EVERY, FOUR_BAR, PAGES, SCENES, VARIANTS
-from reports.pages.page import Material
-from reports.text.lookups import told
-from reports.text.rendering import render_page
+from reports.pages.rendering import render_page
+from reports.write.lookups import told
 from tests.committed_rows import page_rows
 
 GLOSSARY, REACTIONS, INTEGRATORS, CLUSTER = PAGES

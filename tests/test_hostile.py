@@ -15,17 +15,17 @@ import pytest
 
 from engines.loading import load
 from reports.cli import trial
-from reports.grid.cells import Cell, estimated_cost
-from reports.grid.ending import REFUSED, BadInput
-from reports.grid.measure import blank, measure
-from reports.grid.supervisor import supervise
-from reports.pages import catalogue
-from reports.pages.page import Material
+from reports.model import catalogue
+from reports.model.cells import Cell, estimated_cost
+from reports.model.ending import REFUSED, BadInput
+from reports.model.measure import blank, measure
+from reports.model.page import Material
+from reports.pages.rendering import render_page
+from reports.run.supervisor import supervise
 from reports.site.markdown import Formulas, html
 from reports.site.serving import server
-from reports.text.csv_files import as_csv
-from reports.text.rendering import render_page
-from reports.text.templates import inert_page
+from reports.write.csv_files import as_csv
+from reports.write.templates import inert_page
 from tests.test_command_line import call, one_line
 from tests.toys import Disc, Toy
 

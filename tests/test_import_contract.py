@@ -69,5 +69,5 @@ def test_a_closed_form_behind_another_module_is_refused(copy):
 
 
 def test_a_report_in_the_reference_breaks_the_layers(copy):
-    (copy / "reference/mechanism.py").write_text("import reports.pages.page\n", encoding="utf-8")
+    (copy / "reference/mechanism.py").write_text("import reports.model.page\n", encoding="utf-8")
     assert checked(copy).returncode == 1

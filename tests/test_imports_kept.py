@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from reports.grid import imports
-from reports.grid.imports import KEPT, keep, named_in, recall
+from reports.model import imports
+from reports.model.imports import KEPT, keep, named_in, recall
 
 TEXT = b"import numpy\nfrom . import near\nFILE = 'table.csv'\n"
 NAMED = ({"numpy", "theirs", "theirs.near"}, {"table.csv"})

@@ -12,8 +12,8 @@ import time
 import pytest
 
 from reports.cli import interruption
-from reports.grid.ending import FINE, INTERRUPTED, REFUSED
-from reports.grid.store import Store
+from reports.model.ending import FINE, INTERRUPTED, REFUSED
+from reports.run.store import Store
 from tests.test_command_line import ROOT, call, environment
 
 

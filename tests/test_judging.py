@@ -13,10 +13,10 @@ from reports.gate import walk
 from reports.gate.judge import _samples, integrate
 from reports.gate.prediction import prediction
 from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Outcome
-from reports.grid.pool import run_cells
-from reports.grid.waiting import kin_of
+from reports.model.cells import Cell
+from reports.model.outcomes import Outcome
+from reports.run.pool import run_cells
+from reports.run.waiting import kin_of
 from tests.toys import Disc, FailingToy, Toy
 
 NO_KINDS: frozenset[Any] = frozenset()

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from reports.grid.ending import BadInput
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import OF, quantity
+from reports.model.ending import BadInput
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import OF, quantity
 from reports.pages.four_bar.page import PAGE
-from reports.text import kept_numbers
-from reports.text.csv_files import as_csv
-from reports.text.kept_numbers import ERRORS, NOISE, as_published, kept
-from reports.text.provenance import machine
+from reports.write import kept_numbers
+from reports.write.csv_files import as_csv
+from reports.write.kept_numbers import ERRORS, NOISE, as_published, kept
+from reports.write.provenance import machine
 from tests.committed_rows import RESULTS, page_rows
 from tests.rows import ROW
 

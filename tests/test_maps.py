@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.patches import Rectangle
 
-from reports.charts.stability import HATCHES, outcome_colour, stability_map
-from reports.charts.theme import LIGHT
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
+from reports.plots.stability import HATCHES, outcome_colour, stability_map
+from reports.plots.theme import LIGHT
 from tests.drawn import handles
 from tests.rows import row_of
 

@@ -12,9 +12,9 @@ from engines import Size
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, blank, measure, sizes
-from reports.grid.outcomes import Outcome
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank, measure, sizes
+from reports.model.outcomes import Outcome
 from tests.rows import row, row_of
 from tests.test_errors import SCENE
 from tests.toys import Disc, Plain, Toy

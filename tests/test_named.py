@@ -15,8 +15,8 @@ from reference.scene import Scene
 from reference.scenes import SCENES, scene
 from reference.variation import told_apart, with_settings
 from reports.cli.terminal import PULSE, Terminal, progress
-from reports.grid.ending import FINE, REFUSED
-from reports.pages import catalogue
+from reports.model import catalogue
+from reports.model.ending import FINE, REFUSED
 from tests.present import present
 from tests.test_command_line import call, one_line
 

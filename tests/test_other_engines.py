@@ -24,9 +24,9 @@ from reference.joints import Drive, Gear, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reports.cli.selection import choose_cells, choose_engines
-from reports.grid.cells import QUICK, SLOW_TO_BUILD, beside_cells
-from reports.grid.ending import BadInput
-from reports.pages.catalogue import PAGES, SCENES
+from reports.model.catalogue import PAGES, SCENES
+from reports.model.cells import QUICK, SLOW_TO_BUILD, beside_cells
+from reports.model.ending import BadInput
 from reports.search.mechanisms import mechanism
 from reports.search.parts import FORCES, LINKS
 from tests import mechanisms

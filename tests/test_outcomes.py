@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
-from reports.grid.measure import BLOWN, SATURATED, TORN, classify, compare, measure
-from reports.grid.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
+from reports.model.cells import Cell
+from reports.model.measure import BLOWN, SATURATED, TORN, classify, compare, measure
+from reports.model.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
 from tests.rows import row
 from tests.test_errors import SCENE, Pair
 from tests.test_measure import DISC, LENGTH, TIMES, Given, disc, shifted

@@ -10,10 +10,10 @@ import pytest
 from engines import Holder
 from reference.joints import Joint
 from reference.mechanism import Mechanism
-from reports.grid.outcomes import Outcome
-from reports.pages.page import Page
-from reports.text.overview import overviews
-from reports.text.parts import marks, with_part
+from reports.model.outcomes import Outcome
+from reports.model.page import Page
+from reports.write.overview import overviews
+from reports.write.parts import marks, with_part
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 

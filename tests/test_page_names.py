@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from reports.gate.pytest_plugin import _engines
-from reports.pages.catalogue import _without_doubles, generic_page, with_scenes
-from reports.pages.page import Page
+from reports.model.catalogue import _without_doubles, generic_page, with_scenes
+from reports.model.page import Page
 from tests.toys import Disc, Toy
 
 

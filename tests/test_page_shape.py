@@ -10,12 +10,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from reports.pages.catalogue import PAGES
-from reports.pages.page import Page
-from reports.text.links import anchor, headings
-from reports.text.programs import PAGES as FOLDER
-from reports.text.programs import program, programs_of
-from reports.text.tables import number
+from reports.model.catalogue import PAGES
+from reports.model.page import Page
+from reports.write.links import anchor, headings
+from reports.write.programs import PAGES as FOLDER
+from reports.write.programs import program, programs_of
+from reports.write.tables import number
 from tests import test_any_rows as rendering
 from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole

@@ -11,16 +11,16 @@ from engines import Holder, Softness
 from reference.four_bar import FreeFourBar
 from reports.gate.declared import MOST_BODIES, Softened, declared_error, soft_tasks
 from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Task, answered
-from reports.pages.page import Failure, Material, Observation
-from reports.text.experiments import compared_only, happened, told_experiment
-from reports.text.holders import holders
-from reports.text.links import anchor
-from reports.text.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
-from reports.text.programs import advised_settings, compact
-from reports.text.tables import markdown, outcome_grid
+from reports.model.cells import Cell
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material, Observation
+from reports.model.tasks import Answer, Task, answered
+from reports.write.experiments import compared_only, happened, told_experiment
+from reports.write.holders import holders
+from reports.write.links import anchor
+from reports.write.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
+from reports.write.programs import advised_settings, compact
+from reports.write.tables import markdown, outcome_grid
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 
@@ -107,7 +107,7 @@ def test_a_plateau_above_what_is_declared_is_marked():
     ],
 )
 def test_what_a_smaller_step_brings_is_said_in_words(errors, outcome, words):
-    from reports.grid.convergence import by_method, sweeps
+    from reports.model.convergence import by_method, sweeps
 
     rows = falling("a x", errors)
     rows[-1] = replace(rows[-1], outcome=outcome)

@@ -12,14 +12,14 @@ from pathlib import Path
 import pytest
 
 from reports.__main__ import main
-from reports.grid.cells import Cell
-from reports.grid.measure import measure
-from reports.grid.outcomes import Outcome, describe_exit
-from reports.grid.pool import run_cells, worker_count
-from reports.grid.processors import apart, usable_cores
-from reports.grid.running import missing, run_into
-from reports.grid.store import Store
-from reports.grid.supervisor import WorkersLost
+from reports.model.cells import Cell
+from reports.model.measure import measure
+from reports.model.outcomes import Outcome, describe_exit
+from reports.run.pool import run_cells, worker_count
+from reports.run.processors import apart, usable_cores
+from reports.run.running import missing, run_into
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost
 from tests.rough_toys import RoughToy
 from tests.toys import FAILURES, Disc, FailingToy, ImpossibleDisc, Toy
 
@@ -112,7 +112,7 @@ def test_lost_workers_are_one_line_and_status_1_at_the_command_line(monkeypatch,
     def lost(*_: object, **__: object) -> int:
         raise WorkersLost("5 worker processes in a row ended while they started: why")
 
-    monkeypatch.setattr("reports.grid.running.run_into", lost)
+    monkeypatch.setattr("reports.run.running.run_into", lost)
     with pytest.raises(SystemExit) as end:
         main(["run", "free_four_bar", "--every", "1", "--results", str(tmp_path)])
     assert end.value.code == 1
@@ -128,9 +128,9 @@ SCRIPT = """
 import signal
 import sys
 from pathlib import Path
-from reports.grid.cells import Cell
-from reports.grid.running import run_into
-from reports.grid.store import Store
+from reports.model.cells import Cell
+from reports.run.running import run_into
+from reports.run.store import Store
 from tests.toys import Disc, FailingToy, Toy
 
 if __name__ == "__main__":

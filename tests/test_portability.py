@@ -36,9 +36,9 @@ del time.clock_gettime
 sys.modules["resource"] = sys.modules["fcntl"] = None
 multiprocessing.get_all_start_methods = lambda: ["spawn"]
 
-from reports.grid.cells import Cell
-from reports.grid.running import run_into
-from reports.grid.store import Store
+from reports.model.cells import Cell
+from reports.run.running import run_into
+from reports.run.store import Store
 from tests.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy
 

@@ -12,9 +12,9 @@ from rich.console import Console
 
 from engines.lagrange import loading
 from reports.cli.terminal import print_table
-from reports.text import provenance
-from reports.text.provenance import machine, still_installed, versions
-from reports.text.rendering import foot
+from reports.pages.rendering import foot
+from reports.write import provenance
+from reports.write.provenance import machine, still_installed, versions
 from tests.toys import Toy
 
 

@@ -10,13 +10,13 @@ import pytest
 from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
 from engines.pymunk import TUNED as PYMUNK
-from reports.grid.tasks import answered
-from reports.pages.page import Material
+from reports.model.page import Material
+from reports.model.tasks import answered
 from reports.pages.published.acrobot import HORIZON, PUBLISHED, START, STEPS, Acrobot, acrobot, by_hand
 from reports.pages.published.newton import BOUNDS, FOUR_BAR, Newton, freudenstein
 from reports.pages.published.newton import STEPS as NEWTONS
 from reports.pages.published.page import PAGE, drifts, largest_step
-from reports.text.rendering import render_page
+from reports.pages.rendering import render_page
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from reports.grid.ending import STATUSES
-from reports.text.parts import marks, with_part
+from reports.model.ending import STATUSES
+from reports.write.parts import marks, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, blank
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Motion, Task, answered
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material
+from reports.model.tasks import Answer, Motion, Task, answered
 from reports.pages.four_bar import experiments as four_bar
-from reports.pages.page import Failure, Material
 from reports.pages.pendulum import experiments as pendulum
 from reports.pages.rolling import experiments as rolling
 from reports.pages.rolling import parting
@@ -22,8 +22,8 @@ from reports.pages.rolling.methods import CONTACTS
 from reports.pages.skate import slipping
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
-from reports.text.experiments import told_remark
-from reports.text.unmeasured import MARK
+from reports.write.experiments import told_remark
+from reports.write.unmeasured import MARK
 
 
 def experiment(failures: tuple[Failure, ...], title: str) -> Failure:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, StabilityMap
 from reports.pages.four_bar import experiments as four_bar_failures
 from reports.pages.n_four_bar import experiments as n_four_bar_failures
-from reports.pages.page import Failure, StabilityMap
 from reports.pages.pendulum import experiments as pendulum_failures
 from reports.pages.slider_crank import experiments as slider_crank_failures
 from tests.committed_rows import committed_rows

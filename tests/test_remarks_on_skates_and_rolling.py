@@ -7,9 +7,9 @@ import pytest
 from engines import mujoco, pymunk
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
-from reports.grid.cells import Cell
-from reports.grid.measure import measure
-from reports.grid.outcomes import Outcome
+from reports.model.cells import Cell
+from reports.model.measure import measure
+from reports.model.outcomes import Outcome
 from reports.pages.rolling import experiments as rolling_failures
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
 from reports.pages.skate import experiments as skate_failures

@@ -8,16 +8,16 @@ from dataclasses import replace
 
 import pytest
 
-from reports.grid.cells import Cell
-from reports.grid.convergence import Verdict
-from reports.grid.outcomes import Outcome
-from reports.pages.page import Failure, Material, Observation
-from reports.text.lookups import told
-from reports.text.parts import marks
-from reports.text.rendering import render_all, render_index, render_page, render_readme
-from reports.text.tables import number
-from reports.text.told_scene import parameters
-from reports.text.unmeasured import UNMEASURED
+from reports.model.cells import Cell
+from reports.model.convergence import Verdict
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material, Observation
+from reports.pages.rendering import render_all, render_index, render_page, render_readme
+from reports.pages.told_scene import parameters
+from reports.write.lookups import told
+from reports.write.parts import marks
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 from tests.rows import falling, row_of, table
 from tests.test_overview import PAGE, OtherDisc
 from tests.toys import Disc, Toy

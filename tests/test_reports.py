@@ -16,8 +16,6 @@ import pytest
 from jinja2 import UndefinedError
 
 from reports import __main__ as command_line
-from reports.charts import work_precision as charts
-from reports.charts.theme import DARK, LIGHT, SERIES, svg
 from reports.cli.selection import (
     BadInput,
     choose_cells,
@@ -27,14 +25,16 @@ from reports.cli.selection import (
     shown_cells,
     steps_per_sample,
 )
-from reports.grid.cells import QUICK, Cell, sweep_cells
-from reports.grid.convergence import judged
-from reports.grid.measure import TIMINGS, measure
-from reports.grid.outcomes import Outcome
-from reports.pages.catalogue import PAGES
-from reports.pages.page import Failure, Material, Observation, Page, StabilityMap
-from reports.text.rendering import render_all
-from reports.text.templates import environment
+from reports.model.catalogue import PAGES
+from reports.model.cells import QUICK, Cell, sweep_cells
+from reports.model.convergence import judged
+from reports.model.measure import TIMINGS, measure
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material, Observation, Page, StabilityMap
+from reports.pages.rendering import render_all
+from reports.plots import work_precision as charts
+from reports.plots.theme import DARK, LIGHT, SERIES, svg
+from reports.write.templates import environment
 from tests import test_any_rows as rendering
 from tests.committed_rows import stale
 from tests.toys import FAILURES, Disc, FailingToy, Toy

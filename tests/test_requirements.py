@@ -6,8 +6,8 @@ from importlib import metadata
 
 import pytest
 
-from reports.grid import fingerprint, requirements
-from reports.grid.requirements import normalised, with_required
+from reports.model import fingerprint, requirements
+from reports.model.requirements import normalised, with_required
 from tests.lower_bounds import PYPROJECT, lower_bounds
 
 INVENTED = {

@@ -16,16 +16,16 @@ from engines.pymunk import methods as pymunk_methods
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
 from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
-from reports.grid.cells import Cell
-from reports.grid.measure import measure, stopped_where_it_ends
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Motion, answered, trajectory_of
+from reports.model.cells import Cell
+from reports.model.measure import measure, stopped_where_it_ends
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
+from reports.model.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
-from reports.pages.page import Material
+from reports.pages.rendering import render_page
 from reports.pages.rolling import page as rolling_page
 from reports.pages.rolling.experiments import FAILURES
 from reports.pages.rolling.parting import absent_contact, parting
-from reports.text.rendering import render_page
 from tests import test_any_rows as rendering
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module

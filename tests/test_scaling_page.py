@@ -15,16 +15,16 @@ from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.scenes import SCENES
 from reports.cli.selection import QUICK_MOST, choose_cells
-from reports.grid.cells import Cell, estimated_seconds
-from reports.grid.measure import measure
-from reports.grid.scaling_fit import series_of
-from reports.pages.page import Material
+from reports.model.cells import Cell, estimated_seconds
+from reports.model.measure import measure
+from reports.model.page import Material
+from reports.model.scaling_fit import series_of
 from reports.pages.pendulum import page as pendulum
+from reports.pages.rendering import render_page
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
 from reports.pages.scaling.reference_method import BandedChain
 from reports.pages.skate import page as skate
-from reports.text.rendering import render_page
 
 
 def links(cell: Cell) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from reports.cli.options import SEARCH, STORE
-from reports.grid.ending import FINE, REFUSED
+from reports.model.ending import FINE, REFUSED
 from tests.test_command_line import call, one_line
 
 FEW = ("search", "--engine", "mujoco", "--variant", "alone", "--kinds", "joint", "--cases", "4", "--workers", "1")

@@ -10,11 +10,11 @@ import time
 
 import pytest
 
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
+from reports.run.installed import installed
 from reports.search import raw, raw_draw, raw_law
 from reports.search.release import DISTRIBUTIONS, Release
 from reports.search.subjects import LAW
-from reports.versions.installed import installed
 
 KINDS = ("connect", "weld", "gear")
 SEED = 1

@@ -19,8 +19,8 @@ import pytest
 from engines.lagrange import Lagrange
 from engines.registry import trouble
 from reference.four_bar import FreeFourBar
-from reports.grid.ending import FileTrouble
-from reports.grid.tasks import answered
+from reports.model.ending import FileTrouble
+from reports.model.tasks import answered
 from reports.site import markdown
 from reports.site.build import MARKER, build, tasks
 from reports.site.embed import data, picture, shown

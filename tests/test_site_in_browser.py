@@ -20,7 +20,7 @@ from engines import Engine, Unsupported, mujoco, pymunk
 from engines.mujoco.stiffness import STIFFEST, TiedToStep
 from reference.four_bar import DrivenFourBar
 from reference.scene import Scene
-from reports.grid.tasks import answered
+from reports.model.tasks import answered
 from reports.site.build import build
 from reports.site.joints import measure_of
 from reports.site.lessons import LESSONS

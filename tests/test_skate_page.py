@@ -16,14 +16,11 @@ from reference.scenes import SCENES
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reference.validation import InvalidMechanism
-from reports.charts.plane_panels import Blades, Panel, paths
-from reports.charts.plane_panels import Path as Line
-from reports.charts.theme import svg
 from reports.cli.selection import choose_cells, known_engines
-from reports.grid.cells import Cell
-from reports.grid.measure import measure
-from reports.grid.tasks import Motion, answered
-from reports.pages.page import Material
+from reports.model.cells import Cell
+from reports.model.measure import measure
+from reports.model.page import Material
+from reports.model.tasks import Motion, answered
 from reports.pages.skate import page as skate
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate import slipping, turning_round
@@ -31,6 +28,9 @@ from reports.pages.skate.counting import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
 from reports.pages.wheels import pictures as wheels_pictures
+from reports.plots.plane_panels import Blades, Panel, paths
+from reports.plots.plane_panels import Path as Line
+from reports.plots.theme import svg
 from tests.present import present
 
 TEMPLATE = Path(reports.pages.__file__).parent / "skate" / "page.md"

@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.grid import stored_text
-from reports.grid.cells import Cell
-from reports.grid.ending import FileTrouble
-from reports.grid.measure import blank
-from reports.grid.outcomes import Outcome
-from reports.grid.store import Store
+from reports.model.cells import Cell
+from reports.model.ending import FileTrouble
+from reports.model.measure import blank
+from reports.model.outcomes import Outcome
+from reports.run import stored_text
+from reports.run.store import Store
 from tests.toys import Disc, Toy
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import fields, replace
 
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement
-from reports.grid.store import Store
+from reports.model.cells import Cell
+from reports.model.measure import Measurement
+from reports.run.store import Store
 from tests.rows import row
 from tests.toys import Disc, Toy
 

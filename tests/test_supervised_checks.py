@@ -16,7 +16,7 @@ from reports.__main__ import main
 from reports.cli import supervised_checks
 from reports.cli.conform import verdicts
 from reports.cli.supervised_checks import Named, Question, ask, asked
-from reports.grid.outcomes import Loss, Outcome
+from reports.model.outcomes import Loss, Outcome
 from tests.wrong_adapters import Wrong
 
 

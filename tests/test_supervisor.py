@@ -11,11 +11,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from reports.grid import supervisor, worker_process
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.grid.pool import run_cells
-from reports.grid.supervisor import WorkersLost, supervise
+from reports.model.cells import Cell
+from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
+from reports.run import supervisor, worker_process
+from reports.run.pool import run_cells
+from reports.run.supervisor import WorkersLost, supervise
 from tests.rough_toys import ACTIONS, RoughToy, act, dies, helpers, spoiled
 from tests.toys import Disc, Toy
 

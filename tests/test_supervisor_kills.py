@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from reports.grid import supervisor
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Outcome
-from reports.grid.pool import run_cells
+from reports.model.cells import Cell
+from reports.model.outcomes import Outcome
+from reports.run import supervisor
+from reports.run.pool import run_cells
 from tests.rough_toys import RoughToy, helpers
 from tests.toys import Disc
 
@@ -93,8 +93,8 @@ def test_among_kills_every_row_is_there_once_and_right(monkeypatch, seed, kills)
 SCRIPT = """
 import sys
 import threading
-from reports.grid.cells import Cell
-from reports.grid.pool import run_cells
+from reports.model.cells import Cell
+from reports.run.pool import run_cells
 from tests.rough_toys import RoughToy
 from tests.toys import Disc
 
@@ -126,8 +126,8 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
 INTERRUPTED = """
 import sys
 import time
-from reports.grid.pool import TIME_LIMIT
-from reports.grid.supervisor import supervise
+from reports.run.pool import TIME_LIMIT
+from reports.run.supervisor import supervise
 
 if __name__ == "__main__":
     try:

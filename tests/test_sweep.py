@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from reports.grid.cells import FULL, Cell
-from reports.grid.convergence import Verdict, best_of, by_method, fit, groups, judged, sweeps
-from reports.grid.measure import measure
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
+from reports.model.cells import FULL, Cell
+from reports.model.convergence import Verdict, best_of, by_method, fit, groups, judged, sweeps
+from reports.model.measure import measure
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
 from tests.present import present
 from tests.rows import falling, row, row_of
 from tests.toys import Disc, FailingToy, Toy

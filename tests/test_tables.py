@@ -9,11 +9,11 @@ from dataclasses import fields
 
 import pytest
 
-from reports.grid.convergence import Sweep, Verdict, sweeps
-from reports.grid.measure import TIMINGS, Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES, quantity
-from reports.text import csv_files, tables
+from reports.model.convergence import Sweep, Verdict, sweeps
+from reports.model.measure import TIMINGS, Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES, quantity
+from reports.write import csv_files, tables
 from tests.rows import falling, row, row_of, table
 
 NAN = math.nan

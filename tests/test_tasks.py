@@ -15,18 +15,19 @@ from engines import Unsupported, mujoco, pymunk, registry
 from reference.scenes import SCENES
 from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
-from reports.grid import fingerprint, stored_text
-from reports.grid.cells import Cell
-from reports.grid.outcomes import Outcome
-from reports.grid.pool import run_items
-from reports.grid.running import missing, run_into
-from reports.grid.store import Store
-from reports.grid.supervisor import WorkersLost
-from reports.grid.tasks import Answer, Motion, Task, answered, trajectory_of
-from reports.pages.catalogue import PAGES
-from reports.pages.page import Failure, Material, Page
+from reports.model import fingerprint
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.outcomes import Outcome
+from reports.model.page import Failure, Material, Page
+from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
+from reports.pages.rendering import render_page
 from reports.pages.skate.page import path_picture
-from reports.text.rendering import render_page
+from reports.run import stored_text
+from reports.run.pool import run_items
+from reports.run.running import missing, run_into
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost
 from tests.present import present
 from tests.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy
@@ -147,7 +148,7 @@ def test_the_key_of_a_task_is_that_of_its_numbers_its_kind_and_its_sources(monke
     assert Sum((1.0,)).key == Sum((1.0,)).key
     before = motion().key
     assert before != Cell(Disc(), Toy(), 1).key
-    monkeypatch.setattr("reports.grid.tasks.fingerprint", lambda *values: "other sources")
+    monkeypatch.setattr("reports.model.tasks.fingerprint", lambda *values: "other sources")
     assert motion().key != before
 
 

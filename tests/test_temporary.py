@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from reports.cli import interruption
-from reports.grid import temporary
-from reports.grid.temporary import remove_all, temporary_folder
+from reports.run import temporary
+from reports.run.temporary import remove_all, temporary_folder
 from tests.test_command_line import environment
 
 pytestmark = pytest.mark.skipif(temporary.fcntl is None, reason="nothing is locked or swept on Windows")
@@ -29,7 +29,7 @@ HOLDS = """
 import sys, time
 from pathlib import Path
 from reports.cli.interruption import ending_at_once, kept
-from reports.grid.temporary import temporary_folder
+from reports.run.temporary import temporary_folder
 
 with ending_at_once(), temporary_folder(Path(sys.argv[1])) as folder:
     (folder / "file").write_text("x")

@@ -139,8 +139,8 @@ def test_their_engine_and_one_in_a_file_are_held_to_their_own_promises(programs,
 # Of every family: its colour in light pictures, and its mark.
 LOOKS = """
 from engines.registry import ENGINES
-from reports.charts.families import colour, mark
-from reports.charts.theme import LIGHT
+from reports.plots.families import colour, mark
+from reports.plots.theme import LIGHT
 
 for family in dict.fromkeys(engine.family for engine in ENGINES):
     print(family, colour(family, LIGHT), mark(family))

@@ -10,12 +10,12 @@ import pytest
 
 from engines.lagrange import Lagrange
 from reference.pendulum.scenes import LinkPendulum
-from reports.grid import truths
-from reports.grid.cells import Cell
-from reports.grid.measure import measure
-from reports.grid.running import run_into
-from reports.grid.store import Store
-from reports.grid.truths import PARTS, kept_motion
+from reports.model import truths
+from reports.model.cells import Cell
+from reports.model.measure import measure
+from reports.model.truths import PARTS, kept_motion
+from reports.run.running import run_into
+from reports.run.store import Store
 from tests.toys import Disc, ImpossibleDisc, Toy
 
 T = np.linspace(0.0, 0.5, 6)
@@ -76,7 +76,7 @@ def test_the_name_of_a_truth_is_of_its_scene_and_its_sources_and_of_no_engine(mo
     cell = Cell(Disc(), Toy(), 1)
     assert cell.truth == Cell(Disc(), Toy(factor=3.0), 7, "map", 5).truth
     names = {cell.truth, Cell(Disc(rate=3.0), Toy(), 1).truth, Cell(OtherDisc(), Toy(), 1).truth}
-    monkeypatch.setattr("reports.grid.cells.digest_of", lambda modules: "other files")
+    monkeypatch.setattr("reports.model.cells.digest_of", lambda modules: "other files")
     assert len({*names, Cell(Disc(), Toy(), 1).truth}) == 4
 
 

@@ -20,11 +20,11 @@ from reference.wheels.cart import Cart
 from reports.gate.baseline import Old
 from reports.gate.change import change
 from reports.gate.verdicts import cases
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement, measure
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES, agrees
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES, agrees
 from tests.mistakes import mistaken, mistakes
 
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
@@ -63,7 +63,7 @@ CELLS = (
 OLDER = {"OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F"}
 PROGRAM = """
 import json
-from reports.grid.measure import measure
+from reports.model.measure import measure
 from tests.test_two_processors import CELLS
 print(json.dumps([measure(cell, repeat=False).as_dict() for cell in CELLS]))
 """

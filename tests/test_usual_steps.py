@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from reports.cli.selection import page_cells
-from reports.grid.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
-from reports.grid.usual_steps import FEATURED, USUAL_STEPS, is_step, usual_cells, usual_variants
-from reports.pages.catalogue import PAGES
+from reports.model.catalogue import PAGES
+from reports.model.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
+from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_step, usual_cells, usual_variants
 from tests.toys import Disc, Toy
 
 # Samples 10, 9.97, 20 and 50 ms apart, and scenes of 0.3 to 10 s; chains are left out, whose costs take long to tell.

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from reports.cli.commands import invoke
-from reports.grid.ending import BadInput, Broken
-from reports.versions import installed as installation
+from reports.model.ending import BadInput, Broken
+from reports.run import installed as installation
 from tests.test_versions import here, toy
 
 __all__ = ["here"]

@@ -20,17 +20,17 @@ from reference.scenes import SCENES
 from reports.cli import compare
 from reports.cli.commands import invoke
 from reports.cli.terminal import Terminal
-from reports.grid.cells import Cell
-from reports.grid.ending import BadInput, Broken
-from reports.grid.measure import blank
-from reports.grid.outcomes import Outcome
-from reports.pages.page import Material
+from reports.model.cells import Cell
+from reports.model.ending import BadInput, Broken
+from reports.model.measure import blank
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
 from reports.pages.versions import page
-from reports.versions import installed as installation
+from reports.run import installed as installation
+from reports.run.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
 from reports.versions.changes import CHANGES, named
 from reports.versions.column import column, modules_in
 from reports.versions.comparison import compared
-from reports.versions.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
 from reports.versions.request import Request, TreesRow
 from reports.versions.steps import steps
 from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read

@@ -13,14 +13,15 @@ import pytest
 from engines.registry import VARIANTS
 from reference.scenes import SCENES
 from reports.cli.selection import choose_cells
-from reports.grid import expected, processors, spending
-from reports.grid.cells import Cell
-from reports.grid.expected import dearest_first, expected_seconds
-from reports.grid.pool import run_items
-from reports.grid.supervisor import supervise
-from reports.grid.tasks import Motion, Task, Values
-from reports.grid.waiting import Waiting, kin_of
-from reports.pages.catalogue import PAGES
+from reports.model import spending
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.tasks import Motion, Task, Values
+from reports.run import expected, processors
+from reports.run.expected import dearest_first, expected_seconds
+from reports.run.pool import run_items
+from reports.run.supervisor import supervise
+from reports.run.waiting import Waiting, kin_of
 from tests.toys import Disc, Toy
 
 
@@ -161,7 +162,7 @@ class Where(Task):
 
 
 def test_more_workers_than_cores_run_what_is_timed_first_and_alone(monkeypatch):
-    monkeypatch.setattr("reports.grid.pool.worker_count", lambda timed: 1 if timed else 2)
+    monkeypatch.setattr("reports.run.pool.worker_count", lambda timed: 1 if timed else 2)
     rounds = []
 
     def told(function, items, limit, workers, watch, wall, alone):

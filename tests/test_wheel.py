@@ -56,10 +56,10 @@ def test_every_template_snippet_and_baseline_of_the_checkout_is_in_the_wheel(whe
 
 def test_an_installation_has_all_that_the_checkout_registers_in_the_same_order(programs, tmp_path):
     from engines.registry import ENGINES, VARIANTS, method
-    from reports.pages.catalogue import PAGES, SCENES
+    from reports.model.catalogue import PAGES, SCENES
 
     asked = (
-        "from engines.registry import ENGINES, VARIANTS, method; from reports.pages.catalogue import *;"
+        "from engines.registry import ENGINES, VARIANTS, method; from reports.model.catalogue import *;"
         "print([method(e) for e in VARIANTS], [method(e) for e in ENGINES], [s.name for s in SCENES],"
         "[p.name for p in PAGES], TROUBLES, sep='\\n'); import reports; print(reports.__file__)"
     )

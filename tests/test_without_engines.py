@@ -14,16 +14,16 @@ from tests.installations import ROOT
 WITHOUT = """
 import sys
 from engines import entry_points
-from reports.charts.theme import FigureCanvasSVG
+from reports.plots.theme import FigureCanvasSVG
 
 FigureCanvasSVG.print_svg = lambda self, out, **settings: out.write("<svg/>")
 
 ours, hidden = entry_points._ours, sys.argv[1:]
 entry_points._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
 from engines.registry import ENGINES
-from reports.pages.catalogue import PAGES, TROUBLES
-from reports.pages.page import Material
-from reports.text.rendering import render_index, render_page
+from reports.model.catalogue import PAGES, TROUBLES
+from reports.model.page import Material
+from reports.pages.rendering import render_index, render_page
 
 assert ENGINES and not {engine.name for engine in ENGINES} & set(sys.argv[1:])
 assert TROUBLES == (), TROUBLES

@@ -8,7 +8,7 @@ import pytest
 import typer
 
 from reports.cli.commands import app
-from reports.grid.ending import BROKEN, FINE, REFUSED
+from reports.model.ending import BROKEN, FINE, REFUSED
 from tests.test_command_line import call
 
 COMMANDS = {

@@ -18,9 +18,9 @@ from reference.mechanism import Mechanism
 from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.grid.outcomes import Loss
-from reports.grid.processors import usable_cores
-from reports.grid.supervisor import supervise
+from reports.model.outcomes import Loss
+from reports.run.processors import usable_cores
+from reports.run.supervisor import supervise
 from tests.mistakes import KINDS, Mistake, mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
 

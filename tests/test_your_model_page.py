@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from reports.grid.tasks import Answer, answered
-from reports.pages.page import Material
+from reports.model.page import Material
+from reports.model.tasks import Answer, answered
+from reports.pages.rendering import render_page
 from reports.pages.your_model import others
 from reports.pages.your_model.answers import CART, FOUR_BAR, SWING, WALKS
 from reports.pages.your_model.page import PAGE
-from reports.text.rendering import render_page
 
 
 @pytest.fixture(scope="module")

@@ -154,8 +154,8 @@ PAGE = """
 from pathlib import Path
 
 from engines.registry import VARIANTS
-from reports.pages.page import Page
-from reports.text.lookups import told
+from reports.model.page import Page
+from reports.write.lookups import told
 from their_suite.flywheel import FLYWHEEL
 
 PAGE = Page(

@@ -20,8 +20,8 @@ from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
 from reference.pendulum.many_links import LongPendulum
 from reference.scene import Scene
-from reports.grid.cells import FULL, Cell, estimated_cost
-from reports.grid.measure import measure
+from reports.model.cells import FULL, Cell, estimated_cost
+from reports.model.measure import measure
 
 Array = NDArray[np.float64]
 REPEATS = 7

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from reports.grid.cells import Cell
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Loss
-from reports.grid.pool import TIMED, run_cells
-from reports.grid.spending import taken
-from reports.grid.supervisor import Answer, supervise
-from reports.grid.tasks import Task
+from reports.model.cells import Cell
+from reports.model.measure import Measurement
+from reports.model.outcomes import Loss
+from reports.model.spending import taken
+from reports.model.tasks import Task
+from reports.run.pool import TIMED, run_cells
+from reports.run.supervisor import Answer, supervise
 
 STARTING, BETWEEN, OTHER = "starting workers", "between items", "other work on items"
 NEARLY = 0.1  # relative: timings that differ by less count as the same
@@ -85,7 +85,7 @@ class Account:
         return max(self.last.values()) - max(enough, default=min(self.first.values()))
 
     def supervise(self, function: Callable[[Any], Any], items: Iterable[Any], *terms: Any) -> Iterator[Answer]:
-        """As `reports.grid.supervisor.supervise`, and count."""
+        """As `reports.run.supervisor.supervise`, and count."""
         begin = time.monotonic()
         seen: set[int] = set()
         for item, result, note in supervise(Counted(function), items, *terms):

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from reports.charts.theme import LIGHT, new_figure, settings, style_axes, svg
 from reports.check.comparing import UNITS
 from reports.check.shown import Lines, Shown
+from reports.plots.theme import LIGHT, new_figure, settings, style_axes, svg
 
 LEAST = 1e-16
 

@@ -9,7 +9,7 @@ import typer
 
 from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings
 from reports.cli.terminal import Terminal
-from reports.grid.ending import BadInput, FileTrouble
+from reports.model.ending import BadInput, FileTrouble
 
 if TYPE_CHECKING:
     from engines import Engine
@@ -38,7 +38,7 @@ def animate(
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
-    from reports.grid.files import folder_for
+    from reports.run.files import folder_for
 
     known, names, _ = with_words(registered(), [scene], None, settings or (), motion=True)
     chosen = choose_scenes(names, known.scenes, known.pages)
@@ -90,11 +90,11 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
 
 
 def _write(shown: Shown, kind: str, path: Path) -> None:
-    from reports.grid.files import folder_for, write_whole
-    from reports.grid.temporary import temporary_folder
+    from reports.run.files import folder_for, write_whole
+    from reports.run.temporary import temporary_folder
     from reports.site.animated import animation
     from reports.site.film import film
-    from reports.text.tables import number
+    from reports.write.tables import number
 
     take = shown.take
     step = number(take.scene.spacing / take.methods[0][2]) if take.methods else ""

@@ -10,16 +10,16 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
     from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
-    from reports.grid.tasks import Answer
+    from reports.model.tasks import Answer
     from reports.pages.atlas.column import Column
     from reports.pages.atlas.subjects import Subject
     from reports.pages.atlas.table import Cost, Line
+    from reports.run.store import Store
 
 LIMIT = 600.0  # CPU seconds of one column, far above any that is known
 STRIDE = 4  # of so many steps one is run, and those between only where a border is; in small maps all
@@ -48,7 +48,7 @@ def atlas(
     from reports.cli.terminal import Terminal, opened
     from reports.pages.atlas.column import Column
     from reports.pages.atlas.table import CELLS, COSTS, Costs, as_csv, costs_as_csv, read, read_costs
-    from reports.text.provenance import machine, today, versions
+    from reports.write.provenance import machine, today, versions
 
     subjects = chosen(scenes)
     if publish:
@@ -103,7 +103,7 @@ def chosen(scenes: str | None) -> tuple[Subject, ...]:
 def run_columns(terminal: Terminal, store: Store, columns: Sequence[Column], crew: Workforce) -> int:
     """Run what is not stored; a column whose process ends is asked again cell by cell. How many columns were run."""
     from reports.cli.terminal import progress
-    from reports.grid.running import missing, run_into
+    from reports.run.running import missing, run_into
 
     waiting = sorted(missing(columns, store, LIMIT), key=lambda column: -column.cost)  # the longest first
     with kept() as check:
@@ -151,8 +151,8 @@ def told(
 
 def rates(store: Store, cluster: Workforce | None) -> tuple[float, float]:
     """(chunks of nothing that go through a cluster in a second, NaN without one; answers stored in a second)."""
-    from reports.grid.outcomes import Outcome
-    from reports.grid.tasks import Answer, answered
+    from reports.model.outcomes import Outcome
+    from reports.model.tasks import Answer, answered
     from reports.pages.atlas.reading import SAMPLE, Nothing
 
     chunks = float("nan")

@@ -42,8 +42,8 @@ def bench(
     from reports.bench.loops import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
-    from reports.text.provenance import machine, versions
-    from reports.text.tables import number
+    from reports.write.provenance import machine, versions
+    from reports.write.tables import number
 
     console = Terminal(140)
     known, names, _ = with_words(registered(), scene or (), None)

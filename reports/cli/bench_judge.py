@@ -18,9 +18,9 @@ def bench_judge(full: bool) -> None:
     from reports.cli.known import registered
     from reports.cli.selection import choose_cells
     from reports.cli.terminal import Terminal, print_table
-    from reports.grid.ending import BadInput
-    from reports.text.provenance import machine, versions
-    from reports.text.tables import number
+    from reports.model.ending import BadInput
+    from reports.write.provenance import machine, versions
+    from reports.write.tables import number
 
     console = Terminal(140)
     # First: some motions are kept, and cost nothing later.

@@ -24,11 +24,11 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
     from reports.cli.run import run_interruptible
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal
-    from reports.grid.cells import estimated_seconds
-    from reports.grid.pool import TIMED, worker_count
-    from reports.grid.store import Store
-    from reports.grid.temporary import temporary_folder
-    from reports.text.provenance import machine, versions
+    from reports.model.cells import estimated_seconds
+    from reports.run.pool import TIMED, worker_count
+    from reports.run.store import Store
+    from reports.run.temporary import temporary_folder
+    from reports.write.provenance import machine, versions
 
     parts = {"importing": time.process_time() - begin}
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.grid.ending import BadInput, Broken
-from reports.grid.files import write_whole
+from reports.model.ending import BadInput, Broken
+from reports.run.files import write_whole
 
 if TYPE_CHECKING:
     from reports.check.request import Answer
@@ -76,9 +76,9 @@ def asked(request: Any, limit: float) -> Answer:
     from dataclasses import replace
 
     from reports.check.request import Refused, answered
-    from reports.grid.outcomes import Loss, Outcome
-    from reports.grid.supervisor import supervise
-    from reports.grid.temporary import temporary_folder
+    from reports.model.outcomes import Loss, Outcome
+    from reports.run.supervisor import supervise
+    from reports.run.temporary import temporary_folder
 
     with temporary_folder() as folder:
         notes = folder / "progress"

@@ -23,7 +23,7 @@ from reports.cli.show import show
 from reports.cli.site import site
 from reports.cli.terminal import written
 from reports.cli.versions import versions
-from reports.grid.ending import FINE, STATUSES
+from reports.model.ending import FINE, STATUSES
 
 app = typer.Typer(
     help="How far a physics engine's constraints are from ideal ones, on planar mechanisms with an analytic truth.",

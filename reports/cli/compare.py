@@ -12,14 +12,14 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, REFERENCES, STORE, Folder
-from reports.grid.ending import BadInput, Broken
+from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from engines import Engine
     from reports.cli.terminal import Terminal
-    from reports.grid.measure import Measurement
+    from reports.model.measure import Measurement
     from reports.versions.column import Column
     from reports.versions.comparison import Comparison
 
@@ -61,7 +61,7 @@ def compare(
     from reports.cli.selection import nearest
     from reports.cli.terminal import Terminal
     from reports.cli.versions import named_scenes
-    from reports.grid.temporary import temporary_folder
+    from reports.run.temporary import temporary_folder
     from reports.versions.comparison import compared
 
     engines = (*VARIANTS, *OTHERS) if engine is None else _named(engine)
@@ -114,9 +114,9 @@ def _named(word: str) -> tuple[Engine, ...]:
 
 def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
     """What a word means. Raises BadInput."""
+    from reports.run.installed import built, distributions_in, installed
     from reports.versions.catalogue import distributions, engine_of
     from reports.versions.column import modules_in
-    from reports.versions.installed import built, distributions_in, installed
 
     name, equals, version = word.partition("==")
     if equals:
@@ -147,7 +147,7 @@ def _column(
     check: Callable[[], None],
 ) -> Column:
     from reports.cli.selection import QUICK_CELL
-    from reports.grid.cells import QUICK
+    from reports.model.cells import QUICK
     from reports.versions.column import column, modules_in
     from reports.versions.request import Request
 
@@ -169,7 +169,7 @@ def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
     """Worse lines first, then better ones, then orders, then one sentence."""
     from reports.cli.terminal import print_table
     from reports.gate.change import DEAR
-    from reports.text.tables import number
+    from reports.write.tables import number
 
     def cell(value: float | str) -> str:
         return number(value) if isinstance(value, float) else str(value)
@@ -211,7 +211,7 @@ def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
 
 def _ended(found: Comparison) -> tuple[Counter[str], Counter[str]]:
     """Of each side why cells ended as they did, where the other's did not, and how many for each reason."""
-    from reports.grid.outcomes import Outcome
+    from reports.model.outcomes import Outcome
 
     def told(row: Measurement) -> str:
         usable = Outcome(row.outcome).comparable

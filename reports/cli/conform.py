@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.options import REFERENCES
-from reports.grid.ending import Broken
+from reports.model.ending import Broken
 
 if TYPE_CHECKING:
     from engines.conformance import Case, Result, Status

@@ -15,12 +15,12 @@ from pathlib import Path
 from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.known import Known, registered, with_remembered
 from reports.cli.selection import shown_cells
-from reports.grid.outcomes import Loss
-from reports.grid.pool import worker_count
-from reports.grid.store import Store
-from reports.grid.supervisor import WorkersLost, supervise
-from reports.pages.page import Material, Page
-from reports.text.rendering import render_page
+from reports.model.outcomes import Loss
+from reports.model.page import Material, Page
+from reports.pages.rendering import render_page
+from reports.run.pool import worker_count
+from reports.run.store import Store
+from reports.run.supervisor import WorkersLost, supervise
 
 MANY = 1000  # rows: of fewer, pages are rendered sooner than workers have started
 LIMIT = 600.0  # CPU seconds of one page

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Protocol
 
-from reports.grid.supervisor import Supervise
+from reports.run.supervisor import Supervise
 
 
 class Workforce(Protocol):
@@ -29,8 +29,8 @@ class Pool:
 
 def pool(workers: int | None) -> Pool:
     """So many workers; as many as processors for None."""
-    from reports.grid.pool import worker_count
-    from reports.grid.supervisor import supervise
+    from reports.run.pool import worker_count
+    from reports.run.supervisor import supervise
 
     return Pool(workers or worker_count(timed=False), supervise)
 
@@ -41,7 +41,7 @@ def elsewhere(scheduler: str | None) -> Iterator[Workforce | None]:
     if scheduler is None:
         yield None
         return
-    from reports.grid.cluster import cluster
+    from reports.run.cluster import cluster
 
     with cluster(scheduler) as own:
         yield own

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 HEADER = (
     "no.",
@@ -38,9 +38,9 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.grid.pool import run_items
         from reports.pages.errata.errata_engines import TASKS, rulings
-        from reports.text.tables import number as short
+        from reports.run.pool import run_items
+        from reports.write.tables import number as short
 
         found = dict(run_items(TASKS))
         lost: list[str] = []
@@ -61,7 +61,7 @@ def rows_of_slips() -> list[tuple[str, ...]]:
     """A row a slip under HEADER, by number; those in words have no values."""
     from reference.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.pages.errata.page import digits
-    from reports.text.tables import number
+    from reports.write.tables import number
 
     found: dict[int, tuple[str, ...]] = {}
     for erratum in ERRATA:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from reports.cli.options import REFERENCES
-from reports.grid.ending import BadInput, FileTrouble
-from reports.grid.files import write_whole
+from reports.model.ending import BadInput, FileTrouble
+from reports.run.files import write_whole
 
 if TYPE_CHECKING:
     from reference.scene import Scene

@@ -18,10 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.grid.fingerprint import OURS, ROOT, digest_of, modules_behind
-from reports.grid.stored_text import text_of_row
-from reports.pages.page import Material, Page
-from reports.text.rendering import foot
+from reports.model.fingerprint import OURS, ROOT, digest_of, modules_behind
+from reports.model.page import Material, Page
+from reports.pages.rendering import foot
+from reports.run.stored_text import text_of_row
 
 PUBLISHED = ROOT / "reports" / "results"
 # Of what is published: what a report writes there, and reads never.

@@ -15,9 +15,9 @@ from engines.loading import is_reference, load
 from reference.scene import Scene
 from reference.variation import told_apart, with_settings
 from reports.cli.selection import known_engines, nearest
-from reports.grid.ending import BadInput
-from reports.pages import catalogue
-from reports.pages.page import Page
+from reports.model import catalogue
+from reports.model.ending import BadInput
+from reports.model.page import Page
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     from engines.registry import ENGINES, INSTALLED, method
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_engines, choose_scenes
-    from reports.grid.cells import Cell
-    from reports.grid.running import support
-    from reports.pages.catalogue import page_of
+    from reports.model.catalogue import page_of
+    from reports.model.cells import Cell
+    from reports.run.running import support
 
     known, names, given = with_words(registered(), scene or (), engine)
     scenes = choose_scenes(names, known.scenes, known.pages)

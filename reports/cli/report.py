@@ -12,8 +12,8 @@ import typer
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, SEARCH, STORE, Folder, with_folder
 from reports.cli.terminal import Terminal
-from reports.grid.ending import BadInput
-from reports.grid.files import write_whole
+from reports.model.ending import BadInput
+from reports.run.files import write_whole
 
 CHECKOUT = Path(__file__).parents[2]
 KEPT = "pages"  # the folder of files that need not be drawn again (`reports.cli.kept_pages`)
@@ -40,18 +40,18 @@ def report(
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
     if (results / STORE).stat().st_size > LARGE and not (results / KEPT).exists():
-        from reports.grid.worker_process import start_early
+        from reports.run.worker_process import start_early
 
         # Beside what is imported here; by the time that workers are wanted, they can be there.
         start_early("reports.cli.drawing")
     from reports.cli.drawing import MANY, known_to, made_of, material_of
     from reports.cli.selection import page_cells, page_tasks
-    from reports.grid.running import missing
-    from reports.grid.store import Store
-    from reports.pages.catalogue import PAGES
-    from reports.text import kept_numbers
-    from reports.text.csv_files import DIGESTS, digests_csv
-    from reports.text.rendering import render_all, render_readme
+    from reports.model.catalogue import PAGES
+    from reports.pages.rendering import render_all, render_readme
+    from reports.run.running import missing
+    from reports.run.store import Store
+    from reports.write import kept_numbers
+    from reports.write.csv_files import DIGESTS, digests_csv
 
     folder = published() if publish else results
     before = kept_numbers.read(published()) if publish else kept_numbers.Published()
@@ -124,9 +124,9 @@ def search_files(results: Path) -> dict[str, str]:
     place = results / SEARCH / STORE
     if not place.exists():
         return {}
-    from reports.grid.store import Store
+    from reports.pages.rendering import foot
+    from reports.run.store import Store
     from reports.search.page import files, read
-    from reports.text.rendering import foot
 
     with Store.read(place) as store:
         return files(*read(store), foot("crosscheck search"))

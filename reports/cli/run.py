@@ -22,15 +22,15 @@ from reports.cli.options import (
     Workers,
     with_folder,
 )
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
     from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
-    from reports.grid.cells import Cell
-    from reports.grid.measure import Measurement
-    from reports.grid.store import Store
-    from reports.grid.tasks import Task
+    from reports.model.cells import Cell
+    from reports.model.measure import Measurement
+    from reports.model.tasks import Task
+    from reports.run.store import Store
 
 
 def run(
@@ -84,7 +84,7 @@ def run_interruptible(
     """
     from reports.cli.elsewhere import pool
     from reports.cli.terminal import progress
-    from reports.grid.running import missing, run_into
+    from reports.run.running import missing, run_into
 
     by = crew or pool(None)
     with kept() as check:
@@ -103,8 +103,8 @@ def run_interruptible(
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
     """A table a scene, a line a method; then what became of the experiments outside the sweeps."""
     from reports.cli.terminal import print_table
-    from reports.grid.convergence import judged
-    from reports.text.tables import SUMMARY_HEADER, summary_rows
+    from reports.model.convergence import judged
+    from reports.write.tables import SUMMARY_HEADER, summary_rows
 
     told = judged(rows)
     for scene in dict.fromkeys(row.scene for row in told if row.purpose == "sweep"):

@@ -21,13 +21,13 @@ from reports.cli.options import (
     Workers,
     with_folder,
 )
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
     from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
-    from reports.grid.store import Store
-    from reports.grid.tasks import Answer
+    from reports.model.tasks import Answer
+    from reports.run.store import Store
     from reports.search.chunk import Asked, Chunk
     from reports.search.subjects import Subject
 
@@ -109,9 +109,9 @@ def chosen(engine: str | None, variant: str | None) -> list[Subject]:
 
 def of_release(release: str, engine: str | None, variant: str | None) -> Subject:
     """MuJoCo alone in another release. Raises BadInput where it can't be had, or something else is asked for too."""
+    from reports.run.installed import installed
     from reports.search.release import DISTRIBUTIONS
     from reports.search.subjects import Alone
-    from reports.versions.installed import installed
 
     if engine not in (None, "mujoco") or variant not in (None, "alone"):
         raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
@@ -138,7 +138,7 @@ def run_pieces(
     All at once where there is time for all: between two waves workers wait for the last of the first.
     """
     from reports.cli.terminal import progress
-    from reports.grid.running import missing, run_into
+    from reports.run.running import missing, run_into
     from reports.search.chunk import lost
 
     begin = monotonic()
@@ -170,8 +170,8 @@ def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
 def shrink_and_write(terminal: Terminal, store: Store, told: Sequence[Asked], folder: Path, crew: Workforce) -> None:
     """Make some findings of each check smaller, and write them as recipes and scripts."""
     from reports.cli.terminal import progress
-    from reports.grid.files import write_whole
-    from reports.grid.running import missing, run_into
+    from reports.run.files import write_whole
+    from reports.run.running import missing, run_into
     from reports.search.shrunk import Shrink, files_of, line_of, worst_of
 
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]

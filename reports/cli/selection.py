@@ -10,11 +10,11 @@ from types import MappingProxyType
 from engines import Engine
 from reference.scene import Scene
 from reference.validation import LARGEST_COUNT
-from reports.grid.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
-from reports.grid.ending import BadInput
-from reports.grid.tasks import Task
-from reports.grid.usual_steps import usual_cells
-from reports.pages.page import Page
+from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
+from reports.model.ending import BadInput
+from reports.model.page import Page
+from reports.model.tasks import Task
+from reports.model.usual_steps import usual_cells
 
 # A quick run over everything takes about a minute of two cores. For that no cell of it takes longer than this [s],
 # but for the shortest of each method in each scene: that one is left out only beyond QUICK_MOST [s].

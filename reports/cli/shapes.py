@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.grid.ending import BadInput, FileTrouble
-from reports.grid.files import write_whole
+from reports.model.ending import BadInput, FileTrouble
+from reports.run.files import write_whole
 
 if TYPE_CHECKING:
     from reference.centrodes import Centrodes

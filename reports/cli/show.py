@@ -18,7 +18,7 @@ from reports.cli.options import (
     with_folder,
 )
 from reports.cli.terminal import Terminal, print_table
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 
 def show(
@@ -31,11 +31,11 @@ def show(
     """Print a scene's stored numbers."""
     from reports.cli.known import registered, with_remembered, with_words
     from reports.cli.selection import choose_engines, choose_scenes, grid_engines
-    from reports.grid.cells import FULL, sweep_cells
-    from reports.grid.convergence import judged, sweeps
-    from reports.grid.quantities import QUANTITIES
-    from reports.grid.store import Store
-    from reports.text.tables import ERROR_HEADER, error_rows, order_rows
+    from reports.model.cells import FULL, sweep_cells
+    from reports.model.convergence import judged, sweeps
+    from reports.model.quantities import QUANTITIES
+    from reports.run.store import Store
+    from reports.write.tables import ERROR_HEADER, error_rows, order_rows
 
     known = registered()
     remembered: tuple[str, ...] = ()

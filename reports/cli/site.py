@@ -12,10 +12,10 @@ from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, Folder, with_folder
 from reports.cli.report import CHECKOUT
 from reports.cli.terminal import Terminal
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from reports.grid.tasks import Answer, Motion
+    from reports.model.tasks import Answer, Motion
 
 PUBLISHED = CHECKOUT / "reports" / "results"
 SITE = Path("crosscheck-site")
@@ -33,7 +33,7 @@ def site(
     results: Folder = FOLDER,
 ) -> None:
     """Write the results as a static site: lessons with moving pictures, tables, charts, engines in the page."""
-    from reports.grid.files import folder_for
+    from reports.run.files import folder_for
     from reports.site.build import build
     from reports.site.serving import serve_folder, server
     from reports.site.source import Source
@@ -94,6 +94,6 @@ def _answers(console: Terminal, results: Path) -> dict[Motion, Answer]:
 
 
 def _foot() -> str:
-    from reports.text.provenance import versions
+    from reports.write.provenance import versions
 
     return f"Made by `crosscheck site` with {versions(())}.".replace("`", "")

@@ -18,11 +18,11 @@ from engines.conformance import Case, Result, cases
 from engines.loading import is_reference
 from engines.registry import ENGINES, INSTALLED, load
 from reports.cli.selection import choose_engines
-from reports.grid.ending import BadInput
-from reports.grid.outcomes import Loss, Outcome
-from reports.grid.pool import TIME_LIMIT
-from reports.grid.supervisor import supervise
-from reports.grid.temporary import temporary_folder
+from reports.model.ending import BadInput
+from reports.model.outcomes import Loss, Outcome
+from reports.run.pool import TIME_LIMIT
+from reports.run.supervisor import supervise
+from reports.run.temporary import temporary_folder
 
 MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
 

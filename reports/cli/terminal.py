@@ -15,10 +15,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from reports.grid.ending import FileTrouble
+from reports.model.ending import FileTrouble
 
 if TYPE_CHECKING:
-    from reports.grid.store import Store
+    from reports.run.store import Store
 
 PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 
@@ -59,7 +59,7 @@ def written() -> Iterator[None]:
 @contextmanager
 def opened(path: Path) -> Iterator[Store]:
     """A store to be written; a line on stderr where the old one is put aside."""
-    from reports.grid.store import Store
+    from reports.run.store import Store
 
     with Store(path) as store:
         if store.notice:

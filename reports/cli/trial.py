@@ -14,12 +14,12 @@ from engines import Engine
 from engines.registry import VARIANTS
 from reference.scene import Scene
 from reports.cli.known import Given, values_of
-from reports.grid.cells import Cell, estimated_cost
-from reports.grid.ending import BadInput
-from reports.grid.outcomes import Loss
-from reports.grid.pool import TIME_LIMIT
-from reports.grid.supervisor import supervise
-from reports.pages.catalogue import SCENES
+from reports.model.catalogue import SCENES
+from reports.model.cells import Cell, estimated_cost
+from reports.model.ending import BadInput
+from reports.model.outcomes import Loss
+from reports.run.pool import TIME_LIMIT
+from reports.run.supervisor import supervise
 
 SLEEPING = 2 * TIME_LIMIT  # s of one that does not use its CPU time
 

@@ -10,7 +10,7 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, Folder
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
     from engines import Engine
@@ -40,7 +40,7 @@ def versions(
     from engines.registry import OTHERS, VARIANTS
     from reports.cli.report import published, refuse_outside_a_checkout
     from reports.cli.terminal import Terminal
-    from reports.grid.files import write_whole
+    from reports.run.files import write_whole
     from reports.versions.table import as_csv, as_published, merged, read
 
     if publish:
@@ -120,9 +120,9 @@ def _column(
     from time import monotonic
 
     from reports.cli.selection import QUICK_CELL
+    from reports.run.installed import installed
     from reports.versions.catalogue import distributions
     from reports.versions.column import column, modules_in
-    from reports.versions.installed import installed
     from reports.versions.request import Request
 
     place = installed(distributions(engines, name), number)
@@ -146,7 +146,7 @@ def _column(
 
 
 def _table(name: str, columns: list[Column]) -> Table:
-    from reports.pages.catalogue import PAGES
+    from reports.model.catalogue import PAGES
     from reports.versions.table import Table, entries
 
     quantities = {scene.name: page.quantity for page in PAGES for scene in page.scenes}
@@ -157,7 +157,7 @@ def _table(name: str, columns: list[Column]) -> Table:
 def _print(console: Terminal, table: Table, name: str) -> None:
     """Errors at a usual step, a line a scene and method, a column a version; outcomes where there is no error."""
     from reports.cli.terminal import print_table
-    from reports.text.tables import number
+    from reports.write.tables import number
 
     numbers = table.versions(name)
     lines: dict[tuple[str, str], dict[str, str]] = {}

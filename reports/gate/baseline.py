@@ -8,16 +8,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
-from reports.text.csv_files import DIGESTS, not_as_written
-from reports.text.provenance import still_installed
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
+from reports.write.csv_files import DIGESTS, not_as_written
+from reports.write.provenance import still_installed
 
 # scene, method, samples, steps a sample: the same cell in every run, whatever its settings are by now.
 Identity = tuple[str, str, int, int]
 IDENTITY = ("scene", "engine", "variant", "samples", "every")  # the columns that tell it
-# The file beside errors.csv in whose comments the versions stand, in the words of `reports.text.provenance.versions`.
+# The file beside errors.csv in whose comments the versions stand, in the words of `reports.write.provenance.versions`.
 BESIDE = "timings.csv"
 
 MOST = 5  # files that a sentence names

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from statistics import median
 
 from reports.gate.baseline import Old
-from reports.gate.checks import CHANGE, Check
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import room
+from reports.model.checks import CHANGE, Check
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import room
 
 # With other versions an error may become this many times as large: by luck, as where two errors no longer cancel.
 WORSE = 3.0
@@ -26,7 +26,7 @@ DEAR = 10.0
 def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), amplified: float = 1.0) -> tuple[Check, ...]:
     """The checks of a row that was made with the baseline's versions: the same numbers, to rounding.
 
-    The bound is the `room` of the quantity (`reports.grid.quantities`), which is never zero, and what `nudged`, the
+    The bound is the `room` of the quantity (`reports.model.quantities`), which is never zero, and what `nudged`, the
     same cell in other roundings, differ by: where the motion amplifies rounding. `amplified`: as `Promise.amplified`.
     """
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):

@@ -12,8 +12,8 @@ from engines import Engine
 from reference.scene import Scene
 from reports.gate.judge import QUANTITY_NAMES
 from reports.gate.prediction import DAMPING, Kind, given, kinds, softened
-from reports.grid.cells import mechanism_of
-from reports.grid.tasks import Answer, Task, Values
+from reports.model.cells import mechanism_of
+from reports.model.tasks import Answer, Task, Values
 
 # The judge's own steps take minutes for more bodies than this: of those only the gate asks it.
 MOST_BODIES = 20

@@ -13,8 +13,8 @@ from engines import registry
 from reports.gate.pytest_plugin import GIVEN, KNOWN
 from reports.gate.verdicts import Case, cases
 from reports.gate.walk import Verdict, grown, lost
-from reports.grid.outcomes import Outcome
-from reports.pages.catalogue import PAGES, with_engines
+from reports.model.catalogue import PAGES, with_engines
+from reports.model.outcomes import Outcome
 
 GRID = cases(PAGES)
 

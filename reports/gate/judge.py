@@ -28,8 +28,8 @@ from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reports.grid.errors import constraint_errors, motion_errors
-from reports.grid.quantities import QUANTITIES
+from reports.model.errors import constraint_errors, motion_errors
+from reports.model.quantities import QUANTITIES
 
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)

@@ -16,7 +16,7 @@ import numpy as np
 
 from engines.altered import Altered
 from reference.mechanism import Mechanism
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
 
 # Roundings that are tried.
 SEEDS = (1, 2, 3)

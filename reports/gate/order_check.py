@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 
 from engines import EXACT, Promise, Unpromised
-from reports.gate.checks import Check
-from reports.grid.convergence import ENOUGH, Verdict, fit
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import quantity
+from reports.model.checks import Check
+from reports.model.convergence import ENOUGH, Verdict, fit
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
 
 # An observed order may lie this much below the promised one: at a tenth of a radian the next power is a tenth of the
 # leading one, half a decade on a thirtieth, and 10^0.5 in steps turns that into 0.1; the sign of it is unknown. A last

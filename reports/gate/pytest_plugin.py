@@ -86,7 +86,7 @@ def _option(config: pytest.Config, name: str) -> Any:
 
 def pytest_report_header() -> list[str]:
     """What distributions register and can't be used."""
-    from reports.pages.catalogue import TROUBLES
+    from reports.model.catalogue import TROUBLES
 
     return [f"crosscheck: {line}" for line in TROUBLES]
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from reports.gate.baseline import Baseline, mixed
 from reports.gate.theory import idle
 from reports.gate.walk import Verdict, grown, remarks
-from reports.text.provenance import versions
-from reports.text.tables import markdown, number
+from reports.write.provenance import versions
+from reports.write.tables import markdown, number
 
 HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how near", "verdict")
 

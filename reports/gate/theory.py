@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from engines import EXACT, Promise, Softness, Unpromised
-from reports.gate.checks import Check
 from reports.gate.prediction import Prediction
-from reports.grid.measure import SATURATED, Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
+from reports.model.checks import Check
+from reports.model.measure import SATURATED, Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
 
 # Check -> the quantities that it holds.
 HELD: dict[str, tuple[str, ...]] = {

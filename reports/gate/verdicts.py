@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from engines import Engine, Promise, Softness, Unpromised
 from engines.motions import is_prescribed
 from reference.scene import Scene
-from reports.gate.checks import Check, Deviation
 from reports.gate.judge import errors_as_soft
 from reports.gate.order_check import order
 from reports.gate.prediction import Prediction, kinds, prediction
 from reports.gate.theory import theory
-from reports.grid.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.pages.page import Page
+from reports.model.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
+from reports.model.checks import Check, Deviation
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Page
 
 # The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
 # fast motion shows only below its time scale.

@@ -12,17 +12,17 @@ from engines import Softness
 from reference.scene import Scene
 from reports.gate.baseline import Baseline, Old, identity
 from reports.gate.change import DEAR, change, cost, drift, growth, known_by_now, moved
-from reports.gate.checks import CHANGE, Check, complaints, nearest
 from reports.gate.judge import errors_as_soft
 from reports.gate.nudged import nudged_cells
 from reports.gate.prediction import Kind, Prediction, prediction
 from reports.gate.verdicts import Case, checks, own_softness, predictions
-from reports.grid.cells import Cell, mechanism_of
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Loss
-from reports.grid.pool import run_cells
-from reports.grid.supervisor import Answer, Supervise, supervise
-from reports.grid.waiting import kin_of
+from reports.model.cells import Cell, mechanism_of
+from reports.model.checks import CHANGE, Check, complaints, nearest
+from reports.model.measure import Measurement
+from reports.model.outcomes import Loss
+from reports.run.pool import run_cells
+from reports.run.supervisor import Answer, Supervise, supervise
+from reports.run.waiting import kin_of
 
 # The judge's largest scenes take this long [s] on a busy machine.
 JUDGE_LIMIT = 600.0

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
-from reports.grid.errors import usable_samples
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Motion, trajectory_of
-from reports.pages.page import Material, Observation
+from reports.model.cells import Cell
+from reports.model.errors import usable_samples
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Observation
+from reports.model.tasks import Motion, trajectory_of
 
 
 def observe(material: Material, cell: Cell, setting: str, say: Callable[[Trajectory], str]) -> tuple[Observation, ...]:

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from engines import Engine
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Task, Values
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Answer, Task, Values
 from reports.search.subjects import Adapted, Subject, Told
 
 SIZE = 10  # cases in a piece: a second or some

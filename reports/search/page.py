@@ -10,9 +10,9 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from engines.registry import ENGINES, OTHERS
-from reports.charts.theme import svg
-from reports.grid.store import Store
-from reports.grid.tasks import Answer
+from reports.model.tasks import Answer
+from reports.plots.theme import svg
+from reports.run.store import Store
 from reports.search.chunk import Asked, asked, from_words, lost
 from reports.search.picture import distribution
 from reports.search.recipe import LEAST_RANK

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 from reports.search.chunk import Asked
 
 LAWS = ("acceleration", "velocity")

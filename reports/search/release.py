@@ -11,8 +11,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from reports.run.installed import environment, installed
 from reports.search import raw, raw_law
-from reports.versions.installed import environment, installed
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # the first is a part of the second from 4.0 on
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,7 +10,7 @@ from typing import Any
 
 from engines import Engine
 from reference.validation import InvalidMechanism
-from reports.grid.tasks import Answer, Task, Values
+from reports.model.tasks import Answer, Task, Values
 from reports.search.chunk import Asked
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk

@@ -11,7 +11,7 @@ from html import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.charts.theme import DARK, FONTS, LIGHT
+from reports.plots.theme import DARK, FONTS, LIGHT
 from reports.site import drawn
 from reports.site.embed import Shown
 

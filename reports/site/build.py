@@ -10,7 +10,7 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from reports.grid.tasks import Motion
+from reports.model.tasks import Motion
 from reports.site import markdown
 from reports.site.formulas import rendered
 from reports.site.lesson import Lesson

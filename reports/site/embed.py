@@ -14,7 +14,7 @@ from reference.joints import Drive, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
-from reports.grid.tasks import Answer, trajectory_of
+from reports.model.tasks import Answer, trajectory_of
 from reports.site import drawn
 from reports.site.joints import between, demanded, joints_of, loose, measure_of, opened, place_of
 from reports.site.lesson import Take

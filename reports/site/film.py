@@ -15,8 +15,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from reference.plane import rotated
-from reports.charts.theme import LIGHT, Theme, settings, style_axes
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
+from reports.plots.theme import LIGHT, Theme, settings, style_axes
 from reports.site import drawn
 from reports.site.animated import LOOKS, SECONDS, decades
 from reports.site.embed import Shown

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from engines import Engine
 from reference.scene import Scene
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
+from reports.model.cells import Cell
+from reports.model.tasks import Motion
 from reports.site.live.sliders import Live
 
 Point = tuple[float, float]

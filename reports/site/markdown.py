@@ -9,7 +9,7 @@ from html import escape
 
 from markdown_it import MarkdownIt
 
-from reports.text.templates import CODE, inert
+from reports.write.templates import CODE, inert
 
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
 # As GitHub has it: no space inside next to either sign, and no digit after the second.

@@ -7,8 +7,8 @@ import subprocess
 import sys
 from importlib.util import find_spec
 
-from reports.charts.theme import DARK, LIGHT, Theme
-from reports.grid.temporary import temporary_folder
+from reports.plots.theme import DARK, LIGHT, Theme
+from reports.run.temporary import temporary_folder
 from reports.site.packages import NotFetched
 
 MODULES = ("reference", "engines")

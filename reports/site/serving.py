@@ -7,7 +7,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from reports.grid.ending import BadInput
+from reports.model.ending import BadInput
 
 
 class Quiet(SimpleHTTPRequestHandler):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from reports.grid.tasks import Answer, Motion
+from reports.model.tasks import Answer, Motion
 
 
 @dataclass

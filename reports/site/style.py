@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-from reports.charts.theme import DARK, LIGHT, Theme
+from reports.plots.theme import DARK, LIGHT, Theme
 
 
 def colours() -> str:

@@ -6,9 +6,9 @@ import gzip
 from collections.abc import Mapping
 from pathlib import Path
 
-from reports.grid.ending import FileTrouble
-from reports.grid.files import folder_for
-from reports.grid.temporary import temporary_folder
+from reports.model.ending import FileTrouble
+from reports.run.files import folder_for
+from reports.run.temporary import temporary_folder
 from reports.site.build import MARKER
 
 REMEDY = "give another --output"

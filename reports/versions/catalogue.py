@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from engines import Engine
 from reports.cli.selection import nearest
-from reports.grid.requirements import normalised
+from reports.model.requirements import normalised
 
 # Names that a distribution had before; the first that has a version is taken.
 FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from reports.versions.installed import numbers
+from reports.run.installed import numbers
 
 CHANGELOG = "https://mujoco.readthedocs.io/en/stable/changelog.html"
 

@@ -48,7 +48,7 @@ def _end(out: BinaryIO) -> None:
 
 def answer(request: Any, say: Callable[[Any], None]) -> Any:
     """Run what is asked for and say each row; Finished, or a Trouble."""
-    from reports.grid.supervisor import WorkersLost
+    from reports.run.supervisor import WorkersLost
     from reports.versions.request import Finished, Trouble
 
     engines = _engines(request)
@@ -101,10 +101,10 @@ def _from_elsewhere(modules: tuple[str, ...], place: Path) -> str:
 
 
 def _run(request: Any, engines: list[Any], say: Callable[[Any], None]) -> None:
-    from reports.grid.cells import Cell, estimated_cost
-    from reports.grid.measure import Measurement
-    from reports.grid.running import missing, run_into
-    from reports.grid.store import Store
+    from reports.model.cells import Cell, estimated_cost
+    from reports.model.measure import Measurement
+    from reports.run.running import missing, run_into
+    from reports.run.store import Store
     from reports.versions.methods import of_trees
     from reports.versions.request import Running, TreesRow
     from reports.versions.trees import SIZES, Trees

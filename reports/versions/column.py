@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine
-from reports.grid.cells import Cell, estimated_cost
-from reports.grid.fingerprint import ROOT
-from reports.grid.measure import Measurement, blank
-from reports.grid.outcomes import Outcome, describe_exit
-from reports.grid.temporary import temporary_folder
-from reports.versions.installed import environment
+from reports.model.cells import Cell, estimated_cost
+from reports.model.fingerprint import ROOT
+from reports.model.measure import Measurement, blank
+from reports.model.outcomes import Outcome, describe_exit
+from reports.run.installed import environment
+from reports.run.temporary import temporary_folder
 from reports.versions.request import Finished, Request, Running, TreesRow, Trouble
 
 MARK = "known to be wrong"  # the word of adapters for such a release, in the sentence of every row

@@ -10,11 +10,11 @@ from statistics import median
 
 from reports.gate.baseline import Identity, Old, identity
 from reports.gate.change import drift, growth
-from reports.gate.checks import Check
-from reports.grid.convergence import Sweep, sweeps
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import QUANTITIES
+from reports.model.checks import Check
+from reports.model.convergence import Sweep, sweeps
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES
 
 SLOPE = 0.5  # orders that differ by more are told: two local slopes of one method do by less
 

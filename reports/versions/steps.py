@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from reports.gate.change import WORSE
-from reports.grid.outcomes import Outcome
-from reports.versions.installed import numbers
+from reports.model.outcomes import Outcome
+from reports.run.installed import numbers
 from reports.versions.table import Entry
 
 

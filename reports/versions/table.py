@@ -10,10 +10,10 @@ from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from reports.grid.outcomes import Outcome
-from reports.grid.quantities import DIGITS, agrees, quantity
+from reports.model.outcomes import Outcome
+from reports.model.quantities import DIGITS, agrees, quantity
+from reports.run.installed import numbers
 from reports.versions.column import Column
-from reports.versions.installed import numbers
 from reports.versions.request import TreesRow
 
 TREES = "random trees"

@@ -16,7 +16,7 @@ from engines import Engine
 from reference.mechanism import Mechanism
 from reference.row_system import solve_symmetric
 from reference.validation import Count, InvalidMechanism
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 from reports.search.parts import Link, Part, Recipe
 from reports.search.recipe import build
 

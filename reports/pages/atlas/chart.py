@@ -16,12 +16,12 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.stability import HATCHES, outcome_colour
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
 from reports.pages.atlas.subjects import Subject
 from reports.pages.atlas.table import Line
-from reports.text.tables import number
+from reports.plots.stability import HATCHES, outcome_colour
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.write.tables import number
 
 HALF = 0.5  # of the slowest mode: from here on, what sweeps leave grows from step to step
 WIDE = 2.2  # decades

@@ -15,9 +15,9 @@ from engines import Engine
 from engines.pymunk.contraction import contraction
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reports.grid.cells import Cell, estimated_cost
-from reports.grid.measure import TORN, Measurement, measure
-from reports.grid.tasks import Task, Values
+from reports.model.cells import Cell, estimated_cost
+from reports.model.measure import TORN, Measurement, measure
+from reports.model.tasks import Task, Values
 
 LOOKS = 20  # instants of the truth at which the forces are taken
 NOT_RUN = ""  # instead of an outcome: the point lies between two of one outcome, and is drawn like them

@@ -8,14 +8,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from reports.charts.theme import svg
-from reports.grid.cluster import CHUNK
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
 from reports.pages.atlas.chart import atlas_map
 from reports.pages.atlas.subjects import SUBJECTS, Subject
 from reports.pages.atlas.table import CELLS, COSTS, Costs, Line, read, read_costs
-from reports.pages.page import Material, Page
-from reports.text.tables import markdown, number
+from reports.plots.theme import svg
+from reports.run.cluster import CHUNK
+from reports.write.tables import markdown, number
 
 FOLDER = Path(__file__).parents[2] / "results"
 MANY = 1_000_000  # cells whose cost is told

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from engines import Engine
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Task, Values
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Answer, Task, Values
 from reports.pages.atlas.column import Column
 from reports.pages.atlas.subjects import Subject
 from reports.pages.atlas.table import LIKE_THE_LAST, Line, power

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
 
 CELLS, COSTS = "atlas.csv", "atlas_timings.csv"
 LIKE_THE_LAST = "="  # instead of a letter: it was not run, and lies between two that ended alike

@@ -14,8 +14,8 @@ from reference.curves.curve import Array
 from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reference.plane import rotated
-from reports.charts.drawings import draw_ground, draw_pose
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.plots.drawings import draw_ground, draw_pose
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 
 def draw_centrodes(

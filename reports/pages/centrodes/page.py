@@ -14,12 +14,12 @@ from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
 from reference.four_bar.scenes import DrivenFourBar
 from reference.kept import fixed
 from reference.trajectory import Trajectory
-from reports.charts.theme import svg
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
+from reports.model.cells import Cell
+from reports.model.page import Material, Page
+from reports.model.tasks import Motion
 from reports.pages.centrodes import drawings as centrode_drawings
-from reports.pages.page import Material, Page
-from reports.text.tables import markdown, number
+from reports.plots.theme import svg
+from reports.write.tables import markdown, number
 
 COUPLER = 1  # its place among the bodies
 # Crank angles [rad] between which the coupler turns one way, and well: its rate vanishes at 2.80 and 5.94 rad.

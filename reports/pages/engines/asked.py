@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from engines import Engine
-from reports.grid.tasks import Task
+from reports.model.tasks import Task
 
 
 @dataclass(frozen=True)

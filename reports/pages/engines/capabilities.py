@@ -13,7 +13,7 @@ from engines.conformance.pushed import FORCES
 from engines.conformance.worlds import MOVING, WORLDS
 from reference.joints import Gear, Pin, Rod, Weld
 from reference.mechanism import Body, Mechanism
-from reports.grid.tasks import Values
+from reports.model.tasks import Values
 from reports.pages.engines.asked import Asked
 
 STEP = 1e-2  # s

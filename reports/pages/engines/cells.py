@@ -17,7 +17,7 @@ from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.grid.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
+from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
 
 FREE = FreeFourBar()
 MILLISECOND = round(FREE.spacing / 1e-3)  # steps between samples

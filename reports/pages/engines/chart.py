@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from matplotlib.figure import Figure
 
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 LOOKS = (("first", "o", "-"), ("second", "s", "--"))
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from engines import Engine
 from reference.trajectory import energy
-from reports.grid.cells import Cell
-from reports.grid.tasks import Task, Values
+from reports.model.cells import Cell
+from reports.model.tasks import Task, Values
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from engines import registry
-from reports.charts.theme import svg
-from reports.charts.work_precision import work_precision
-from reports.grid.measure import Measurement
+from reports.model.measure import Measurement
+from reports.model.page import Failure, Material, Page
 from reports.pages.engines.capabilities import Capabilities
 from reports.pages.engines.cells import (
     BORROWED,
@@ -41,8 +40,9 @@ from reports.pages.engines.tables import (
     share_table,
 )
 from reports.pages.engines.velocity_term import VelocityTerm
-from reports.pages.page import Failure, Material, Page
-from reports.text.tables import markdown, number
+from reports.plots.theme import svg
+from reports.plots.work_precision import work_precision
+from reports.write.tables import markdown, number
 
 NAME = "engines"
 # One of each, as shipped where that is a variant: what is built does not depend on settings, but for constructions.

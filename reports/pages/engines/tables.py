@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Material
+from reports.model.tasks import Answer
 from reports.pages.engines.capabilities import ASKED, Capabilities
 from reports.pages.engines.cells import (
     CLOSED_AT,
@@ -22,9 +23,8 @@ from reports.pages.engines.cells import (
     MOVES,
     SHARES,
 )
-from reports.pages.page import Material
-from reports.text.provenance import told_versions
-from reports.text.tables import NOTHING, markdown, milliseconds, number
+from reports.write.provenance import told_versions
+from reports.write.tables import NOTHING, markdown, milliseconds, number
 
 LONGEST_WORD = len("with code of ours")  # what is longer is the sentence of a refusal
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from engines.tree import spanning_tree
 from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
-from reports.grid.tasks import Values
+from reports.model.tasks import Values
 from reports.pages.engines.asked import Asked
 
 Array = NDArray[np.float64]

@@ -27,9 +27,9 @@ from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.scenes import RollingOnCircle
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer, Task
-from reports.grid.tasks import Values as Kept
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Answer, Task
+from reports.model.tasks import Values as Kept
 
 REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
 from reference.errata.rolling import rolling_acceleration
+from reports.model.page import Material, Page
 from reports.pages.errata.errata_engines import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
-from reports.pages.page import Material, Page
-from reports.text.tables import markdown, number
+from reports.write.tables import markdown, number
 
 NAME = "errata"
 SNIPPETS = "errata/snippets"

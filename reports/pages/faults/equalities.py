@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.numerics.cauchy import derivative
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 Array = NDArray[np.float64]
 Gap = Callable[[Any], Any]  # q (dofs,) -> g (rows,), analytic

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 Array = NDArray[np.float64]
 

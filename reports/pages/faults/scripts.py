@@ -17,7 +17,7 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 FOLDER = Path(__file__).parent / "snippets"
 # Printed by a process of its own behind a script's last line.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.pages.faults.scripts import said_apart
-from reports.versions.installed import environment, installed
+from reports.run.installed import environment, installed
 
 RECORDED = Path(__file__).parent / "versions.csv"
 FIELDS = ("script", "package", "version", "expected", "found")

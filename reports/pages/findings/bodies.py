@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from reports.grid.convergence import Verdict
-from reports.grid.measure import Measurement
-from reports.grid.usual_steps import is_step
+from reports.model.convergence import Verdict
+from reports.model.measure import Measurement
+from reports.model.usual_steps import is_step
 from reports.pages.findings.finding import MILLISECOND, Finding
 from reports.pages.findings.lookup import Rows, points
 from reports.pages.findings.pictures import Line
-from reports.text.unmeasured import number
+from reports.write.unmeasured import number
 
 
 def energy(rows: Rows) -> Finding:

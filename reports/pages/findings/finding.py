@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.pages.findings.pictures import Line, axis_label
-from reports.text.unmeasured import MARK
+from reports.write.unmeasured import MARK
 
 MILLISECOND = 1e-3  # s, the step at which findings compare: the grid of nearly every scene has it
 TENTH = 1e-4  # s
@@ -21,7 +21,7 @@ class Finding:
     page: str
     holds: bool
     lines: tuple[Line, ...]
-    quantity: str  # of the picture, a name in `reports.grid.quantities`
+    quantity: str  # of the picture, a name in `reports.model.quantities`
 
     @property
     def picture(self) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from reports.charts.theme import svg
+from reports.model.page import Material, Page
 from reports.pages.findings.bodies import contact, energy, forces, iterations, skate
 from reports.pages.findings.finding import Finding
 from reports.pages.findings.linkages import crank, luck, reading, spring, tuned
 from reports.pages.findings.lookup import Rows
 from reports.pages.findings.pictures import draw
-from reports.pages.page import Material, Page
+from reports.plots.theme import svg
 
 FINDINGS: tuple[Callable[[Rows], Finding], ...] = (
     spring,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from reports.grid.convergence import Verdict
+from reports.model.convergence import Verdict
 from reports.pages.findings.finding import MILLISECOND, TENTH, Finding
 from reports.pages.findings.lookup import Rows
 from reports.pages.findings.pictures import Line
-from reports.text.unmeasured import UNMEASURED, formatted, number
+from reports.write.unmeasured import UNMEASURED, formatted, number
 
 ENGINES = {"pymunk": "pymunk", "mujoco": "MuJoCo"}  # as their makers write them
 

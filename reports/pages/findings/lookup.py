@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from reports.grid.cells import Cell
-from reports.grid.convergence import by_method, sweeps
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.usual_steps import is_step
-from reports.pages.page import Material, Page
-from reports.text.unmeasured import UNMEASURED
+from reports.model.cells import Cell
+from reports.model.convergence import by_method, sweeps
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
+from reports.model.usual_steps import is_step
+from reports.write.unmeasured import UNMEASURED
 
 Points = list[tuple[float, float]]  # (step [s], error), from coarse to fine
 

@@ -9,11 +9,11 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.families import colour
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
-from reports.grid.measure import Measurement
-from reports.grid.quantities import quantity
+from reports.model.measure import Measurement
+from reports.model.quantities import quantity
 from reports.pages.findings.lookup import points
+from reports.plots.families import colour
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 # Inches, 360 pixels of a browser: a telephone shows it unscaled, so that the letters keep their size.
 WIDTH, HEIGHT = 3.75, 2.55

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
+from reports.model.checks import Deviation
 
 SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness leaves a plateau"
 FIRST = (

@@ -10,10 +10,10 @@ from engines.lagrange import Lagrange
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.scene import Scene
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation, StabilityMap
 from reports.pages.four_bar.printed_rates import PrintedRates
-from reports.pages.page import Failure, Material, Observation, StabilityMap
-from reports.text.tables import number
+from reports.write.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))

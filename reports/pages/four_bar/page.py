@@ -10,14 +10,14 @@ import numpy as np
 from engines import mujoco, pymunk
 from engines.registry import ENGINES
 from reference.four_bar import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reports.charts import drawings
-from reports.charts.theme import svg
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
+from reports.model.cells import Cell
+from reports.model.page import Material, Page
+from reports.model.tasks import Motion
 from reports.pages.four_bar.expectations import KNOWN
 from reports.pages.four_bar.experiments import FAILURES, MAPS
-from reports.pages.page import Material, Page
-from reports.text.lookups import told
+from reports.plots import drawings
+from reports.plots.theme import svg
+from reports.write.lookups import told
 
 NAME = "four_bar"
 SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.four_bar.scenes import DrivenFourBar
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 SAMPLES = 50  # a revolution
 EVALUATION = 10e-6  # s

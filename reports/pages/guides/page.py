@@ -11,10 +11,10 @@ from engines import Engine, lagrange, mujoco, pymunk
 from reference.four_bar import FreeFourBar
 from reference.scene import Scene
 from reference.skate import ChaplyginSleigh
-from reports.grid.cells import FULL, sweep_cells
-from reports.pages.page import Material, Page
-from reports.text.lookups import told
-from reports.text.tables import markdown, number
+from reports.model.cells import FULL, sweep_cells
+from reports.model.page import Material, Page
+from reports.write.lookups import told
+from reports.write.tables import markdown, number
 
 FOLDER = Path(__file__).parent
 FOUR_BAR, SLEIGH = FreeFourBar(), ChaplyginSleigh()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 SWEPT = (
     "by design: near the singular position the forces have no limit and sweeps do not converge; what they leave is "

@@ -9,9 +9,9 @@ from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.n_four_bar import NFourBar
 from reference.scene import Scene
-from reports.grid.cells import Cell
-from reports.pages.page import Failure, Material, Observation, StabilityMap
-from reports.text.tables import number
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.write.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")

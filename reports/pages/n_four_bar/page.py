@@ -8,14 +8,14 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reports.charts.stroboscope import Strip, stroboscope
-from reports.charts.theme import svg
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
 from reports.pages.n_four_bar.expectations import KNOWN
 from reports.pages.n_four_bar.experiments import FAILURES, MAPS, SOFT
-from reports.pages.page import Material, Page
-from reports.text.lookups import told
-from reports.text.unmeasured import UNMEASURED
+from reports.plots.stroboscope import Strip, stroboscope
+from reports.plots.theme import svg
+from reports.write.lookups import told
+from reports.write.unmeasured import UNMEASURED
 
 NAME = "n_four_bar"
 SCENES = (NFourBar(), TenFourBars(), FortyFourBars())

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from reference.pendulum.scenes import LinkPendulum
-from reports.pages.page import Material, Observation
+from reports.model.page import Material, Observation
 from reports.pages.pendulum.neighbours import Neighbours
-from reports.text.tables import number
+from reports.write.tables import number
 
 BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
 

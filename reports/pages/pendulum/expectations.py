@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 # At any step: one link's angle is 1.2 to 1.3 times its bound from 3e-4 s down to 1e-5 s.
 EULER = (

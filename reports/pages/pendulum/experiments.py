@@ -15,11 +15,11 @@ from reference.pendulum.link import PointPendulum
 from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
-from reports.grid.cells import Cell
-from reports.pages.page import Failure, Material, StabilityMap
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, StabilityMap
 from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence
-from reports.text.tables import number
-from reports.text.unmeasured import UNMEASURED
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.pendulum.scenes import LinkPendulum
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 
 @dataclass(frozen=True)

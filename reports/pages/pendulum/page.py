@@ -9,12 +9,12 @@ from typing import Any
 from engines import mujoco
 from engines.registry import VARIANTS
 from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
-from reports.charts.stroboscope import Strip, stroboscope
-from reports.charts.theme import svg
-from reports.pages.page import FEATURED, Material, Page
+from reports.model.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
 from reports.pages.pendulum.experiments import FAILURES, MAPS, SOLVED
-from reports.text.lookups import told
+from reports.plots.stroboscope import Strip, stroboscope
+from reports.plots.theme import svg
+from reports.write.lookups import told
 
 NAME = "pendulum"
 SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engines import Promise
-from reports.gate.checks import Deviation
+from reports.model.checks import Deviation
 
 # Observed on all three: an error of the fifth power is left.
 ORDERS = {

@@ -12,8 +12,8 @@ from reference.person.swaying import SwayingOnOneFoot, modes_upright
 from reference.person.two_feet import TwoFeet
 from reference.scene import Scene
 from reference.validation import InvalidMechanism
-from reports.grid.cells import Cell
-from reports.pages.page import Failure, Material, Observation, StabilityMap
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation, StabilityMap
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)

@@ -7,12 +7,12 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
-from reports.charts.stroboscope import Points, Strip, stroboscope
-from reports.charts.theme import svg
-from reports.pages.page import Material, Page
+from reports.model.page import Material, Page
 from reports.pages.person.expectations import KNOWN, ORDERS
 from reports.pages.person.experiments import FAILURES, MAPS
-from reports.text.lookups import told
+from reports.plots.stroboscope import Points, Strip, stroboscope
+from reports.plots.theme import svg
+from reports.write.lookups import told
 
 NAME = "person"
 ONE_FOOT = ("person_swaying", "person_one_foot")

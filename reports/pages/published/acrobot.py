@@ -18,7 +18,7 @@ from engines import Engine
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 Array = NDArray[np.float64]
 GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s

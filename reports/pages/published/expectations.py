@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 CLOSING = (
     "by design: as shipped a joint closes a tenth of its gap in a sixtieth of a second, a third of the whole motion"

@@ -16,7 +16,7 @@ from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory, energy, joint_gap
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 Array = NDArray[np.float64]
 GRAVITY = 10.0  # m/s^2

@@ -13,20 +13,20 @@ from reference.andrews import Andrews
 from reference.n_four_bar import NFourBar
 from reference.pendulum.link import PointPendulum
 from reference.scene import Scene
-from reports.charts.stroboscope import Strip, stroboscope
-from reports.charts.theme import svg
-from reports.grid.cells import FULL, sweep_cells
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Answer
-from reports.pages.page import Material, Page
+from reports.model.cells import FULL, sweep_cells
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
+from reports.model.tasks import Answer
 from reports.pages.pendulum.experiments import PHASE
 from reports.pages.published.acrobot import PUBLISHED, START, Acrobot
 from reports.pages.published.acrobot import STEPS as ACROBOT_STEPS
 from reports.pages.published.answers import compared
 from reports.pages.published.expectations import KNOWN
 from reports.pages.published.newton import BOUNDS, STEPS, Newton
-from reports.text.lookups import told
+from reports.plots.stroboscope import Strip, stroboscope
+from reports.plots.theme import svg
+from reports.write.lookups import told
 
 NAME = "published"
 SCENES = (Andrews(),)

@@ -14,9 +14,9 @@ from reference.curves.circles_lines import Line
 from reference.curves.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
 from reference.rolling.scenes import RollingScene
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 COEFFICIENTS = (0.2, 0.5, 1.0)
 

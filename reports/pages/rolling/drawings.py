@@ -18,7 +18,7 @@ from reference.plane import rotated
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 POINTS = 241
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from engines import Promise
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 # Where nothing but the contact turns the body, its velocities' error of first order alternates and leaves no pose.
 ORDERS = {

@@ -14,12 +14,12 @@ from engines.lagrange import Lagrange
 from engines.pymunk import methods as pymunk_methods
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
 from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
-from reports.pages.page import Failure, Material, Observation, StabilityMap
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.model.tasks import Motion
 from reports.pages.rolling.methods import CONSTRAINTS, CONTACTS, cells
 from reports.pages.rolling.parting import CHATTERING, PARTINGS, after_parting, chatter, partings
-from reports.text.unmeasured import UNMEASURED
+from reports.write.unmeasured import UNMEASURED
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
 SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)

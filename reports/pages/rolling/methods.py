@@ -8,7 +8,7 @@ from engines import Engine, mujoco, pymunk
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from reference.scene import Scene
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 

@@ -19,14 +19,14 @@ from reference.rolling import (
     RollingOnCircle,
 )
 from reference.scene import Scene
-from reports.charts.theme import svg
-from reports.pages.page import Material, Page
+from reports.model.page import Material, Page
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling.expectations import KNOWN, ORDERS
 from reports.pages.rolling.experiments import FAILURES, MAPS, polygon_cells, softness_cells
-from reports.text.lookups import nearest_step, told
-from reports.text.unmeasured import UNMEASURED, Known
+from reports.plots.theme import svg
+from reports.write.lookups import nearest_step, told
+from reports.write.unmeasured import UNMEASURED, Known
 
 NAME = "rolling"
 SCENES = (

@@ -12,12 +12,12 @@ from engines import Engine, mujoco, pymunk
 from engines.mujoco import methods as mujoco_methods
 from reference.rolling.scenes import RollingOnCircle
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
+from reports.model.page import Material, Observation
 from reports.pages.observing import observe
-from reports.pages.page import Material, Observation
 from reports.pages.rolling.methods import CONTACTS
-from reports.text.tables import number
-from reports.text.unmeasured import UNMEASURED
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 
 ROLLER = 0  # the only body's index
 

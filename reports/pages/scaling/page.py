@@ -12,16 +12,16 @@ from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
 from reference.pendulum.many_links import LongPendulum
-from reports.charts.theme import svg
-from reports.grid.cells import Cell
-from reports.grid.scaling_fit import Series, cost_exponent, error_exponent, series_of
-from reports.pages.page import Material, Page
+from reports.model.cells import Cell
+from reports.model.page import Material, Page
+from reports.model.scaling_fit import Series, cost_exponent, error_exponent, series_of
 from reports.pages.pendulum import page as pendulum
 from reports.pages.scaling.chart import scaling_chart
 from reports.pages.scaling.reference_method import BandedChain
 from reports.pages.scaling.truth_error import TruthError
-from reports.text.tables import NOTHING, markdown, number
-from reports.text.unmeasured import UNMEASURED
+from reports.plots.theme import svg
+from reports.write.tables import NOTHING, markdown, number
+from reports.write.unmeasured import UNMEASURED
 
 NAME = "scaling"
 

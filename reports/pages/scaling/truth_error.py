@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reference.pendulum.many_links import LongPendulum
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.slopes import HeldBySkates
-from reports.pages.page import Material, Observation
+from reports.model.page import Material, Observation
 
 
 def _body(*joints: Pin | Skate) -> Mechanism:

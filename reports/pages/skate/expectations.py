@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from engines import Promise
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 # Another body's motion has no order; here it is held to an ideal row's all the same, so that by how much it misses that
 # stays known.

@@ -11,9 +11,9 @@ from engines.registry import VARIANTS
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
-from reports.pages.page import Failure, StabilityMap
+from reports.model.cells import Cell
+from reports.model.page import Failure, StabilityMap
+from reports.model.tasks import Motion
 from reports.pages.skate.counting import counting
 from reports.pages.skate.methods import ORDINARY, method
 from reports.pages.skate.slipping import LIMITED, PEAK, delays, slipping

@@ -16,23 +16,23 @@ from reference.skate import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, Sleig
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.parking import commutator_displacement
 from reference.trajectory import Trajectory
-from reports.charts import work_precision as charts
-from reports.charts.plane_panels import Blades, Panel, Path, paths
-from reports.charts.theme import svg
-from reports.grid.cells import Cell
-from reports.grid.convergence import best_of, by_method, groups, sweeps
-from reports.grid.measure import Measurement
-from reports.grid.outcomes import Outcome
-from reports.grid.tasks import Motion
-from reports.pages.page import FEATURED, Material, Page
+from reports.model.cells import Cell
+from reports.model.convergence import best_of, by_method, groups, sweeps
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import FEATURED, Material, Page
+from reports.model.tasks import Motion
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN, ORDERS
 from reports.pages.skate.experiments import FAILURES, MAPS
 from reports.pages.skate.methods import CONSTRUCTIONS, known
-from reports.text import tables
-from reports.text.holders import holders
-from reports.text.lookups import nearest_step
-from reports.text.unmeasured import UNMEASURED
+from reports.plots import work_precision as charts
+from reports.plots.plane_panels import Blades, Panel, Path, paths
+from reports.plots.theme import svg
+from reports.write import tables
+from reports.write.holders import holders
+from reports.write.lookups import nearest_step
+from reports.write.unmeasured import UNMEASURED
 
 NAME = "skate"
 SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from reference.body import Triple
 from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
 from reference.skate.slopes import SkateOnSlope
-from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
+from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 
 BLADE = 0.35  # m
 GAP = (0.0, 1.0, 0.0)  # the pose that is asked for: straight sideways of the start

@@ -8,12 +8,12 @@ import numpy as np
 
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
+from reports.model.page import Material, Observation
 from reports.pages.observing import observe
-from reports.pages.page import Material, Observation
 from reports.pages.skate.methods import limited
 from reports.pages.skate.turning_round import BACKWARDS
-from reports.text.unmeasured import UNMEASURED
+from reports.write.unmeasured import UNMEASURED
 
 
 def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from reference.skate.sleigh import SleighBackwards
-from reports.grid.cells import Cell
+from reports.model.cells import Cell
+from reports.model.page import Material, Observation
 from reports.pages.observing import observe
-from reports.pages.page import Material, Observation
 from reports.pages.skate.methods import CONSTRUCTIONS, ORDINARY
-from reports.text.tables import number
+from reports.write.tables import number
 
 # Between these rates [rad/s] a turning on the straight run grows as the linearised motion says: far above where it
 # starts, and its square is still below a thousandth of that of the largest rate.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 EULER = "by design: a first-order method loses two turns of a free crank at the steps that are run here"
 SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"

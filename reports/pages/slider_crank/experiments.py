@@ -15,11 +15,11 @@ from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.validation import InvalidMechanism
-from reports.grid.cells import Cell
-from reports.pages.page import Failure, Material, Observation, StabilityMap
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation, StabilityMap
 from reports.pages.slider_crank.leaving import Leaving
-from reports.text.tables import number
-from reports.text.unmeasured import UNMEASURED
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)

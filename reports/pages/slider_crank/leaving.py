@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.slider_crank.singular_cases import SliderAtDeadCentre
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 FAR = 1.0  # rad
 INSTANTS = 3001  # so that the time is known to a millisecond

@@ -8,12 +8,12 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
-from reports.charts.stroboscope import Strip, stroboscope
-from reports.charts.theme import svg
-from reports.pages.page import Material, Page
+from reports.model.page import Material, Page
 from reports.pages.slider_crank.expectations import KNOWN
 from reports.pages.slider_crank.experiments import FAILURES, MAPS
-from reports.text.lookups import told
+from reports.plots.stroboscope import Strip, stroboscope
+from reports.plots.theme import svg
+from reports.write.lookups import told
 
 NAME = "slider_crank"
 SCENES = (DrivenSliderCrank(), FreeSliderCrank())

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from reports.charts.stability import HATCHES, outcome_colour
-from reports.charts.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes
-from reports.grid.outcomes import Outcome
+from reports.model.outcomes import Outcome
+from reports.plots.stability import HATCHES, outcome_colour
+from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes
 from reports.versions.steps import lines, size
 from reports.versions.table import Entry
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from reports.charts.theme import svg
-from reports.pages.page import Material, Page
+from reports.model.page import Material, Page
 from reports.pages.versions.chart import cost, heat_table, over_versions, ratios, variants
-from reports.text.tables import markdown, number
+from reports.plots.theme import svg
 from reports.versions.changes import named
 from reports.versions.steps import Step, by_version, steps
 from reports.versions.table import Entry, Table, read
+from reports.write.tables import markdown, number
 
 DATA = Path(__file__).parents[2] / "results" / "versions.csv"
 EXAMPLES = 2  # of each kind of step that are told

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from reports.gate.checks import Deviation
-from reports.grid.outcomes import Outcome
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 
 ANOTHER_VEHICLE = "by design: the velocity across is set without the turning that a force at the wheel brings"
 SOFT = "by design: contacts as shipped are springs of 0.02 s and give way, whatever the step"

@@ -14,13 +14,13 @@ from reference.scene import Scene
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reference.wheels.tractrix import Tow
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
+from reports.model.cells import Cell
+from reports.model.page import Failure, Material, Observation
+from reports.model.tasks import Motion
 from reports.pages.observing import observe
-from reports.pages.page import Failure, Material, Observation
 from reports.pages.wheels.folding import Folding
-from reports.text.tables import number
-from reports.text.unmeasured import UNMEASURED
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
 
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 MOTION = ("position", "angle", "gap", "slip", "energy")

@@ -8,7 +8,7 @@ import numpy as np
 
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.trailers import CarWithTrailers
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 
 @dataclass(frozen=True)

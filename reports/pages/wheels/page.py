@@ -9,16 +9,16 @@ import numpy as np
 
 from engines.registry import VARIANTS
 from reference.wheels import CarAndTrailer, Cart
-from reports.charts.plane_panels import paths
-from reports.charts.theme import svg
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
-from reports.pages.page import Material, Page
+from reports.model.cells import Cell
+from reports.model.page import Material, Page
+from reports.model.tasks import Motion
 from reports.pages.skate.methods import known
 from reports.pages.skate.page import counted
 from reports.pages.wheels import pictures as wheels_pictures
 from reports.pages.wheels.expectations import KNOWN
 from reports.pages.wheels.experiments import FAILURES
+from reports.plots.plane_panels import paths
+from reports.plots.theme import svg
 
 NAME = "wheels"
 SCENES = (CarAndTrailer(), Cart())

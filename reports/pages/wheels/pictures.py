@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from reference.wheels.casters import Casters
 from reference.wheels.tractrix import Tow
 from reference.wheels.trailers import CarWithTrailers
-from reports.charts.plane_panels import Blades, Panel, Path, paths
+from reports.plots.plane_panels import Blades, Panel, Path, paths
 
 # The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].
 LENGTH = 1.0

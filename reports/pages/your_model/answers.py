@@ -12,7 +12,7 @@ from reports.check.numbers import data
 from reports.check.readers import read
 from reports.check.settings import Tried
 from reports.check.shown import shown_of
-from reports.grid.tasks import Task, Values
+from reports.model.tasks import Task, Values
 
 MODELS = Path(__file__).parent / "models"
 

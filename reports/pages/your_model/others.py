@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from reports.text.tables import markdown
+from reports.write.tables import markdown
 
 TABLE = Path(__file__).parent / "models" / "of_others.csv"
 SOURCES = {

@@ -9,10 +9,10 @@ from typing import Any
 from reference.four_bar import FreeFourBar
 from reports.check.pictures import pictures
 from reports.check.shown import from_text
-from reports.pages.page import Material, Page
+from reports.model.page import Material, Page
 from reports.pages.your_model import others
 from reports.pages.your_model.answers import WALKS, Walk
-from reports.text.tables import markdown, number
+from reports.write.tables import markdown, number
 
 NAME = "your_model"
 HEADER = ("setting", "largest error", "reaction error")

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from engines import Unsupported
 from reference.mechanism import Mechanism
-from reports.grid.tasks import Answer, Motion
+from reports.model.tasks import Answer, Motion
 from reports.site import drawn
 from reports.site.joints import joints_of, loose, measure_of
 from reports.site.lesson import Take

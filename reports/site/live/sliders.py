@@ -9,8 +9,8 @@ from typing import Any
 
 from engines import Engine, mujoco, pymunk
 from reference.scene import Scene
-from reports.grid.cells import Cell
-from reports.grid.tasks import Motion
+from reports.model.cells import Cell
+from reports.model.tasks import Motion
 
 MOST = 125  # places of a scene's sliders: each has a model of each engine and a drawing in the page
 # Settings of the engines that every live part has: values in the page, and what is written beside them. None stands

@@ -1,0 +1,140 @@
+"""Pages and scenes that distributions register, ours among them; and a generic page for a scene that has none.
+
+A distribution registers under `crosscheck.scenes` a scene, or a tuple or list of scenes; under `crosscheck.pages` a
+page (`reports.model.page.Page`), or a tuple or list of pages. A page shows the scenes that it names, whether they are
+registered or not. Ours are in pyproject.toml, and pages are told in the order there.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import MISSING, fields, is_dataclass, replace
+from typing import Any
+
+from engines import Engine, registry
+from engines.entry_points import registered
+from engines.loading import Kind
+from reference.scene import TIMES, Scene
+from reference.validation import InvalidMechanism, take
+from reports.model.page import Page
+
+# Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.
+LONGEST_NAME = 100
+INDEX = "index.md"
+NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")
+
+
+def _no_scene(value: Any) -> str:
+    """Why a value is no scene, a clause; empty if it is one."""
+    if isinstance(value, type):
+        return f"it is a class; give a scene made of it, {value.__name__}()"
+    if not isinstance(value, Scene):
+        return "it does not inherit from reference.scene.Scene"
+    if not is_dataclass(value):
+        return "its class is no dataclass, and a scene's numbers are its fields"
+    for name in ("name", "source"):
+        word = getattr(value, name, None)
+        if not (isinstance(word, str) and word.strip() and word.isprintable()):
+            return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
+    try:  # a scene has looked at these when it was made, but not at those that a property works out
+        for name, annotation in TIMES:
+            take(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
+    except InvalidMechanism as reason:
+        return str(reason)
+    return ""
+
+
+def _by_defaults(cls: type) -> Scene | None:
+    """A scene with its default numbers; None for another class, and for a scene without a default for every number."""
+    if (
+        not (issubclass(cls, Scene) and is_dataclass(cls))
+        or inspect.isabstract(cls)
+        or not isinstance(getattr(cls, "name", None), str)
+    ):
+        return None
+    given = (field.default is MISSING and field.default_factory is MISSING for field in fields(cls))
+    return None if any(given) else cls()  # type: ignore[call-arg]
+
+
+def _no_page(value: Any) -> str:
+    return "" if isinstance(value, Page) else "it is no reports.model.page.Page"
+
+
+SCENE = Kind("scene", _no_scene, _by_defaults)
+_scenes = registered("crosscheck.scenes", SCENE, lambda scene: scene.name)
+_pages = registered("crosscheck.pages", Kind("page", _no_page), lambda page: page.name)
+
+
+def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
+    """The page that teaches a scene, of all unless some are given; None for a scene from elsewhere."""
+    return next((page for page in (PAGES if pages is None else pages) if page.teaches(scene)), None)
+
+
+def untaught(scenes: Iterable[Scene], pages: Sequence[Page] | None = None) -> tuple[str, ...]:
+    """The names of the scenes that no page teaches."""
+    return tuple(scene.name for scene in scenes if page_of(scene, pages) is None)
+
+
+def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
+    """A page with all that rows tell of a scene, under a name by which its documents are none of those taken."""
+    stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
+    summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
+    page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
+    number, forbidden = 1, {INDEX, *taken}
+    while page.documents & forbidden:
+        number += 1
+        page = replace(page, name=f"{stem}_{number}")
+    return page
+
+
+def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequence[Engine]) -> tuple[Page, ...]:
+    """The pages, and a generic one with these engines for each scene that none of them teaches."""
+    out = list(pages)
+    for scene in scenes:
+        if page_of(scene, out) is None:
+            out.append(generic_page(scene, engines, {name for page in out for name in page.documents}))
+    return tuple(out)
+
+
+def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page, ...]:
+    """The pages, each of which that compares engines at all compares these too, and shows them in its charts."""
+    added = {registry.method(engine) for engine in engines}
+
+    def extended(page: Page) -> Page:
+        shown = page.featured
+        return replace(
+            page,
+            engines=tuple(dict.fromkeys([*page.engines, *engines])),
+            featured=lambda row: row.method in added or shown(row),
+        )
+
+    return tuple(extended(page) if engines and page.engines else page for page in pages)
+
+
+def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str, ...]]:
+    """(pages of which no two teach the same scene or are the same document, a line about each that is left out)."""
+    kept: list[Page] = []
+    troubles: list[str] = []
+    for page in pages:
+        double = next((f"{s.name!r}, as {p.name!r} does" for s in page.scenes for p in kept if p.teaches(s)), "")
+        same = next((f"{name}, as {p.name!r} has" for p in kept for name in sorted(page.documents & p.documents)), "")
+        if INDEX in page.documents:
+            same = f"{INDEX}, as the index of all pages has"
+        if double or same:
+            why = f"it teaches {double}" if double else f"it would have the file {same}"
+            troubles.append(f"crosscheck.pages: the page {page.name!r} is left out, since {why}")
+        else:
+            kept.append(page)
+    return tuple(kept), tuple(troubles)
+
+
+_kept, _doubles = _without_doubles(_pages.values)
+_by_name = {scene.name: scene for scene in _scenes.values}
+SCENES: tuple[Scene, ...] = (
+    *_scenes.values,
+    *(scene for page in _kept for scene in page.scenes if scene.name not in _by_name),
+)
+PAGES: tuple[Page, ...] = with_scenes(_kept, SCENES, registry.VARIANTS)
+TROUBLES = (*registry.TROUBLES, *_scenes.troubles, *_pages.troubles, *_doubles)

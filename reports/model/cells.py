@@ -1,0 +1,167 @@
+"""A cell is one scene in one engine variant at one step; the grids say which cells are run."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Literal
+
+from engines import Engine
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reference.validation import Count, Valid
+from reports.model.ending import BadInput
+from reports.model.fingerprint import digest_of, modules_behind, modules_of
+from reports.run.worker import describe
+
+Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
+
+# Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
+# they are about 1e-2, 3e-3, 1e-3 ... 1e-5 s. Three points are the fewest that can tell a slope from a plateau.
+QUICK = (1, 3, 10)
+FULL = (1, 3, 10, 30, 100, 300, 1000)
+
+# A step of the full grid is left out when one run would take about this long [s]. The estimate is fixed, not measured,
+# so that the grid (and errors.csv) is the same on every machine.
+COST_LIMIT = 0.7
+# A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
+QUICK_LIMIT = 7.0
+
+
+@dataclass(frozen=True)
+class Cell(Valid):
+    """A scene in an engine with `every` steps between samples; `samples` replaces the scene's own number if given.
+
+    Scenes and engines are frozen dataclasses, so a cell is data: it travels to a worker process as it is.
+    Raises ValueError unless both counts are whole numbers above zero.
+    """
+
+    scene: Scene
+    engine: Engine
+    every: Count
+    purpose: Purpose = "sweep"
+    samples: Count | None = None
+
+    @property
+    def sample_count(self) -> int:
+        return self.scene.samples if self.samples is None else self.samples
+
+    @property
+    def step(self) -> float:
+        """The engine's step [s]."""
+        return self.scene.duration / self.sample_count / self.every
+
+    @property
+    def kin(self) -> Scene:
+        """Cells of a scene share its exact motion (`reports.run.waiting`)."""
+        return self.scene
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name} / {self.engine.name} {self.engine.variant} / {self.step:.1e} s"
+
+    @cached_property
+    def key(self) -> str:
+        """A digest of all that the result depends on; equal keys mean that a stored result still holds."""
+        parts = (
+            self.scene.name,
+            repr(self.scene),
+            type(self.engine).__qualname__,
+            self.engine.name,
+            self.engine.variant,
+            repr(self.engine),
+            self.every,
+            self.sample_count,
+            self.purpose,
+            digest_of(_modules(self.scene, self.engine)),
+        )
+        return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
+
+    @cached_property
+    def truth(self) -> str:
+        """A digest of all that the scene's exact motion depends on, but for the instants (`reports.model.truths`)."""
+        sources = digest_of(_modules_of_truth(self.scene))
+        parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+
+
+@lru_cache(maxsize=4096)  # a scene in an engine has a cell for every step
+def _modules(scene: Scene, engine: Engine) -> frozenset[str]:
+    return modules_of(scene, engine)
+
+
+@lru_cache(maxsize=512)
+def _modules_of_truth(scene: Scene) -> frozenset[str]:
+    return frozenset(modules_behind(scene))
+
+
+def estimated_cost(cell: Cell) -> float:
+    """About how long one run takes [s], by the engine's own formula; deliberately not a measurement."""
+    # To a nanosecond: which side of a limit a cell is on is not to be decided by rounding.
+    return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
+
+
+def estimated_seconds(cell: Cell) -> float:
+    """The same with the making of a model that takes long, as its engine says."""
+    return estimated_cost(cell) + getattr(cell.engine, "building", 0.0)
+
+
+@lru_cache(maxsize=4096)
+def _step_cost(scene: Scene, engine: Engine) -> float:
+    try:
+        cost = float(engine.step_cost(mechanism_of(scene)))
+    except Exception as error:  # whatever somebody else's engine does
+        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name}: {describe(error)}") from error
+    if not cost >= 0:
+        raise BadInput(f"{engine.name} {engine.variant}: step_cost of {scene.name} is {cost}; it must be a time [s]")
+    return cost
+
+
+@lru_cache(maxsize=512)
+def mechanism_of(scene: Scene) -> Mechanism:
+    """The scene's mechanism, made once: cells, tables and pictures ask for it hundreds of times."""
+    return scene.mechanism()
+
+
+def sweep_cells(
+    scenes: Iterable[Scene], engines: Iterable[Engine], steps: Iterable[int], cost_limit: float = COST_LIMIT
+) -> tuple[Cell, ...]:
+    """Every scene in every engine at every number of steps per sample, cheap steps first.
+
+    The coarsest step is always there, the other QUICK ones but for very dear ones; finer steps only while their
+    estimated cost stays below the limit.
+    """
+    engines, scenes = tuple(engines), tuple(scenes)
+    return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
+
+
+# Of engines that are extras: no finer step, and no cell that takes longer than this [s], building included.
+BESIDE_LIMIT = 0.5
+# A model that takes as long as this to build [s] is run where a page asks for it, and in no grid.
+SLOW_TO_BUILD = 1.0
+
+
+def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
+    """The QUICK steps of engines that are no part of a scene's grid and stand beside it on its page."""
+    engines = tuple(engine for engine in engines if getattr(engine, "building", 0.0) < SLOW_TO_BUILD)
+    return tuple(
+        cell
+        for scene in scenes
+        for engine in engines
+        for every in QUICK
+        if estimated_cost(cell := Cell(scene, engine, every, "beside")) <= BESIDE_LIMIT
+    )
+
+
+def _sweep(
+    scenes: tuple[Scene, ...], engines: tuple[Engine, ...], steps: tuple[int, ...], cost_limit: float
+) -> Iterator[Cell]:
+    for every in sorted(steps):
+        for scene in scenes:
+            for engine in engines:
+                cell = Cell(scene, engine, every)
+                limit = max(cost_limit, QUICK_LIMIT) if every <= max(QUICK) else cost_limit
+                if every == min(steps) or estimated_cost(cell) <= limit:
+                    yield cell

@@ -1,0 +1,120 @@
+"""A check is a measured number held below a bound: every gate of the grid gives checks, every report prints them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from reports.model.outcomes import Outcome
+
+# "change" stands apart: it is of a baseline, and no deviation excuses it.
+CHECKS = ("outcome", "error", "rate", "gap", "energy", "reaction", "order")
+CHANGE = "change"
+BEGINNINGS = ("upstream:", "by design:", "ours:")
+# A deviation that becomes this many times as large as stated fails; one that has come back to this part of its bound is
+# none any more, and fails too. In between it may hover about its bound with the versions of what is measured.
+WORSE = 2.0
+BACK = 0.5
+# One run's roundings are this much short of the most that roundings may do, as `reports.gate.change.ROOM` has it. Seen:
+# with another processor's instructions 2.0 times as large, and a seventeenth.
+ROUNDED = 10.0
+
+
+@dataclass(frozen=True)
+class Check:
+    """`measured` must not exceed `bound`; `terms` are what the bound is the sum of, by name, in the same unit.
+
+    `name`: one of CHECKS, or "change"; `quantity`: the field of the Measurement.
+    """
+
+    name: str
+    quantity: str
+    measured: float
+    bound: float
+    terms: tuple[tuple[str, float], ...] = ()
+    sentence: str = ""
+
+    @property
+    def nearness(self) -> float:
+        """measured / bound: above 1 the check fails, infinite for a number that is none."""
+        if not math.isfinite(self.measured):
+            return math.inf
+        return self.measured / self.bound if self.bound > 0 else (math.inf if self.measured > 0 else 0.0)
+
+    @property
+    def passed(self) -> bool:
+        return self.nearness <= 1
+
+    def __str__(self) -> str:
+        parts = " + ".join(f"{name} {value:.2g}" for name, value in self.terms)
+        told = f" = {parts}" if parts else ""
+        return f"{self.name} ({self.quantity}): {self.measured:.3g}, bound {self.bound:.3g}{told}{self.sentence}"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """A check that a method is known to miss: why, and `factor`, how many times its bound it takes at most.
+
+    `reason` begins with whose it is: "upstream:", "by design:" or "ours:". An outcome has no number: of it `outcome`
+    is what is known, and another one is another fault. `rounding`: the error is made of roundings that the motion
+    amplifies, so that another processor has another one: up to ROUNDED times as large, or none at all. Raises
+    ValueError for another beginning, for a factor that is not a number above 1, and for both or neither of factor and
+    outcome.
+    """
+
+    reason: str
+    factor: float | None = None
+    outcome: Outcome | None = None
+    rounding: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.reason.startswith(BEGINNINGS):
+            raise ValueError(f"deviation: reason is {self.reason!r}; it must begin with one of {', '.join(BEGINNINGS)}")
+        if (self.factor is None) == (self.outcome is None):
+            raise ValueError(
+                f"deviation: factor is {self.factor!r} and outcome {self.outcome!r}; give one of them, and the outcome "
+                f"where that is what is known"
+            )
+        if self.factor is not None and not 1 < self.factor < math.inf:
+            raise ValueError(
+                f"deviation: factor is {self.factor!r}; it must be a number above 1, or there is no deviation"
+            )
+        if self.outcome is not None and self.outcome.comparable:
+            raise ValueError(f"deviation: outcome is {self.outcome!r}; such a run can be compared, so it is none")
+
+    @property
+    def told(self) -> str:
+        """How much is known, for a table: '2.5', or 'torn'."""
+        return f"{self.factor:.4g}" if self.outcome is None else self.outcome
+
+
+def nearest(checks: Iterable[Check]) -> Check:
+    """The check that comes nearest to its bound, or goes farthest beyond it. Raises ValueError without any."""
+    return max(checks, key=lambda check: check.nearness)
+
+
+def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
+    """What is wrong, in sentences: checks that fail unknown, deviations that grew, and those that are none any more.
+
+    `outcome`: of the run that is checked, which has to be the one that is known.
+    """
+    out: list[str] = []
+    checks = tuple(checks)
+    for check in checks:
+        if not check.passed and check.name not in known:
+            out.append(str(check))
+    for name, deviation in known.items():
+        own = [check for check in checks if check.name == name]
+        if not own:
+            out.append(f"{name}: known to deviate, but there is no such check here ({deviation.reason})")
+            continue
+        worst = nearest(own)
+        if worst.nearness <= BACK and not deviation.rounding:
+            out.append(f"{worst}: deviates no longer ({deviation.reason})")
+        elif deviation.factor is None:
+            if outcome != deviation.outcome:
+                out.append(f"{worst}: known is {deviation.outcome} ({deviation.reason})")
+        elif worst.nearness > (ROUNDED if deviation.rounding else WORSE) * deviation.factor:
+            out.append(f"{worst}: {worst.nearness:.2g} times the bound, known are {deviation.factor:.2g}")
+    return tuple(out)

@@ -1,0 +1,253 @@
+"""What a sweep over steps tells: the observed order (discretisation) and the plateau (the model), kept apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from reports.model.errors import NAN
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES, Quantity
+
+# A local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5.
+FLAT = 0.35
+# Fewest points that carry an order with a word on its fit; two points give a slope and nothing to check it by.
+ENOUGH = 3
+# Rounding may grow by this much after it was met: steps a hundred times as small are a hundred times as many.
+ROUNDING_GROWTH = 100.0
+# An error this close to the plateau is the sum of both, and its slope is neither.
+NEAR_PLATEAU = 3.0
+# Powers of the step with which an error may come to its limit: from the root that a kink leaves to order 8.
+POWERS = (0.5, 8.0)
+
+
+class Verdict(StrEnum):
+    """What the error does as the step goes to zero."""
+
+    FALLS = "falls"
+    ROUNDING = "reaches rounding"
+    PLATEAU = "plateau"
+    LEVELS = "levels off at the finest step"
+    GROWS = "grows as the step shrinks"
+    ERRATIC = "erratic"
+    TOO_FEW = "not enough points"
+
+
+class Fit(NamedTuple):
+    """What errors at several steps do as the step goes to zero.
+
+    order: slope of log error over log step on `points` points of the falling part (NaN without two); spread: the
+    largest difference of a local slope from it; plateau: the limit of the error at a step of zero, in the error's unit
+    (NaN without one); uncertainty: how far that limit may be off, in the same unit.
+    """
+
+    verdict: Verdict
+    order: float = NAN
+    points: int = 0
+    spread: float = NAN
+    plateau: float = NAN
+    uncertainty: float = NAN
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """One quantity of one scene in one engine variant, over all steps that ended without failing.
+
+    verdict to uncertainty: see Fit; best: the smallest error met, at `best_step` [s].
+    """
+
+    scene: str
+    engine: str
+    variant: str
+    quantity: Quantity
+    verdict: Verdict
+    order: float
+    points: int
+    spread: float
+    plateau: float
+    uncertainty: float
+    best: float
+    best_step: float
+
+    @property
+    def method(self) -> str:
+        return f"{self.engine} {self.variant}"
+
+    @property
+    def lucky(self) -> bool:
+        """Whether the smallest error is far below the plateau: there two errors cancel, at that step alone."""
+        return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
+
+
+def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Slopes of log error over log step between neighbours, steps descending."""
+    return np.diff(np.log(errors)) / np.diff(np.log(steps))
+
+
+def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
+    """What these errors do as the step [s] goes to zero. Not finite or zero steps are left out.
+
+    An error at or below `rounding` is rounding, whatever it does there.
+    """
+    return _fit(
+        tuple(sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)), rounding
+    )
+
+
+@lru_cache(maxsize=32768)  # a report asks for the same sweep on a page, on its data page, in the index, in the readme
+def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
+    """As `fit`, of (step, error) from coarse to fine."""
+    if not pairs:
+        return Fit(Verdict.TOO_FEW)
+    first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))
+    # After it has met rounding an error may grow again, as rounding does with the number of steps; not by much more.
+    reaches = first < len(pairs) and pairs[-1][1] <= ROUNDING_GROWTH * rounding
+    above = list(pairs[:first]) if reaches else [(h, e) for h, e in pairs if e > rounding]
+    if len(above) < 2:
+        return Fit(Verdict.ROUNDING if reaches else Verdict.TOO_FEW)
+    h, e = np.array([p[0] for p in above]), np.array([p[1] for p in above])
+    slopes = local_slopes(h, e)
+    falling = _longest_run(slopes > FLAT)
+    limit, uncertainty = (NAN, NAN) if reaches else _plateau(h, e, slopes)
+    order, points, spread = _order(h, e, slopes, falling, limit)
+    if reaches:
+        return Fit(Verdict.ROUNDING, order, points, spread)
+    if not math.isnan(limit):
+        return Fit(Verdict.PLATEAU, order, points, spread, limit, uncertainty)
+    if slopes[-1] > FLAT:
+        return Fit(Verdict.FALLS, order, points, spread)
+    if slopes[-1] < -FLAT and (len(slopes) == 1 or slopes[-2] < FLAT):
+        return Fit(Verdict.GROWS, order, points, spread)
+    # One flat interval alone may be a crossing of signs; two would have been a plateau.
+    return Fit(Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC, order, points, spread)
+
+
+def _longest_run(mask: np.ndarray) -> tuple[int, int]:
+    """(start, stop) of the longest run of true values, the finest of equals."""
+    best, start = (0, 0), None
+    for index, value in enumerate([*mask, False]):
+        if value and start is None:
+            start = index
+        elif not value and start is not None:
+            if index - start >= best[1] - best[0]:
+                best = (start, index)
+            start = None
+    return best
+
+
+def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
+    """(limit, uncertainty) of errors that end flat, NaN of others: the last two intervals (or the only two) are flat.
+
+    One flat interval is enough where errors rise to it and rise less and less: an error that went through zero, as two
+    errors cancelled, and comes to the limit from below.
+    """
+    if len(errors) < 3 or abs(slopes[-1]) > FLAT:
+        return NAN, NAN
+    limit, uncertainty, settles = _limit(steps[-3:], errors[-3:])
+    rises = settles and bool(errors[-1] > errors[-2])
+    return (limit, uncertainty) if rises or abs(slopes[-2]) <= FLAT else (NAN, NAN)
+
+
+def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
+    """(limit, uncertainty, whether errors settle) of the three finest points, by limit + factor * step ** power.
+
+    Where no power of POWERS passes through all three (they go up and down, or change more and more), the limit is the
+    finest error and the uncertainty its largest difference from the two others.
+    """
+    before, last = errors[0] - errors[1], errors[1] - errors[2]
+    if last and before / last > 0:
+        wanted = before / last
+
+        def excess(power: float) -> float:
+            first, second, third = steps**power
+            return float((first - second) / (second - third) - wanted)
+
+        if excess(POWERS[0]) <= 0 <= excess(POWERS[1]):
+            power = float(brentq(excess, *POWERS))  # type: ignore[arg-type]
+            rest = last / ((steps[1] / steps[2]) ** power - 1)
+            return float(errors[2] - rest), float(abs(rest)), True
+    return float(errors[2]), float(np.max(np.abs(errors[:2] - errors[2]))), False
+
+
+def _order(
+    steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray, run: tuple[int, int], plateau: float
+) -> tuple[float, int, float]:
+    """Least squares over the falling run, without steps too coarse for the slope and errors near the plateau."""
+    start, stop = run[0], run[1] + 1
+    if run[0] == run[1]:
+        return NAN, 0, NAN
+    while stop > start and errors[stop - 1] < NEAR_PLATEAU * plateau:
+        stop -= 1
+    if stop - start < 2:
+        return NAN, 0, NAN
+    while stop - start > ENOUGH and abs(slopes[start] - np.median(slopes[start : stop - 1])) > 0.5:
+        start += 1
+    order = float(np.polyfit(np.log(steps[start:stop]), np.log(errors[start:stop]), 1)[0])
+    return order, stop - start, float(np.max(np.abs(slopes[start : stop - 1] - order)))
+
+
+def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measurement]]:
+    """The rows of sweeps by (scene, engine, variant), each from coarse to fine, in the order of their first row."""
+    found: dict[tuple[str, str, str], list[Measurement]] = {}
+    for row in rows:
+        if row.purpose == "sweep":
+            found.setdefault((row.scene, row.engine, row.variant), []).append(row)
+    return {key: sorted(members, key=lambda row: -row.step) for key, members in found.items()}
+
+
+def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTITIES) -> tuple[Sweep, ...]:
+    """Every quantity of every group of rows."""
+    quantities = tuple(quantities)
+    out = []
+    for (scene, engine, variant), members in groups(rows).items():
+        usable = [row for row in members if Outcome(row.outcome).comparable]
+        for quantity in quantities:
+            values = [(row.step, getattr(row, quantity.name)) for row in usable]
+            steps, errors = [step for step, _ in values], [error for _, error in values]
+            known = [(error, step) for step, error in values if math.isfinite(error)]
+            best = min(known, default=(NAN, NAN))
+            out.append(Sweep(scene, engine, variant, quantity, *fit(steps, errors, quantity.rounding), *best))
+    return tuple(out)
+
+
+def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, str], Sweep]:
+    """The sweeps of one quantity by (scene, engine, variant)."""
+    return {(s.scene, s.engine, s.variant): s for s in found if s.quantity.name == quantity}
+
+
+def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measurement]:
+    """The rows with `finished` replaced by what their sweep says: converged or plateau, where it says either."""
+    rows = list(rows)
+    verdicts = by_method(sweeps(rows, [each for each in QUANTITIES if each.name == quantity]), quantity)
+    out = []
+    for row in rows:
+        sweep = verdicts.get((row.scene, row.engine, row.variant))
+        if row.purpose == "sweep" and row.outcome == Outcome.FINISHED and sweep is not None:
+            checked = sweep.verdict is Verdict.FALLS and sweep.points >= ENOUGH
+            if checked or sweep.verdict is Verdict.ROUNDING:
+                row = replace(row, outcome=Outcome.CONVERGED)
+            elif sweep.verdict is Verdict.PLATEAU:
+                near = getattr(row, quantity) < NEAR_PLATEAU * sweep.plateau
+                row = replace(row, outcome=Outcome.PLATEAU if near else Outcome.FINISHED)
+        out.append(row)
+    return out
+
+
+def best_of(rows: Iterable[Measurement], engine: str, variant: str, quantity: str = "angle") -> Measurement | None:
+    """The row with the least error of one method that can be compared; None without one."""
+    usable = [
+        row
+        for row in rows
+        if (row.engine, row.variant) == (engine, variant)
+        and Outcome(row.outcome).comparable
+        and math.isfinite(getattr(row, quantity))
+    ]
+    return min(usable, key=lambda row: getattr(row, quantity), default=None)

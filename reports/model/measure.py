@@ -1,0 +1,257 @@
+"""A Measurement is one cell's row: outcome, errors, cost and size. Nothing downstream of it knows physics."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from engines import Unsupported
+from engines.contract import flaw
+from reference.kept import fixed
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.model.cells import Cell, mechanism_of
+from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
+from reports.model.outcomes import Outcome
+from reports.model.spending import spending
+from reports.model.timing import process_seconds, repeated_stepping
+from reports.model.truths import kept_motion
+
+NAN = float("nan")
+
+# Experiments and maps are about what becomes of a run; only what is charted against its cost is timed with care.
+TIMED = ("sweep", "beside", "growth", "large")
+
+TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
+BLOWN = 1e3  # of the mechanism's length
+SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
+SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to what causes it
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One flat row. Errors: m, rad, m/s, rad/s, energy and reaction relative; NaN where unknown. Costs: CPU seconds."""
+
+    key: str
+    purpose: str
+    scene: str
+    parameters: str  # the scene with its numbers
+    engine: str
+    variant: str
+    settings: str  # the engine with its settings
+    every: int
+    samples: int
+    step: float  # s
+    outcome: str = Outcome.FAILED
+    sentence: str = ""
+    position: float = NAN
+    position_rms: float = NAN
+    angle: float = NAN
+    angle_rms: float = NAN
+    angle_duration: float = NAN  # beyond the horizon too
+    velocity: float = NAN
+    rate: float = NAN
+    gap: float = NAN
+    drive_gap: float = NAN
+    slip: float = NAN
+    energy: float = NAN
+    reaction: float = NAN
+    reaction_rows: int = 0  # how many rows' reactions the engine can tell
+    flips: int = 0
+    estimate: float = NAN  # rad, the method's own estimate of its largest angle error
+    bodies: int = 0
+    coordinates: int = 0
+    rows: int = 0
+    solver_rows: int = 0
+    own_bodies: int = 0
+    own_coordinates: int = 0
+    own_rows: int = 0
+    own_freedoms: int = 0
+    cpu: float = NAN  # of stepping per simulated second
+    runs: int = 0  # that `cpu` is the minimum of
+    build: float = NAN
+    limit: float = NAN  # CPU seconds, of a cell that was timed out: with more it might have ended
+
+    @property
+    def method(self) -> str:
+        """The engine and its variant, as they are printed."""
+        return f"{self.engine} {self.variant}"
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+TIMINGS = ("cpu", "runs", "build")
+
+
+def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> Measurement:
+    """The row of a cell that gave no numbers."""
+    return Measurement(
+        key=cell.key,
+        purpose=cell.purpose,
+        scene=cell.scene.name,
+        parameters=repr(cell.scene),
+        engine=cell.engine.name,
+        variant=cell.engine.variant,
+        settings=repr(cell.engine),
+        every=cell.every,
+        samples=cell.sample_count,
+        step=cell.step,
+        outcome=outcome,
+        sentence=sentence,
+    )
+
+
+def _truth(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
+    """The scene's motion at an engine's instants t (times,) [s], kept in a folder (`reports.model.truths`).
+
+    Engines that take other steps meet the same instants but for rounding, and then share one motion: a motion moves by
+    no more than its own rounding meanwhile.
+    """
+    usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
+    shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
+    with spending("truth"):
+        return _motion(
+            cell.scene, np.ascontiguousarray(usual if shared else t, dtype=float).tobytes(), cell.truth, folder
+        )
+
+
+@lru_cache(maxsize=128)
+def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
+    return fixed(kept_motion(scene, np.frombuffer(instants), name, folder))
+
+
+@lru_cache(maxsize=128)
+def _own_freedoms(scene: Scene) -> int:
+    return mechanism_of(scene).degrees_of_freedom()[0]
+
+
+def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
+    """Build, run, compare and time one cell, in this process. `truths`: the folder of exact motions, if there is one.
+
+    Refusals and what the engine itself reports become outcomes; other exceptions pass (the pool records them).
+    """
+    row = blank(cell)
+    with np.errstate(all="ignore"):
+        try:
+            mechanism = mechanism_of(cell.scene)
+            with spending("preparing engines"):
+                getattr(cell.engine, "prepare", lambda: None)()
+            with spending("building"):
+                build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
+            row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))
+            with spending("stepping"):
+                trajectory = run(cell.sample_count, cell.every)
+        except Unsupported as reason:
+            return replace(row, outcome=Outcome.UNSUPPORTED, sentence=str(reason))
+        except ValueError as reason:
+            return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
+        if told := flaw(trajectory, mechanism, cell.step, cell.sample_count, cell.every):
+            return replace(row, outcome=Outcome.FAILED, sentence=told)
+        with spending("comparing"):
+            row = compare(cell, mechanism, trajectory, row, truths)
+        if repeat and cell.purpose in TIMED and Outcome(row.outcome).comparable:
+            with spending("timing again"):
+                cpu, runs, build = repeated_stepping(cell, mechanism, trajectory.stepping, build)
+        else:
+            cpu, runs = trajectory.stepping, 1
+    return replace(row, cpu=cpu / cell.scene.duration, runs=runs, build=build)
+
+
+def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
+    """The engine's model beside the mechanism's own size."""
+    return {
+        **asdict(size),
+        "own_bodies": len(mechanism.bodies),
+        "own_coordinates": 3 * len(mechanism.bodies),
+        "own_rows": mechanism.row_count,
+        "own_freedoms": freedoms,
+    }
+
+
+def compare(
+    cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement, truths: Path | None = None
+) -> Measurement:
+    """Fill a row with errors and its outcome."""
+    trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
+    count = usable_samples(trajectory)
+    finite = replace(
+        trajectory,
+        t=trajectory.t[:count],
+        pose=trajectory.pose[:count],
+        twist=trajectory.twist[:count],
+        reaction=trajectory.reaction[:count],
+    )
+    errors: dict[str, Any] = {}
+    note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
+    try:
+        errors |= constraint_errors(mechanism, finite) if count else {}
+    except ValueError as reason:  # it went where the joint itself is not defined: beyond a corner, say
+        told = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
+        return replace(row, outcome=Outcome.REFUSED, sentence=told)
+    try:
+        truth = _truth(cell, finite.t, truths)
+        errors |= motion_errors(cell.scene, mechanism, truth, finite)
+        errors["flips"] = branch_flips(cell.scene, truth, finite)
+    except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it
+        note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
+    if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():
+        errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2])))
+    errors["reaction_rows"] = int(np.isfinite(trajectory.reaction).any(axis=0).sum())
+    row = replace(row, **errors)
+    outcome, sentence = classify(row, mechanism, trajectory, count)
+    return replace(row, outcome=outcome, sentence="; ".join(filter(None, (sentence, note))))
+
+
+def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Trajectory, str]:
+    """The samples that may be compared with the scene's ideal motion, and a sentence if there were others."""
+    limit = scene.comparable_until
+    count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
+    if count == len(trajectory.t):
+        return trajectory, ""
+    kept = replace(
+        trajectory,
+        **{name: getattr(trajectory, name)[:count] for name in ("t", "pose", "twist", "reaction")},
+        estimate=None if trajectory.estimate is None else trajectory.estimate[:count],
+        reset_at=_until(limit, trajectory.reset_at),
+        unresolved_at=_until(limit, trajectory.unresolved_at),
+    )
+    return kept, f"compared until {limit:.4g} s only: beyond, the ideal motion asks for what a real contact can't give"
+
+
+def _until(limit: float, t: float | None) -> float | None:
+    return t if t is not None and t <= limit else None
+
+
+def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
+    """One cell's outcome, the gravest first, with the number that decided it."""
+    length = mechanism.length_scale
+    if trajectory.reset_at is not None:
+        return Outcome.RESET, f"started anew by itself at {trajectory.reset_at:.4g} s"
+    if count < len(trajectory.t):
+        return Outcome.DIVERGED, f"not finite from {trajectory.t[count]:.4g} s"
+    if row.gap > BLOWN * length:
+        return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
+    if row.gap > TORN * length:
+        # Adapters begin their own findings with "ours:"; what counts here is whether the engine itself said anything.
+        quiet = "" if any(not w.startswith("ours:") for w in trajectory.warnings) else ", without a warning"
+        return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
+    if row.drive_gap > SATURATED:
+        return Outcome.TORN, f"the drive fell behind by {row.drive_gap:.2g} rad"
+    if row.flips:
+        return Outcome.BRANCH_FLIP, f"{row.flips} change{'s' if row.flips > 1 else ''} of assembly that the truth lacks"
+    if row.angle > SATURATED:
+        return Outcome.SATURATED, f"an angle is wrong by {row.angle:.2g} rad within the horizon"
+    if trajectory.unresolved_at is not None:
+        if np.isnan(row.estimate):
+            return Outcome.UNRESOLVED, "its coarser run was lost, so it has no estimate"
+        return Outcome.UNRESOLVED, f"its own estimate is {row.estimate:.2g} rad"
+    if row.angle_duration > SATURATED:
+        return Outcome.FINISHED, f"beyond the horizon an angle is wrong by {row.angle_duration:.2g} rad"
+    return Outcome.FINISHED, ""

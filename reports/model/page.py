@@ -1,0 +1,207 @@
+"""What a page is made of, and what it is given: the parts that every mechanism's page shares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from engines import Engine, Promise
+from engines.registry import missing
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+from reports.gate.declared import soft_tasks
+from reports.model.cells import Cell, Purpose
+from reports.model.checks import Deviation
+from reports.model.measure import Measurement
+from reports.model.tasks import Answer, Motion, Task, trajectory_of
+from reports.model.usual_steps import FEATURED
+
+
+def no_words(material: Material) -> dict[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What was found of something that is no cell: a motion that was kept, or a method of the reference."""
+
+    method: str
+    setting: str
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An experiment in which methods are expected to fail.
+
+    `expected` says what the reference says should happen, a template of what `words` gives. `cells` have the
+    purpose "failure". `tasks` are run with them; `observations` reads their answers, and formulas that cost
+    nothing: it steps and integrates nothing. `columns` are the quantities (`reports.model.quantities`) whose largest
+    errors are told of every cell; without any, a grid of methods and steps tells the angle's. `remark` is a
+    template: its numbers are `at(method, step)`, the row of the experiment at about a step [s], `count(outcome)`,
+    how many of its rows ended so, `count()`, how many there are, and what `words` gives. A clause within
+    `if_measured` vanishes where one of its numbers is missing.
+    """
+
+    title: str
+    expected: str
+    cells: tuple[Cell, ...] = ()
+    observations: Callable[[Material], Sequence[Observation]] | None = None
+    remark: str = ""  # what the outcomes teach
+    columns: tuple[str, ...] = ()
+    tasks: tuple[Task, ...] = ()
+    words: Callable[[Material], Mapping[str, Any]] = no_words
+
+
+@dataclass(frozen=True)
+class StabilityMap:
+    """Steps against a parameter: `cells` are (value of the parameter, cell), cells with the purpose "map"."""
+
+    name: str  # of the picture's file, with the page's name before it
+    title: str
+    parameter: str
+    cells: tuple[tuple[float, Cell], ...]
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Material:
+    """What there is to write a page from: the stored rows of its cells, and the stored answers to its tasks."""
+
+    rows: Mapping[Cell, Measurement]
+    answers: Mapping[Task, Answer] = field(default_factory=dict)
+
+    def finished(self, task: Task) -> Answer | None:
+        """The answer to a task that was run and finished, else None."""
+        answer = self.answers.get(task)
+        return answer if answer is not None and answer.finished else None
+
+    def unfinished(self, task: Task) -> str:
+        """Why a task has no numbers here, as a sentence: what its run said, or what is to be installed or run."""
+        absent = missing(task.engine) if task.engine is not None else ""
+        if answer := self.answers.get(task):
+            return f"Not finished, {answer.told}."
+        return (
+            f"Not run here: {absent}." if absent else "Not run yet: `crosscheck run --full`, then `crosscheck report`."
+        )
+
+    def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
+        """The kept motions of these cells, those that were run and finished."""
+        found = ((cell, self.finished(Motion(cell))) for cell in cells)
+        return {cell: trajectory_of(answer) for cell, answer in found if answer is not None}
+
+    def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The sweep rows of some scenes, in the order of the grid."""
+        return self._of(scenes, "sweep")
+
+    def usual(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The rows of some scenes at steps between those of the sweep that people use."""
+        return self._of(scenes, "usual")
+
+    def beside(self, scenes: Iterable[Scene]) -> list[Measurement]:
+        """The rows of some scenes in engines that are extras."""
+        return self._of(scenes, "beside")
+
+    def _of(self, scenes: Iterable[Scene], purpose: Purpose) -> list[Measurement]:
+        names = {scene.name for scene in scenes}
+        return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]
+
+    def of(self, cells: Iterable[Cell]) -> list[Measurement]:
+        """The rows of these cells, those that were run."""
+        return [self.rows[cell] for cell in cells if cell in self.rows]
+
+
+def usual_series(row: Measurement) -> bool:
+    """The methods that charts show as series: what is run in every scene, and any engine's three usual variants."""
+    from engines.registry import VARIANTS, method
+
+    return row.variant in FEATURED or row.method in map(method, VARIANTS)
+
+
+def everything(scene: Scene, engine: Engine) -> bool:
+    return True
+
+
+def no_figures(material: Material) -> dict[str, str]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Page:
+    """One mechanism's page: `name`.md in the results, from its template.
+
+    template: its file, which may extend "base.md"; without one, page.md in the folder of the page's name beside this
+    file, and where there is none the generic "base.md" itself.
+    scenes: those that the page teaches, each on one page only. companions: scenes of other pages with which the page's
+    own cells are run too; for a page without scenes. borrowed: cells of other pages whose rows the words tell; this
+    page never has them run.
+    figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
+    template's own variables, numbers taken from the rows.
+    compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
+    quantity: the error by which methods are compared and charted, a name in `reports.model.quantities`.
+    advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
+    orders: (scene, method) -> what is promised where the motion, not the mechanism alone, makes it another than the
+    engine says. known: (scene, method, check) -> by how much that check (`reports.model.checks`) is missed, and why.
+    """
+
+    name: str
+    title: str
+    lesson: str  # one sentence for the index
+    scenes: tuple[Scene, ...]
+    engines: tuple[Engine, ...]
+    companions: tuple[Scene, ...] = ()
+    borrowed: tuple[Cell, ...] = ()
+    template: Path | None = None
+    failures: tuple[Failure, ...] = ()
+    maps: tuple[StabilityMap, ...] = ()
+    compared: Callable[[Scene, Engine], bool] = everything
+    quantity: str = "angle"
+    advised: str = ""
+    featured: Callable[[Measurement], bool] = usual_series
+    figures: Callable[[Material], Mapping[str, str]] = no_figures
+    words: Callable[[Material], Mapping[str, Any]] = no_words
+    orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
+    known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
+    tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
+
+    def teaches(self, scene: Scene) -> bool:
+        """Whether the scene has its place here: by its name, so that it may have other numbers."""
+        return scene.name in {each.name for each in self.scenes}
+
+    def is_run_with(self, scene: Scene) -> bool:
+        """Whether the cells of failures and maps are run with the scene."""
+        return scene.name in {each.name for each in (*self.scenes, *self.companions)}
+
+    @property
+    def advised_scene(self) -> Scene | None:
+        """The scene for which the page says which setting gives which accuracy; None on a page without scenes."""
+        return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
+
+    @property
+    def data_page(self) -> str:
+        """The file beside the page that has all of its numbers."""
+        return f"{self.name}_data.md"
+
+    @property
+    def documents(self) -> frozenset[str]:
+        """The Markdown files that are written of it."""
+        return frozenset({f"{self.name}.md", self.data_page} if self.scenes else {f"{self.name}.md"})
+
+    def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
+        """The engines in which a scene of the page is run."""
+        return tuple(engine for engine in self.engines if self.compared(scene, engine))
+
+    def extra_cells(self) -> tuple[Cell, ...]:
+        """The cells of failures and maps, beyond the sweep."""
+        return (
+            *(cell for failure in self.failures for cell in failure.cells),
+            *(cell for picture in self.maps for _, cell in picture.cells),
+        )
+
+    def all_tasks(self) -> tuple[Task, ...]:
+        """The tasks of the page, of its experiments, and of what its engines declare, each once."""
+        experiments = [task for failure in self.failures for task in failure.tasks]
+        declared = [task for scene in self.scenes for task in soft_tasks(scene, self.engines_of(scene))]
+        return tuple(dict.fromkeys([*self.tasks, *experiments, *declared]))

@@ -1,0 +1,138 @@
+"""A task is what a page tells of beside its rows: a motion, or a number by integration. It is run once, and kept.
+
+Nothing is stepped or integrated while a page is written: it reads the answers to its tasks, as it reads rows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine, Unsupported
+from engines.contract import flaw
+from reference.trajectory import Trajectory
+from reports.model.cells import Cell, estimated_cost
+from reports.model.fingerprint import fingerprint
+from reports.model.outcomes import Outcome
+from reports.model.spending import spending
+
+Array = NDArray[np.float64]
+Values = Mapping[str, Array | str]
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What became of a task: its values by name if it finished, else a sentence that says why there are none."""
+
+    outcome: Outcome
+    sentence: str = ""
+    values: Values = field(default_factory=dict)
+    limit: float = float("nan")  # CPU seconds, of a task that was timed out: with more it might have ended
+
+    @property
+    def finished(self) -> bool:
+        return self.outcome == Outcome.FINISHED
+
+    def array(self, name: str) -> Array:
+        """A value that is an array. Raises KeyError for one that is not there."""
+        return np.asarray(self.values[name], dtype=float)
+
+    def number(self, name: str) -> float:
+        """A value that is one number. Raises KeyError for one that is not there."""
+        return float(self.array(name))
+
+    @property
+    def told(self) -> str:
+        """'**aborted**: why', for a table."""
+        return f"**{self.outcome}**{': ' + self.sentence if self.sentence else ''}"
+
+
+class Task(ABC):
+    """Subclasses are frozen dataclasses: a task is data, which travels to a worker, and its fields name it.
+
+    A subclass stands in a module of its own, apart from words and pictures: its answer is stale when a file changes
+    that its module imports.
+    """
+
+    @property
+    @abstractmethod
+    def cost(self) -> float:
+        """About how long it takes [s]; an estimate, the same on every machine."""
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """A few words for the line of progress."""
+
+    @property
+    def engine(self) -> Engine | None:
+        """What is run; None for a method that is no engine."""
+        return None
+
+    @property
+    def kin(self) -> Hashable:
+        """What is shared with cells and other tasks (`reports.run.waiting`); None: nothing."""
+        return None
+
+    @abstractmethod
+    def run(self) -> Values:
+        """Numbers (float64 arrays) and words by name. Raises Unsupported, or ValueError for input that can't be."""
+
+    @cached_property
+    def key(self) -> str:
+        """A digest of all that the answer depends on; equal keys mean that a stored answer still holds."""
+        parts = ("task", type(self).__qualname__, repr(self), fingerprint(self))
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class Motion(Task):
+    """The whole trajectory of a cell, for a picture or for what an experiment reads from it."""
+
+    cell: Cell
+
+    @property
+    def cost(self) -> float:
+        return estimated_cost(self.cell)
+
+    @property
+    def label(self) -> str:
+        return f"motion: {self.cell.label}"
+
+    @property
+    def engine(self) -> Engine:
+        return self.cell.engine
+
+    @property
+    def kin(self) -> Hashable:
+        return self.cell.kin
+
+    def run(self) -> Values:
+        cell, mechanism = self.cell, self.cell.scene.mechanism()
+        run = cell.engine.build(mechanism, cell.step)(cell.sample_count, cell.every)
+        if told := flaw(run, mechanism, cell.step, cell.sample_count, cell.every):
+            raise ValueError(told)
+        return {"t": run.t, "pose": run.pose, "twist": run.twist, "reaction": run.reaction}
+
+
+def trajectory_of(answer: Answer) -> Trajectory:
+    """The trajectory that a Motion has kept. Raises KeyError if it kept none."""
+    return Trajectory(answer.array("t"), answer.array("pose"), answer.array("twist"), answer.array("reaction"))
+
+
+def answered(task: Task) -> Answer:
+    """Run a task in this process. Refusals become outcomes; other exceptions pass (the pool records them)."""
+    with np.errstate(all="ignore"):
+        try:
+            with spending("tasks"):
+                return Answer(Outcome.FINISHED, values=task.run())
+        except Unsupported as reason:
+            return Answer(Outcome.UNSUPPORTED, str(reason))
+        except ValueError as reason:
+            return Answer(Outcome.REFUSED, str(reason))

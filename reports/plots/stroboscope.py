@@ -1,0 +1,153 @@
+"""Mechanisms in motion: poses at equal time intervals in one picture, the older the paler, or side by side as film."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from reference.mechanism import Mechanism
+from reference.outlines import body_points
+from reference.scene import Scene
+from reports.plots.drawings import draw_ground
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
+
+Array = NDArray[np.float64]
+Points = tuple[tuple[float, float], ...]
+
+PALEST = 0.12  # opacity of the oldest pose
+GAP = np.full((1, 2), np.nan)  # between two bodies of one line
+BLOCK = 0.045  # of the picture's size: half the side of a body that has one joint point only
+
+
+@dataclass(frozen=True)
+class Strip:
+    """One panel: `count` poses from `start` to `end` [s] of a scene's truth.
+
+    ends: points in the frame of a body [m] that are drawn beside its joints (a free end, a shoulder). spread [m]: each
+    pose stands so far to the right of the one before, as on a film. trace: a body and a point of it, whose path is
+    drawn. floor: whether the ground is a line at y = 0.
+    """
+
+    scene: Scene
+    title: str
+    count: int
+    start: float = 0.0
+    end: float | None = None
+    ends: Mapping[str, Points] = field(default_factory=dict)
+    spread: float = 0.0
+    trace: tuple[str, tuple[float, float]] | None = None
+    floor: bool = False
+
+    def times(self) -> Array:
+        """When the poses are taken (count,) [s]."""
+        return np.linspace(self.start, self.scene.duration if self.end is None else self.end, self.count)
+
+    @property
+    def caption(self) -> str:
+        """The title with the interval between poses."""
+        t = self.times()
+        return f"{self.title}: every {t[1] - t[0]:.3g} s" if len(t) > 1 else f"{self.title}: {t[0]:.3g} s"
+
+
+def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> dict[str, Array]:
+    """World points (points, 2) [m] of each body's joints and further `ends`, in the order along its x axis."""
+    out = {}
+    for name, points in body_points(mechanism, pose).items():
+        x, y, angle = pose[mechanism.body_index(name)]
+        axis = np.array([np.cos(angle), np.sin(angle)])
+        turn = np.array([axis, [-axis[1], axis[0]]])
+        more = np.array(ends.get(name, ()), dtype=float).reshape(-1, 2) @ turn + (x, y)
+        points = np.concatenate([points, more])
+        out[name] = points[np.argsort((points - (x, y)) @ axis, kind="stable")]
+    return out
+
+
+def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
+    """Where a point of a body is (times, 2) [m]."""
+    pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
+    cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+    return pose[:, :2] + np.stack([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]], axis=-1)
+
+
+def stroboscope(strips: Sequence[Strip], columns: int = 2, theme: Theme = LIGHT) -> Figure:
+    """One panel a strip, all poses in it, the last in full ink."""
+    drawn = [_poses(strip) for strip in strips]
+    boxes = [_box(strip, poses) for strip, poses in zip(strips, drawn, strict=True)]
+    columns = min(columns, len(strips))
+    lines = [range(i, min(i + columns, len(strips))) for i in range(0, len(strips), columns)]
+    width = 9.2 / columns
+    heights = [max(width * (boxes[i][3] - boxes[i][1]) / (boxes[i][2] - boxes[i][0]) for i in line) for line in lines]
+    heights = [min(max(height, 1.0), 1.1 * width) for height in heights]
+    with settings():
+        figure = new_figure(sum(heights) + 0.35 * len(lines), theme)
+        panels = figure.subplots(len(lines), columns, squeeze=False, height_ratios=heights).ravel()
+        for spare in panels[len(strips) :]:
+            spare.set_visible(False)
+        for panel, strip, poses, box in zip(panels, strips, drawn, boxes, strict=False):
+            style_axes(panel, theme, grid=False)
+            panel.set_axis_off()
+            panel.set_aspect("equal")
+            panel.set_xlim(box[0], box[2])
+            panel.set_ylim(box[1], box[3])
+            panel.set_title(strip.caption, loc="left", fontsize=9, color=theme.ink)
+            _draw(panel, strip, poses, max(box[2] - box[0], box[3] - box[1]), theme)
+    return figure
+
+
+def _poses(strip: Strip) -> list[dict[str, Array]]:
+    mechanism = strip.scene.mechanism()
+    poses = strip.scene.motion(strip.times()).pose
+    shown = [outline(mechanism, pose, strip.ends) for pose in poses]
+    return [
+        {name: points + np.array([strip.spread * index, 0.0]) for name, points in bodies.items()}
+        for index, bodies in enumerate(shown)
+    ]
+
+
+def _box(strip: Strip, poses: list[dict[str, Array]]) -> tuple[float, float, float, float]:
+    corners = np.concatenate([points for bodies in poses for points in bodies.values() if len(points)])
+    if strip.floor:
+        corners = np.concatenate([corners, [[corners[0, 0], 0.0]]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    margin = 0.06 * float((high - low).max())
+    return low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin
+
+
+def _draw(panel: Axes, strip: Strip, poses: list[dict[str, Array]], size: float, theme: Theme) -> None:
+    if strip.floor:
+        panel.axhline(0.0, color=theme.quiet, linewidth=1.0, zorder=1)
+    elif not strip.spread:
+        draw_ground(panel, strip.scene.mechanism(), theme)
+    if strip.trace is not None:
+        t = strip.times()
+        body, point = strip.trace
+        line = path(strip.scene, body, point, np.linspace(t[0], t[-1], 40 * len(t)))
+        panel.plot(line[:, 0], line[:, 1], color=theme.second, linewidth=0.9, zorder=2)
+    crowd = max(len(bodies) for bodies in poses)
+    dots = {"marker": "o", "markersize": 3.0, "markerfacecolor": theme.paper, "markeredgecolor": theme.ink}
+    for index, bodies in enumerate(poses):
+        film = bool(strip.spread)
+        strength = 1.0 if film or len(poses) == 1 else PALEST + (1 - PALEST) * (index / (len(poses) - 1)) ** 1.5
+        last = film or index == len(poses) - 1
+        parts: list[Array] = []
+        for points in bodies.values():
+            if len(np.unique(points.round(12), axis=0)) == 1:
+                corners = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6], [-1, -0.6]])
+                block = points[0] + BLOCK * size / 2 * corners
+                panel.plot(*block.T, color=theme.ink, alpha=strength, linewidth=1.4, zorder=3)
+            else:
+                parts += [points, GAP]
+        panel.plot(
+            *np.concatenate(parts).T,
+            color=theme.ink,
+            alpha=strength,
+            linewidth=2.0 if crowd < 20 else 1.3,
+            solid_capstyle="round",
+            zorder=3,
+            **(dots if last and crowd < 20 else {}),
+        )

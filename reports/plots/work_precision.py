@@ -1,0 +1,194 @@
+"""Rows to charts: work and precision, error against step. Pure functions that give a figure.
+
+What a method looks like is in `reports.plots.families`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+from scipy.spatial import KDTree
+
+from reports.model.convergence import groups
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
+from reports.plots.families import look
+from reports.plots.theme import LIGHT, PowersOfTen, Theme, new_figure, settings, style_axes
+
+COLUMNS = 2
+LONG_NAME = 30  # letters: beyond, four names don't fit side by side
+SLOPES = (1, 2, 4)
+PLACES = 25  # along each side of a panel, where the fan of slopes is tried
+
+Featured = Callable[[Measurement], bool]
+
+
+def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Of (cost, error) pairs those that no other beats in both, by rising cost."""
+    front: list[tuple[float, float]] = []
+    for cost, error in sorted(points):
+        if not front or error < front[-1][1]:
+            front.append((cost, error))
+    return front
+
+
+def _shown_variants(rows: Sequence[Measurement]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for row in rows:
+        variants = found.setdefault(row.engine, [])
+        if row.variant not in variants:
+            variants.append(row.variant)
+    return found
+
+
+def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
+    """The rows of sweeps whose error has a place on a logarithmic axis."""
+    return [
+        row
+        for row in rows
+        if row.purpose == "sweep" and Outcome(row.outcome).comparable and 0 < getattr(row, field) < math.inf
+    ]
+
+
+def _with_lines(rows: Sequence[Measurement]) -> list[str]:
+    """The scenes in which a method has two points or more; all of them where none has: single points teach little."""
+    scenes = list(dict.fromkeys(row.scene for row in rows))
+    lined = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
+    return [scene for scene in scenes if scene in lined] or scenes
+
+
+def _panels(scenes: Sequence[str], theme: Theme, height: float) -> tuple[Figure, list[Axes]]:
+    columns = min(COLUMNS, len(scenes)) or 1
+    count = -(-len(scenes) // columns) or 1
+    figure = new_figure(height * count + 0.9, theme)
+    axes = figure.subplots(count, columns, squeeze=False, sharey=True).ravel()
+    for spare in axes[len(scenes) :]:
+        spare.set_visible(False)
+    for panel, scene in zip(axes, scenes, strict=False):
+        panel.set_title(scene.replace("_", " "), loc="left", fontweight="bold", color=theme.ink)
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        style_axes(panel, theme)
+    return figure, list(axes[: len(scenes)])
+
+
+def _finish(panel: Axes) -> None:
+    for axis, (low, high) in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
+        # Less than two decades may have a single power of ten: one tick tells no scale.
+        narrow = math.log10(high / low) < 2
+        axis.set_major_locator(LogLocator(base=10, subs=(1.0, 3.0) if narrow else (1.0,), numticks=9))
+        axis.set_major_formatter(PowersOfTen(minor_thresholds=(math.inf, math.inf)))
+        axis.set_minor_formatter(NullFormatter())
+    panel.minorticks_off()
+
+
+def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
+    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
+    columns = 4 if longest <= LONG_NAME else 3
+    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, handlelength=3.2)
+    for text in legend.get_texts():
+        text.set_color(theme.ink)
+
+
+def _handles(variants: dict[str, list[str]], theme: Theme) -> list[Line2D]:
+    return [
+        Line2D([], [], label=f"{engine} {variant}", **look(engine, variant, variants, theme))
+        for engine, shown in variants.items()
+        for variant in shown
+    ]
+
+
+def work_precision(
+    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
+) -> Figure:
+    """Error against CPU time, one panel a scene, one series a method; the front that nothing beats is underlaid.
+
+    The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
+    """
+    rows = [row for row in drawable(rows, field) if row.cpu > 0]
+    scenes = _with_lines(rows)
+    shown = [row for row in rows if featured(row)]
+    variants = _shown_variants(shown)
+    with settings():
+        figure, panels = _panels(scenes, theme, 3.6)
+        for panel, scene in zip(panels, scenes, strict=True):
+            here = [row for row in rows if row.scene == scene]
+            front = pareto((1e3 * row.cpu, getattr(row, field)) for row in here)
+            panel.plot(*zip(*front, strict=True), color=theme.grid, linewidth=7, drawstyle="steps-post", zorder=1)
+            others = [(1e3 * row.cpu, getattr(row, field)) for row in here if not featured(row)]
+            if others:
+                panel.plot(*zip(*others, strict=True), ".", color=theme.quiet, markersize=3, zorder=2)
+            for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
+                series = [(1e3 * row.cpu, getattr(row, field)) for row in members]
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
+            panel.set_xlabel("CPU time per simulated second [ms]")
+            if panels.index(panel) % COLUMNS == 0:
+                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+            _finish(panel)
+        handles = _handles(variants, theme)
+        handles.append(Line2D([], [], color=theme.grid, linewidth=8, label="nothing is better and cheaper"))
+        if len(shown) < len(rows):
+            handles.append(Line2D([], [], color=theme.quiet, marker=".", linestyle="none", label="other methods"))
+        _legend(figure, handles, theme)
+    return figure
+
+
+def error_against_step(
+    rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle", theme: Theme = LIGHT
+) -> Figure:
+    """Error against step, one panel a scene, with slopes 1, 2 and 4 as guides. A flat end is a plateau: the model."""
+    rows = [row for row in drawable(rows, field) if featured(row)]
+    scenes = _with_lines(rows)
+    variants = _shown_variants(rows)
+    with settings():
+        figure, panels = _panels(scenes, theme, 3.6)
+        for panel, scene in zip(panels, scenes, strict=True):
+            here = [row for row in rows if row.scene == scene]
+            for (_, engine, variant), members in groups(here).items():
+                series = [(row.step, getattr(row, field)) for row in members]
+                panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
+            panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
+            panel.set_xlabel("step [s]")
+            if panels.index(panel) % COLUMNS == 0:
+                panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
+        for panel in panels:
+            panel.set_ylim(bottom=min(getattr(row, field) for row in rows) / 3)
+        for panel in panels:
+            _guides(panel, theme)
+            _finish(panel)
+        handles = _handles(variants, theme)
+        handles.append(Line2D([], [], color=theme.grid, linewidth=8, alpha=0.6, label="rounding"))
+        _legend(figure, handles, theme)
+    return figure
+
+
+def _guides(panel: Axes, theme: Theme) -> None:
+    """A fan of slopes where it is farthest from the lines of the panel, whose limits it leaves as they are."""
+    low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
+    size = high - low  # decades
+    width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
+    # What the fan and its numbers cover, in shares of the panel from the point of the fan.
+    slopes = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
+    fan = np.array([*slopes, *((width + gap, slope * width) for slope in SLOPES)]) / size
+    lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
+    between = np.linspace(0, 1, 12)[:, None]
+    taken = [a + between * (b - a) for line in lines for a, b in zip(line, [*line[1:], line[-1]], strict=True)]
+    room = 0.97 - fan.max(axis=0)
+    places = [np.linspace(0.03, most, PLACES) for most in room]
+    corners = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 1, 2)
+    points = np.concatenate(taken) if taken else np.array([[0.0, 1.0]])
+    distances = KDTree(points).query(corners + fan)[0].min(axis=1)
+    left, bottom = low + corners[distances.argmax(), 0] * size
+    for slope in SLOPES:
+        end = bottom + slope * width
+        panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=theme.quiet,
+                   linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
+        panel.annotate(str(slope), (10 ** (left + width), 10**end), xytext=(3, 0), textcoords="offset points",
+                       color=theme.quiet, fontsize=8, va="center")  # fmt: skip

@@ -1,0 +1,187 @@
+"""One version of an engine's package, or a build of it, in a folder of its own that is put before all others.
+
+    folder = installed(("mujoco-core", "mujoco"), "3.6.0")
+    subprocess.run([sys.executable, "program.py"], env=environment(folder))
+
+pip installs it without what it requires, once, below the user's cache folder: never into this environment or checkout.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from importlib import metadata
+from pathlib import Path
+
+from engines.user_cache import CACHE, cache_folder
+from reports.model.ending import BadInput
+from reports.run.files import folder_for
+from reports.run.temporary import temporary_folder
+
+# The name of the folder itself: what lies in one of this name counts by its version (`reports.model.fingerprint`).
+PACKAGES = "site-packages"
+VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
+OFFERED = re.compile(r"from versions: ([^)]*)\)")
+UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
+OFFLINE = "no connection to a package index; with network it is installed once and kept"
+MOST = 60  # versions and builds that are kept; more than any command uses in one go
+SHOWN = 6  # versions that are named when another was asked for
+# Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
+WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+
+
+def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
+    """The environment of a process that imports what is in the folder first, then from the further ones."""
+    paths = [str(path) for path in (folder, *further)]
+    return {**os.environ, **WITHOUT_WINDOWS, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def installed(names: Sequence[str], version: str) -> Path:
+    """The folder with this version of the first of these distributions that has it; installed unless it is there.
+
+    Raises BadInput, in one line: the version does not exist, or has no wheel for this Python, or there is no network.
+    """
+    if not VERSION.fullmatch(version):
+        raise BadInput(f"{version!r} is no version; give one like 3.6.0")
+    places = {name: _place(f"{name}-{version}") for name in names}
+    for folder in places.values():
+        if folder.is_dir():
+            return _used(folder)
+    reasons = []
+    for name, folder in places.items():
+        why = _install([f"{name}=={version}"], folder)
+        if not why:
+            return _used(folder)
+        reasons.append((name, why))
+    raise BadInput(_sentence(version, reasons))
+
+
+def built(path: Path) -> Path:
+    """The folder with a build: of a wheel, of a folder of sources (pip builds them), or that folder itself.
+
+    A folder without pyproject.toml and setup.py is taken as it is: what `pip install --target` makes. Sources and
+    wheels are installed anew whenever they have changed, sources every time. Raises BadInput, in one line.
+    """
+    path = path.absolute()
+    if path.is_dir():
+        if not any((path / name).is_file() for name in ("pyproject.toml", "setup.py")):
+            return path
+        name = f"build-{hashlib.sha256(str(path).encode()).hexdigest()[:16]}"
+        shutil.rmtree(_place(name), ignore_errors=True)
+    elif path.suffix == ".whl" and path.is_file():
+        name = f"wheel-{hashlib.sha256(path.read_bytes()).hexdigest()[:16]}"
+    else:
+        raise BadInput(f"{path}: there is no such folder or wheel; give NAME==VERSION, a .whl file or a folder")
+    folder = _place(name)
+    if not folder.is_dir():
+        why = _install([str(path)], folder, wheels_only=path.is_file())
+        if why:
+            raise BadInput(f"{path} can't be installed: {why}")
+    return _used(folder)
+
+
+def _place(name: str) -> Path:
+    python = f"{sys.implementation.cache_tag}-{sysconfig.get_platform()}"
+    return cache_folder() / "versions" / python / name / PACKAGES
+
+
+def _used(folder: Path) -> Path:
+    """The folder, marked as used now; of all that were installed the MOST that were used last are kept."""
+    with suppress(OSError):
+        os.utime(folder.parent)
+        others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]
+        for old in sorted(others, key=lambda each: each.stat().st_mtime, reverse=True)[MOST:]:
+            shutil.rmtree(old, ignore_errors=True)
+    return folder
+
+
+def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str:
+    """Install into the folder, which gets its name when it is whole; why it can't be, empty if it was."""
+    remedy = f"set {CACHE} to a folder that can be written"
+    folder_for(folder.parent, remedy)
+    try:
+        with temporary_folder(folder.parent) as aside:
+            target = aside / PACKAGES
+            command = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
+            command += ["--disable-pip-version-check", "--no-input", "--target", str(target)]
+            command += ["--only-binary", ":all:"] if wheels_only else []
+            # From another folder: a package beside the user must not hide pip's own.
+            run = subprocess.run(
+                [*command, "--", *what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
+            )
+            if run.returncode or not target.is_dir():
+                return _reason(run.stderr or run.stdout, run.returncode)
+            try:
+                target.rename(folder)
+            except OSError:
+                if not folder.is_dir():  # else another process was faster
+                    raise
+    except OSError as error:
+        raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
+    finally:
+        with suppress(OSError):  # it has something in it: what was installed, or another process's part
+            folder.parent.rmdir()
+    return ""
+
+
+def _reason(text: str, status: int) -> str:
+    """Of all that pip says the part that tells why."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    if any(word in line for line in lines for word in UNCONNECTED):
+        return OFFLINE
+    offered = next((match[1] for line in lines if (match := OFFERED.search(line))), None)
+    if offered is not None:
+        return offered
+    errors = [line for line in lines if line.startswith("ERROR")]
+    return (errors or lines or [f"pip ended with status {status}"])[-1].removeprefix("ERROR: ")
+
+
+def _sentence(version: str, reasons: Sequence[tuple[str, str]]) -> str:
+    """One line on why no distribution has the version, with the nearest that there are."""
+    found: list[str] = []
+    told = []
+    for name, why in reasons:
+        if VERSION.match(why):
+            found += [each for each in why.split(", ") if each not in found]
+        elif why != "none":
+            told.append(f"{name}: {why}")
+    names = " or ".join(name for name, _ in reasons)
+    if all(why == OFFLINE for _, why in reasons):
+        return f"{names} {version} can't be fetched: {OFFLINE}"
+    about = f"no wheel of {names} {version} for this Python ({sys.version_info[0]}.{sys.version_info[1]})"
+    if found:
+        return f"{about}; there are {', '.join(nearest_versions(version, found))}"
+    return f"{about}: {'; '.join(told) or 'the package index knows none'}"
+
+
+def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
+    """Some of those offered, around where this one would stand, in their order."""
+    ordered = sorted(offered, key=numbers)
+    place = sum(numbers(each) < numbers(version) for each in ordered)
+    low = max(0, min(place - SHOWN // 2, len(ordered) - SHOWN))
+    return ordered[low : low + SHOWN]
+
+
+def numbers(version: str) -> tuple[int, ...]:
+    """What versions are ordered by: 3.10.0 comes after 3.9.0."""
+    return tuple(int(part) for part in re.findall(r"\d+", version))
+
+
+def distributions_in(folder: Path) -> Mapping[str, str]:
+    """Name -> version of the distributions that lie in a folder, by their metadata.
+
+    A module's own word is not asked: pymunk 7.0.0 says of itself that it is 2.0.0.
+    """
+    found = {}
+    for each in metadata.distributions(path=[str(folder)]):
+        name = each.metadata["Name"]
+        if name:
+            found[name] = each.version
+    return found

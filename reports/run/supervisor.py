@@ -1,0 +1,241 @@
+"""Work supervised from outside: each item in a worker process, so that a crash in native code is a result too.
+
+Own code, although well-kept libraries for this exist. pebble, loky and concurrent.futures hand out work through one
+queue with a lock that all workers share: a worker killed while it holds the lock stops the others, a worker killed
+while it starts breaks the pool, and then every item that waits is answered with an error that says nothing about it.
+Exceptions travel as objects there, which fails for those that can't be unpickled, and limits count wall time only.
+Here every worker has a connection of its own, which nobody else holds, and a job counts as run only once its answer
+is whole.
+
+* A worker that ends while it starts costs no item anything; after several in a row `WorkersLost` is raised.
+* An item whose worker ended is tried once more, in a worker that has run nothing else before. What happens there is
+  its answer: if native code ends that process too, it is the item's own doing, and no damage that another item left.
+* An item that uses up its CPU time is ended by this process, which reads the worker's clock, or, where the system does
+  not tell, by a thread in the worker. One that sleeps is ended after much more wall time, of which only what this
+  process was awake for is counted: neither a loaded machine nor a stopped terminal decides about a result.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import pickle
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any
+
+from reports.model.ending import Broken
+from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
+from reports.run.processors import apart
+from reports.run.temporary import temporary_folder
+from reports.run.waiting import Waiting
+from reports.run.worker import READY, SPENT, cpu_time, describe, timed_out
+from reports.run.worker_process import (
+    Job,
+    Worker,
+    interrupts_held,
+    last_words,
+    one_thread_each,
+    start_method,
+    start_worker,
+)
+
+TICK = 0.2  # s between two looks at the clock
+IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
+START_LIMIT = 120.0  # s of wall time until a worker says that it is there
+MOST_FAILED_STARTS = 5  # one after the other
+PAUSE = 0.1  # s after a failed start, and as much more after each further one
+MOST_WORKERS = 60  # Windows waits for 63 things at most
+
+Watch = Callable[[list[Any]], None]
+Answer = tuple[Any, Any, str]
+Supervise = Callable[..., Iterator[Answer]]  # `supervise`, and what does the same with workers elsewhere
+
+
+class WorkersLost(Broken):
+    """Something outside kills the workers: work is left that can be done at another time."""
+
+
+def wall_limit(limit: float) -> float:
+    """Seconds of wall time for `limit` seconds of CPU time: a machine ten times overloaded is still waited for."""
+    return 10 * limit + 60
+
+
+def supervise(
+    function: Callable[[Any], Any],
+    items: Iterable[Any],
+    limit: float,
+    workers: int,
+    watch: Watch | None = None,
+    wall: float | None = None,
+    alone: bool = False,
+) -> Iterator[Answer]:
+    """Yield (item, result or Loss, note) as they are done, in no order; note: how an earlier try of it aborted.
+
+    `function` must be importable by its name. `limit`: CPU seconds for one item, all threads together; `wall`: seconds
+    for one that does not use its CPU time, `wall_limit` if None. `watch` is told a few times a second which items are
+    running. `alone`: each worker stays on a processor of its own (`reports.run.processors.apart`), as far as there are
+    so many. Items that are akin go to one worker (`reports.run.waiting`). Raises WorkersLost when no worker can be
+    started. Leaving the iterator ends the workers.
+    """
+    with crew(limit, workers, wall, alone) as own:
+        own.give(function, items)
+        yield from own.answers(watch)
+
+
+@contextmanager
+def crew(limit: float, workers: int, wall: float | None = None, alone: bool = False) -> Iterator[Crew]:
+    """Workers for one function after another; see `supervise`. Leaving it ends them."""
+    one_thread_each()
+    with temporary_folder() as folder:
+        wall = wall_limit(limit) if wall is None else wall
+        own = Crew(limit, wall, min(workers, MOST_WORKERS), folder, apart() if alone else ())
+        try:
+            yield own
+        finally:
+            own.end()
+
+
+class Crew:
+    """Workers, and the jobs that they have not answered yet."""
+
+    def __init__(self, limit: float, wall: float, most: int, folder: Path, processors: tuple[int, ...] = ()) -> None:
+        self._limit, self._wall, self._most, self._folder = limit, wall, most, folder
+        self._processors = processors  # one for each worker; more workers stay nowhere
+        self._function: Callable[[Any], Any] | None = None
+        self._waiting = Waiting()
+        self._again: deque[Job] = deque()  # each for a worker that has run nothing yet
+        self._workers: list[Worker] = []
+        self._failed_starts = 0
+        self._context = start_method()
+
+    def give(self, function: Callable[[Any], Any], items: Iterable[Any]) -> None:
+        """What `answers` will answer; only when it has answered all that was given before."""
+        self._function = function
+        self._waiting.add(Job(item) for item in items)
+
+    def answers(self, watch: Watch | None) -> Iterator[Answer]:
+        """Every item's answer."""
+        before = time.monotonic()
+        while self._waiting or self._again or self._busy():
+            self._start_workers()
+            for worker in list(self._workers):
+                if worker.ready and worker.job is None:
+                    yield from self._employ(worker)
+            heard = wait([worker.connection for worker in self._workers], TICK)
+            now = time.monotonic()
+            awake, before = min(now - before, 5 * TICK), now
+            for worker in list(self._workers):
+                if worker.connection in heard:
+                    yield from self._hear(worker)
+                else:
+                    worker.awake += awake
+                    yield from self._end_overdue(worker)
+            if watch is not None:
+                watch([worker.job.item for worker in self._busy() if worker.job])
+
+    def end(self) -> None:
+        for worker in list(self._workers):
+            self._dismiss(worker)
+
+    def _busy(self) -> list[Worker]:
+        return [worker for worker in self._workers if worker.job is not None]
+
+    def _start_workers(self) -> None:
+        """As many as there is work for."""
+        wanted = min(self._most, len(self._waiting) + len(self._again) + len(self._busy()))
+        while len(self._workers) < wanted:
+            try:
+                free = [one for one in self._processors if one not in {other.processor for other in self._workers}]
+                terms = (str(self._folder), self._limit, self._wall, free[0] if free else None)
+                with interrupts_held():
+                    self._workers.append(start_worker(self._context, *terms))
+            except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
+                self._start_failed(describe(error))
+
+    def _start_failed(self, words: str) -> None:
+        self._failed_starts += 1
+        if self._failed_starts >= MOST_FAILED_STARTS:
+            raise WorkersLost(f"{self._failed_starts} worker processes in a row ended while they started: {words}")
+        # A fork server that was killed is replaced only when it is quite gone; a full system may have room again.
+        time.sleep(PAUSE * self._failed_starts)
+
+    def _employ(self, worker: Worker) -> Iterator[Answer]:
+        """Give an idle worker a job, or end it if there is none that it may do."""
+        job = None
+        if self._again and not worker.used:
+            job = self._again.popleft()
+        elif self._waiting:
+            job, worker.kin = self._waiting.take(worker.kin, [other.kin for other in self._busy()])
+        if job is None:
+            self._dismiss(worker)
+            return
+        try:
+            data = pickle.dumps((self._function, job.item))
+        except Exception as error:
+            yield job.item, Loss(Outcome.FAILED, f"can't be sent to a worker: {describe(error)}"), ""
+            return
+        worker.job, worker.used, worker.awake = job, True, 0.0
+        worker.cpu = cpu_time(worker.process.pid or 0)
+        with contextlib.suppress(OSError):  # its end is heard next
+            worker.connection.send_bytes(data)
+
+    def _hear(self, worker: Worker) -> Iterator[Answer]:
+        """A worker is ready, has an answer, or has ended."""
+        try:
+            message = worker.connection.recv_bytes()
+        except (EOFError, OSError):
+            yield from self._bury(worker)
+            return
+        if message == READY:
+            worker.ready, self._failed_starts = True, 0
+            return
+        job, worker.job = worker.job, None
+        assert job is not None
+        stays, answer = pickle.loads(message)
+        if not stays:
+            self._dismiss(worker)
+        try:
+            result = pickle.loads(answer)
+        except Exception as error:
+            result = Loss(Outcome.FAILED, f"its result can't be read: {describe(error)}")
+        yield job.item, result, "" if job.earlier_outside else job.earlier
+
+    def _bury(self, worker: Worker) -> Iterator[Answer]:
+        """A worker has ended: its job is tried again, unless it was the second time or its CPU time was used up."""
+        code, pid, job = worker.exit_code(), worker.process.pid, worker.job
+        self._dismiss(worker)
+        words = ": ".join(filter(None, (describe_exit(code), last_words(self._folder, pid))))
+        if not worker.ready:
+            self._start_failed(words)
+        if job is None:
+            return
+        if code == SPENT:
+            yield job.item, Loss(Outcome.TIMED_OUT, timed_out(self._limit)), ""
+        elif not job.earlier:
+            self._again.append(Job(job.item, words, from_outside(code)))
+        elif from_outside(code):
+            yield job.item, Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {job.earlier}"), ""
+        else:
+            yield job.item, Loss(Outcome.ABORTED, words), ""
+
+    def _end_overdue(self, worker: Worker) -> Iterator[Answer]:
+        if not worker.ready and worker.awake > START_LIMIT:
+            self._dismiss(worker)
+            self._start_failed(f"not ready after {START_LIMIT:g} s")
+        elif worker.job is not None and worker.used_cpu() > self._limit + IMPORTS:
+            job = worker.job
+            self._dismiss(worker)
+            yield job.item, Loss(Outcome.TIMED_OUT, timed_out(self._limit)), ""
+        elif worker.job is not None and worker.awake > self._wall:
+            job = worker.job
+            self._dismiss(worker)
+            sentence = f"did not end within {self._wall:g} s, and used less than {self._limit:g} s of CPU time"
+            yield job.item, Loss(Outcome.TIMED_OUT, sentence), ""
+
+    def _dismiss(self, worker: Worker) -> None:
+        self._workers.remove(worker)
+        worker.stop()

@@ -1,0 +1,194 @@
+"""What runs in a worker process: one job after another, each within its CPU time, until a job leaves something behind.
+
+Only the standard library is imported here, so that a worker that has to start from nothing is there at once.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from reports.model.outcomes import Loss, Outcome
+from reports.run.processors import stay_on
+
+READY = b"ready"
+LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
+LONGEST = 500  # characters of a sentence
+SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
+PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+LOOK = 0.2  # s between two looks at its own CPU time
+
+
+def cpu_time(process: int) -> float | None:
+    """CPU seconds of a process, all threads together; None where the system does not tell those of another process.
+
+    On Linux by the process's clock, whose number clock_getcpuclockid(3) makes in this way. A timer for the CPU time
+    (ITIMER_PROF, RLIMIT_CPU) would end a process by itself, but while one is set the process's own clock, by which
+    stepping is timed, moves in jumps of 4 ms only.
+    """
+    try:
+        return time.clock_gettime((~process << 3) | 2)
+    except (AttributeError, OSError, OverflowError):
+        return None
+
+
+WATCHED = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
+
+
+class Clock:
+    """The CPU time at which the present job is ended; infinite between jobs."""
+
+    def __init__(self) -> None:
+        self.end = float("inf")
+
+
+def work(connection: Connection, folder: str, limit: float, wall: float, processor: int | None = None) -> None:
+    """Answer jobs until the connection ends, or until a job leaves the process changed.
+
+    A job is a pickled (function, item); its answer is a pickled (whether this worker takes another job, what the
+    function gave or a Loss, pickled). `limit`: CPU seconds of one job, `wall`: seconds after which the parent
+    ends it; after twice as many it ends itself, should the parent be gone. `processor`: where it stays; None: anywhere.
+    """
+    _ignore_interrupts()
+    if hasattr(os, "setpgid"):
+        os.setpgid(0, 0)  # with all that jobs start, so that it can be ended as one
+    stay_on(processor)
+    _end_with_the_parent()
+    try:
+        _redirect(Path(folder))
+    except FileNotFoundError:  # the command was interrupted meanwhile, and has taken its folder away
+        os._exit(1)
+    clock = Clock()
+    threading.Thread(target=_watch, args=(clock,), daemon=True).start()
+    connection.send_bytes(READY)
+    stays, own = True, os.getpid()
+    while stays:
+        try:
+            job = connection.recv_bytes()
+        except (EOFError, OSError):
+            break
+        os.ftruncate(2, 0)  # what native code says last is then about this job
+        stays, answer = _answer(job, clock, limit, wall)
+        if os.getpid() != own:  # a child that a job has forked: its parent answers
+            os._exit(0)
+        connection.send_bytes(pickle.dumps((stays, answer)))
+    # Not sys.exit: threads that a job has left running must not keep the process.
+    os._exit(0)
+
+
+def _ignore_interrupts() -> None:
+    """Ctrl-C reaches every process of a terminal; the parent alone decides what it means."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+
+
+def _end_with_the_parent() -> None:
+    """Ask Linux to end this process with the one that started it, the fork server.
+
+    Native code that holds the interpreter keeps the thread that looks after the parent from running. The fork server
+    ends with the command, once its workers have closed the pipe that tells it that somebody still needs it.
+    """
+    with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
+        ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+        from multiprocessing import forkserver
+
+        server = vars(forkserver._forkserver)
+        os.close(server["_forkserver_alive_fd"])
+        server["_forkserver_alive_fd"] = None
+
+
+def _redirect(folder: Path) -> None:
+    """Engines write logs into the working folder and to the standard streams; both go where the parent can look."""
+    os.chdir(folder)
+    log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    # What an engine makes elsewhere goes with this folder too, however the worker ends.
+    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)
+    os.dup2(log, 1)
+    os.dup2(log, 2)
+    os.close(log)
+
+
+def _watch(clock: Clock) -> None:
+    """In a thread: end the process when its parent is gone, or when its CPU time is used up and nobody else sees it."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    while parent.is_alive():
+        parent.join(None if WATCHED else LOOK)
+        if not WATCHED and time.process_time() > clock.end:
+            os._exit(SPENT)
+    os._exit(1)
+
+
+def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, bytes]:
+    """(whether the process is as it was before, the pickled result or Loss)."""
+    try:
+        # Imports an engine for the first time, which is no part of the job's CPU time, and may change the process.
+        function, item = pickle.loads(job)
+        before = _traces()
+        start = time.process_time()
+        with _timers(clock, limit, wall):
+            result = function(item)
+        if time.process_time() - start > limit:
+            result = Loss(Outcome.TIMED_OUT, timed_out(limit))
+        answer = pickle.dumps(result)
+        if len(answer) > LARGEST:
+            raise OverflowError(f"a result of {len(answer)} bytes; {LARGEST} can be handed over")
+    except BaseException as error:  # what an engine raises is a result, SystemExit and KeyboardInterrupt too
+        # It may have stopped half-way through a change of its own library, so nobody else gets this process.
+        return False, pickle.dumps(Loss(Outcome.FAILED, describe(error)))
+    return _traces() == before, answer
+
+
+@contextmanager
+def _timers(clock: Clock, limit: float, wall: float) -> Iterator[None]:
+    """A timer of the system ends the process even inside native code that never returns to the interpreter."""
+    clock.end = time.process_time() + limit
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # the parent is gone, or it would have ended this by now
+    try:
+        yield
+    finally:
+        clock.end = float("inf")
+        if hasattr(signal, "setitimer"):
+            for timer in (signal.ITIMER_PROF, signal.ITIMER_REAL, signal.ITIMER_VIRTUAL):
+                signal.setitimer(timer, 0)
+
+
+def _traces() -> tuple[Any, ...]:
+    """What a job could leave behind for the next one: a worker in which this differs afterwards is replaced."""
+    try:
+        folder = os.getcwd()
+        streams = [(os.fstat(number).st_dev, os.fstat(number).st_ino) for number in (1, 2)]
+    except OSError as error:
+        folder, streams = "", [str(error)]
+    handlers = [signal.getsignal(number) for number in sorted(signal.valid_signals())]
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ()) if hasattr(signal, "pthread_sigmask") else set()
+    python_streams = (sys.stdout, sys.stderr, getattr(sys.stdout, "closed", True), getattr(sys.stderr, "closed", True))
+    return folder, streams, handlers, blocked, python_streams, threading.active_count(), dict(os.environ)
+
+
+def describe(error: BaseException) -> str:
+    """'Type: message', whatever the exception does when it is asked for its message."""
+    try:
+        message = str(error)
+    except Exception:
+        message = "(it can't be printed)"
+    return f"{type(error).__name__}: {message}"[:LONGEST].encode("utf-8", "replace").decode("utf-8")
+
+
+def timed_out(limit: float) -> str:
+    return f"did not end within {limit:g} s of CPU time"

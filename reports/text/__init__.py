@@ -1,1 +1,0 @@
-"""Rows to words: tables, the overview, templates to pages."""

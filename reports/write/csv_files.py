@@ -1,0 +1,103 @@
+"""Rows to the CSV files of a report: errors, timings, and the descriptions that both shorten."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from pathlib import Path
+
+from reports.model.measure import TIMINGS, Measurement
+from reports.model.quantities import DIGITS
+
+# The columns that say which row it is.
+IDENTITY = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step")
+
+
+def as_csv(
+    rows: Iterable[Measurement], timings: bool, header: str = "", made_with: Mapping[str, str] | None = None
+) -> str:
+    """Rows as CSV, sorted: the errors without any timing, or the timings alone; `header` lines become comments.
+
+    Parameters and settings stand as digests, see `descriptions_csv`. Numbers have four digits: what remains after that
+    differs with the machine's rounding. `made_with`: by a row's key the versions of all that its numbers depend on,
+    which become a last column of digests.
+    """
+    rest = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY, *TIMINGS, "key", "limit")]
+    names = [*IDENTITY, *(TIMINGS if timings else rest)]
+    out = io.StringIO()
+    out.writelines(f"# {line}\n" for line in header.splitlines())
+    writer = csv.writer(out, lineterminator="\n")
+    last = [] if made_with is None else ["versions"]
+    writer.writerow([*names, *last])
+    ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in IDENTITY))
+    for row in ordered:
+        cells = [told(row, name) for name in names]
+        writer.writerow([*cells, *([] if made_with is None else [digest(made_with[row.key])])])
+    return out.getvalue()
+
+
+def told(row: Measurement, name: str) -> str:
+    """A column of a row as its text."""
+    value = getattr(row, name)
+    if name in DESCRIPTIONS:
+        return digest(value)
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
+
+
+def no_formula(word: str) -> str:
+    """A word as a cell that no spreadsheet works out: with an apostrophe before the sign that begins a formula."""
+    return f"'{word}" if word.startswith(("=", "+", "-", "@", "\t", "\r")) else word
+
+
+# A scene with its numbers and an engine with its settings are long, and stand in many rows: these give their digests.
+DESCRIPTIONS = ("parameters", "settings")
+
+
+def digest(description: str) -> str:
+    """The short name of a scene's parameters, an engine's settings or a row's versions in the CSV files."""
+    return hashlib.sha256(description.encode()).hexdigest()[:8]
+
+
+def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
+    """What the digests stand for, each once."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["digest", "of", "description"])
+    found = {(name, getattr(row, name)) for row in rows for name in DESCRIPTIONS}
+    found |= {("versions", told) for told in (made_with or {}).values()}
+    writer.writerows([digest(text), name, no_formula(text)] for name, text in sorted(found))
+    return out.getvalue()
+
+
+# What tells that the tables and pages of a folder were written together.
+DIGESTS = "digests.csv"
+
+
+def digests_csv(files: Mapping[str, str]) -> str:
+    """The digest of each table and page of a report, by its name.
+
+    Pictures are left out, as no number is read from one, and times, as those of an earlier run may stay.
+    """
+    held = (name for name in files if name.endswith((".csv", ".md")) and name not in (DIGESTS, "timings.csv"))
+    told = {name: digest(files[name]) for name in held}
+    return "".join(f"{name},{value}\n" for name, value in [("file", "digest"), *sorted(told.items())])
+
+
+def not_as_written(folder: Path) -> tuple[str, ...] | None:
+    """The tables and pages of a folder that are not, or no longer, those that one report wrote; None if none says."""
+    try:
+        lines = (folder / DIGESTS).read_text(encoding="utf-8").splitlines()[1:]
+    except (OSError, UnicodeDecodeError):
+        return None
+    told = (line.rpartition(",") for line in lines)
+    return tuple(name for name, _, value in told if _digest_of(folder / name) != value)
+
+
+def _digest_of(path: Path) -> str:
+    try:
+        return digest(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return ""

@@ -1,0 +1,196 @@
+"""The tables of a mechanism's page: one a scene, and which setting gives which accuracy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from reports.gate.theory import ROOM_SOFT
+from reports.model.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
+from reports.write.tables import NOTHING, markdown, milliseconds, number
+
+# The step [s] at which methods stand side by side, or the grid's nearest: a user's who has refined once.
+COMPARED = 1e-3
+# What a user may want to be below, in the unit of the page's quantity.
+TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
+# Costs nearer than this are equal: timings of short runs scatter by about a fifth. Of equals the first of the page is
+# taken, since each engine's methods stand there from its own settings to our code around it.
+SAME_COST = 1.25
+
+
+# What a method's declared softness costs at a step [s], in the unit of the page's quantity; NaN if not known.
+Declared = Callable[[str, float], float]
+
+
+def undeclared(method: str, step: float) -> float:
+    return math.nan
+
+
+def compared_step(rows: Iterable[Measurement]) -> float:
+    """The step [s] of these rows that is nearest to COMPARED, by ratio; NaN without rows."""
+    steps = {row.step for row in rows if row.purpose == "sweep"}
+    return min(steps, key=lambda step: abs(math.log(step / COMPARED)), default=math.nan)
+
+
+def scene_table(
+    rows: Sequence[Measurement], name: str, held: Mapping[str, str] | None = None, declared: Declared = undeclared
+) -> str:
+    """A line a method of one scene: its errors and cost at the compared step, and what a smaller step brings.
+
+    Where it is known for a method, what its declared softness costs stands beside its error, and a plateau that is
+    larger is marked: it is neither the step's nor declared.
+    """
+    step, told = compared_step(rows), quantity(name)
+    verdicts = by_method(sweeps(rows), name)
+    known = [
+        q
+        for q in map(quantity, dict.fromkeys((name, "gap", "slip", "reaction")))
+        if q.name == name or any(math.isfinite(getattr(row, q.name)) for row in rows)
+    ]
+    methods = {members[0].method: members for members in groups(rows).values()}
+    softness = {method: declared(method, step) for method in methods}
+    soft = any(value > 0 for value in softness.values())
+    body = []
+    for key, members in groups(rows).items():
+        row = next((row for row in members if row.step == step), None)
+        errors = [number(getattr(row, q.name)) if row else NOTHING for q in known]
+        if row is not None and not Outcome(row.outcome).comparable:
+            errors[0] = f"**{row.outcome}**"
+        if soft:
+            errors.insert(1, number(softness[members[0].method]))
+        cost = milliseconds(row.cpu) if row and row.cpu > 0 else NOTHING
+        smaller = as_the_step_shrinks(verdicts[key], members)
+        finest = min(row.step for row in members)
+        if verdicts[key].plateau > ROOM_SOFT * declared(members[0].method, finest) + told.rounding:
+            smaller += ", **not declared**"
+        body.append([members[0].method, *errors, cost, smaller])
+    heads = [f"{q.label} error [{q.unit}]" if q.name not in ("gap", "slip") else f"{q.label} [{q.unit}]" for q in known]
+    if soft:
+        heads.insert(1, f"declared [{told.unit}]")
+    header = ["method", *heads, "CPU [ms/s]", f"as the step shrinks, plateau in {told.unit}"]
+    return markdown(header, body, left=1, held=held)
+
+
+def beside_table(rows: Sequence[Measurement], name: str) -> str:
+    """A line a method of engines that are extras: its error at each step, and what else is told at the finest.
+
+    Empty without rows; methods that build nothing here are left out.
+    """
+    told = quantity(name)
+    found = {
+        members[0].method: members
+        for members in groups(replace(row, purpose="sweep") for row in rows).values()
+        if any(row.outcome != Outcome.UNSUPPORTED for row in members)
+    }
+    steps = sorted({row.step for members in found.values() for row in members}, reverse=True)
+    body = []
+    for method, members in found.items():
+        at = {row.step: row for row in members}
+        errors = [_told_error(at.get(step), name) for step in steps]
+        finest = members[-1]
+        cost = milliseconds(finest.cpu) if finest.cpu > 0 else NOTHING
+        body.append([method, *errors, number(finest.gap), number(finest.reaction), cost])
+    heads = [f"{told.label} error [{told.unit}] at {number(step)} s" for step in steps]
+    header = ["method", *heads, "gap [m]", "reaction [relative]", "CPU [ms/s]"]
+    return markdown(header, body) if body else ""
+
+
+def _told_error(row: Measurement | None, name: str) -> str:
+    if row is None:
+        return NOTHING
+    return number(getattr(row, name)) if Outcome(row.outcome).comparable else f"**{row.outcome}**"
+
+
+def as_the_step_shrinks(sweep: Sweep, members: Sequence[Measurement]) -> str:
+    """'order 2.0 (4 points)', 'order 1.0 (3 points), plateau **1.1e-3**', 'to rounding', 'then **torn**'."""
+    words = []
+    if sweep.points >= 2:
+        unchecked = "" if sweep.points >= ENOUGH else ", unchecked"
+        words.append(f"order {sweep.order:.1f} ({sweep.points} points{unchecked})")
+    finest = min(members, key=lambda row: row.step)
+    match sweep.verdict:
+        case _ if not Outcome(finest.outcome).comparable and math.isfinite(sweep.best):
+            words.append(f"at the finest step **{finest.outcome}**")
+        case Verdict.PLATEAU:
+            words.append(f"plateau **{number(sweep.plateau)}**")
+        case Verdict.ROUNDING:
+            words.append("to rounding")
+        case Verdict.LEVELS | Verdict.GROWS | Verdict.ERRATIC:
+            words.append(f"**{sweep.verdict}**")
+    return ", ".join(words) or NOTHING
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The cheapest method of one engine for some targets, and the row at the step that is to be taken; None where no
+    step of no method is below them."""
+
+    engine: str
+    targets: tuple[float, ...]
+    row: Measurement | None
+    sweep: Sweep | None = None
+
+
+def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) -> tuple[Advice, ...]:
+    """For each engine and target the cheapest method, for the rows of one scene; `order`: of the page's methods.
+
+    A step counts if all finer steps of its method are below the target as well: else its small error was luck.
+    """
+    verdicts = by_method(sweeps(rows), name)
+    place = {method: index for index, method in enumerate(order)}
+    found: list[Advice] = []
+    for engine in dict.fromkeys(row.engine for row in rows):
+        members = {key: own for key, own in groups(rows).items() if key[1] == engine}
+        own: dict[tuple[str, float] | None, tuple[Measurement | None, list[float]]] = {}
+        for target in TARGETS:
+            row = _cheapest(members.values(), name, target, place)
+            own.setdefault((row.method, row.step) if row else None, (row, []))[1].append(target)
+        for row, targets in own.values():
+            sweep = verdicts[row.scene, row.engine, row.variant] if row else None
+            found.append(Advice(engine, tuple(targets), row, sweep))
+    return tuple(found)
+
+
+def _cheapest(
+    methods: Iterable[Sequence[Measurement]], name: str, target: float, place: Mapping[str, int]
+) -> Measurement | None:
+    costs = []
+    for members in methods:
+        below = reliable(members, name, target)
+        if below:
+            costs.append(min(below, key=lambda row: row.cpu))
+    least = min((row.cpu for row in costs), default=math.nan)
+    equal = [row for row in costs if row.cpu <= SAME_COST * least]
+    return min(equal, key=lambda row: (place.get(row.method, len(place)), row.cpu), default=None)
+
+
+def reliable(members: Sequence[Measurement], name: str, target: float) -> list[Measurement]:
+    """The rows of one method from the finest step up to the first that is not below the target, those with a cost."""
+    found = []
+    for row in sorted(members, key=lambda row: row.step):
+        if not (Outcome(row.outcome).comparable and getattr(row, name) <= target):
+            break
+        found.append(row)
+    return [row for row in found if row.cpu > 0]
+
+
+def advice_table(found: Iterable[Advice], name: str, held: Mapping[str, str] | None = None) -> str:
+    """A line for each advice: method, who holds the joints, step, error, cost and order."""
+    unit = quantity(name).unit
+    body = []
+    for each in found:
+        below = ", ".join(number(target, 1) for target in each.targets)
+        row, sweep = each.row, each.sweep
+        if row is None or sweep is None:
+            body.append([each.engine, below, "not reached", *[""] * (5 if held else 4)])
+            continue
+        order = f"{sweep.order:.1f}" if sweep.points >= 2 else NOTHING
+        holder = [held.get(row.method, NOTHING)] if held else []
+        numbers = [number(row.step), number(getattr(row, name)), milliseconds(row.cpu), order]
+        body.append([each.engine, below, f"**{row.variant}**", *holder, *numbers])
+    header = ["engine", f"below [{unit}]", "method", *(["joints held by"] if held else [])]
+    return markdown([*header, "step [s]", f"error [{unit}]", "CPU [ms/s]", "order"], body, left=len(header))

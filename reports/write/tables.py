@@ -1,0 +1,233 @@
+"""Rows to Markdown tables; pure functions of their arguments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from reports.model.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
+from reports.model.errors import NAN
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.quantities import QUANTITIES, quantity
+
+NOTHING = "-"
+HOLDER = "joints held by"
+Held = Mapping[str, str] | None
+
+
+def number(value: float, digits: int = 2) -> str:
+    """A number as it is printed everywhere: 1.3e-4, 0.25, 12; a dash for an unknown one."""
+    if not math.isfinite(value):
+        return NOTHING if math.isnan(value) else "∞"
+    if value == 0:
+        return "0"
+    if 1e-2 <= abs(value) < 1e4:
+        return f"{value:.{digits}g}" if abs(value) < 10**digits - 0.5 else f"{value:.0f}"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def milliseconds(seconds: float) -> str:
+    """CPU seconds as milliseconds."""
+    return number(1e3 * seconds)
+
+
+def markdown(
+    header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, held: Mapping[str, str] | None = None
+) -> str:
+    """A Markdown table; the first `left` columns are words, the others numbers. A bar in a cell is escaped.
+
+    `held` says by method who holds the joints: then a column after the first, which has to be the methods', tells it.
+    """
+    if held:
+        header, left = [header[0], HOLDER, *header[1:]], left + 1
+        rows = [[row[0], held.get(row[0], NOTHING), *row[1:]] for row in rows]
+    lines = [_line(header), _line(["---" if i < left else "--:" for i in range(len(header))])]
+    return "\n".join(lines + [_line([cell.replace("|", "\\|").replace("\n", " ") for cell in row]) for row in rows])
+
+
+def _line(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def error_table(rows: Iterable[Measurement], held: Held = None) -> str:
+    """Every quantity's largest error of every cell of one scene, by method and step."""
+    return markdown(ERROR_HEADER, error_rows(rows), left=2, held=held)
+
+
+ERROR_HEADER = ("method", "outcome", "step [s]", *(f"{q.label} [{q.unit}]" for q in QUANTITIES), "CPU [ms/s]")
+
+
+def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
+    """The body of an error table, under ERROR_HEADER."""
+    return [
+        [row.method, row.outcome, number(row.step)]
+        + [number(getattr(row, q.name)) for q in QUANTITIES]
+        + [milliseconds(row.cpu)]
+        for members in groups(rows).values()
+        for row in members
+    ]
+
+
+def order_table(
+    found: Iterable[Sweep], quantities: Sequence[str] = ("angle", "rate", "gap", "reaction"), held: Held = None
+) -> str:
+    """Order, number of points and plateau of some quantities, by method, for the sweeps of one scene."""
+    units = {q.name: q for q in QUANTITIES}
+    rows = order_rows(found, quantities)
+    header = ["method", *(f"{units[name].label}: order, plateau [{units[name].unit}]" for name in quantities)]
+    return markdown(header, rows, left=9, held=held)
+
+
+def order_rows(found: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
+    """[method, then order and plateau of each quantity in words], a method each."""
+    found = tuple(found)
+    keys = dict.fromkeys((s.scene, s.engine, s.variant) for s in found)
+    columns = [by_method(found, name) for name in quantities]
+    return [[f"{e} {v}", *(sweep_words(c[s, e, v]) for c in columns)] for s, e, v in keys]
+
+
+def sweep_words(sweep: Sweep) -> str:
+    """'1.99 (4 points)', '3.9 (3 points), then rounding', '1.1 (2 points, unchecked), then 2.0e-5'."""
+    if sweep.points >= 2:
+        checked = f"±{sweep.spread:.2g}, {sweep.points} points" if sweep.points >= ENOUGH else "2 points, unchecked"
+        order = f"{sweep.order:.2f} ({checked})"
+    else:
+        order = ""
+    match sweep.verdict:
+        case Verdict.PLATEAU:
+            end = f"plateau **{number(sweep.plateau)}**"
+        case Verdict.FALLS:
+            end = "" if order else f"falls, {number(sweep.best)}"
+        case Verdict.TOO_FEW:
+            return NOTHING if math.isnan(sweep.best) else f"not enough points, {number(sweep.best)}"
+        case Verdict.ROUNDING:
+            end = "rounding" if not order else "then rounding"
+        case _:
+            end = f"{sweep.verdict}, best {number(sweep.best)}"
+    return ", ".join(filter(None, (order, end)))
+
+
+def reaction_table(rows: Iterable[Measurement], held: Held = None) -> str:
+    """How exact each method's reactions are at the step where they are best, and of how many rows it tells them."""
+    body = []
+    for members in groups(rows).values():
+        usable = [row for row in members if Outcome(row.outcome).comparable]
+        if not usable:
+            continue
+        best = min(usable, key=lambda row: (math.isnan(row.reaction), row.reaction))
+        known = f"{best.reaction_rows} of {best.own_rows}"
+        body.append([best.method, known, number(best.reaction), number(best.step), milliseconds(best.cpu)])
+    header = ["method", "rows told", "least error [relative]", "at step [s]", "CPU [ms/s]"]
+    return markdown(header, body, left=2, held=held)
+
+
+def size_table(rows: Iterable[Measurement]) -> str:
+    """The models' sizes beside the mechanism's own; methods that model alike share a line."""
+    header = ["bodies", "coordinates", "rows", "solver rows", "modelled by"]
+    own: list[str] = []
+    sizes: dict[tuple[int, ...], dict[str, list[str]]] = {}
+    for members in groups(rows).values():
+        row = next((row for row in members if row.bodies), None)
+        if row is None:  # refused, or lost before it was built: it knows neither its own size nor the mechanism's
+            continue
+        if not own:
+            freedoms = f"*the mechanism itself, {row.own_freedoms} freedom{'' if row.own_freedoms == 1 else 's'}*"
+            own = [*map(str, (row.own_bodies, row.own_coordinates, row.own_rows)), NOTHING, freedoms]
+        size = (row.bodies, row.coordinates, row.rows, row.solver_rows)
+        sizes.setdefault(size, {}).setdefault(row.engine, []).append(row.variant)
+    body = [
+        [*map(str, size), "; ".join(f"{engine} ({', '.join(variants)})" for engine, variants in by_engine.items())]
+        for size, by_engine in sizes.items()
+    ]
+    return markdown(header, [own, *body] if own else body, left=5)
+
+
+def outcome_grid(rows: Iterable[Measurement], held: Held = None) -> str:
+    """An experiment at a glance: a line a method, a column a step, the outcome and one number in each.
+
+    Raises ValueError where two rows would stand in one place: only one of them could be seen.
+    """
+    rows = list(rows)
+    steps = sorted({row.step for row in rows}, reverse=True)
+    by_method_and_step: dict[str, dict[float, str]] = {}
+    for row in rows:
+        line = by_method_and_step.setdefault(row.method, {})
+        if row.step in line:
+            raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {number(row.step)} s")
+        line[row.step] = _outcome_in_brief(row)
+    body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
+    return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1, held=held)
+
+
+def _outcome_in_brief(row: Measurement) -> str:
+    """The outcome with the number that says how bad it is: the gap of a torn loop, else the angle error."""
+    if Outcome(row.outcome).comparable:
+        return f"{number(row.angle)} rad"
+    if row.outcome == Outcome.TORN and math.isfinite(row.gap):
+        return f"**{row.outcome}** {number(max(row.gap, 0.0))} m"
+    return f"**{row.outcome}**"
+
+
+def cell_table(rows: Iterable[Measurement], columns: Sequence[str], held: Held = None) -> str:
+    """A line a cell: method, step, outcome, the largest errors of these quantities."""
+    told = [quantity(name) for name in columns]
+    body = [
+        [row.method, number(row.step), f"**{row.outcome}**", *(number(getattr(row, q.name)) for q in told)]
+        for row in rows
+    ]
+    header = ["method", "step [s]", "outcome", *(f"{q.label} [{q.unit}]" for q in told)]
+    return markdown(header, body, left=3, held=held)
+
+
+def outcome_table(rows: Iterable[Measurement], held: Held = None) -> str:
+    """The same with each cell's own sentence: method, step, outcome, largest errors."""
+    header = ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
+    body = [
+        [
+            row.method,
+            number(row.step),
+            f"**{row.outcome}**{': ' + row.sentence if row.sentence else ''}",
+            number(row.angle),
+            number(row.gap),
+        ]
+        for row in rows
+    ]
+    return markdown(header, body, left=3, held=held)
+
+
+def work_table(
+    rows: Iterable[Measurement],
+    name: str = "angle",
+    targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10),
+    held: Held = None,
+) -> str:
+    """The least CPU time with which each method gets below an error [ms per simulated second]."""
+    body = []
+    for members in groups(rows).values():
+        usable = [row for row in members if Outcome(row.outcome).comparable]
+        cost = [min((row.cpu for row in usable if getattr(row, name) <= target), default=NAN) for target in targets]
+        body.append([members[0].method, *map(milliseconds, cost)])
+    unit = quantity(name).unit
+    return markdown(["method", *(f"{number(target, 1)} {unit}" for target in targets)], body, held=held)
+
+
+SUMMARY_HEADER = ("method", "angle error [rad]", "at step [s]", "CPU [ms/s]", "order", "plateau [rad]", "outcomes")
+
+
+def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
+    """One line a method of one scene, under SUMMARY_HEADER: least angle error, order (and its points), plateau."""
+    rows = list(rows)
+    verdicts = by_method(sweeps(rows), "angle")
+    out = []
+    for key, members in groups(rows).items():
+        usable = [row for row in members if Outcome(row.outcome).comparable and math.isfinite(row.angle)]
+        best = min(usable, key=lambda row: row.angle, default=None)
+        numbers = (best.angle, best.step, 1e3 * best.cpu) if best else (NAN, NAN, NAN)
+        sweep = verdicts[key]
+        order = f"{sweep.order:.1f} ({sweep.points})" if sweep.points >= 2 else NOTHING
+        end = "rounding" if sweep.verdict is Verdict.ROUNDING else number(sweep.plateau)
+        outcomes = ", ".join(dict.fromkeys(row.outcome for row in members))
+        out.append([members[0].method, *map(number, numbers), order, end, outcomes])
+    return out

@@ -1,0 +1,76 @@
+"""The templates of pages and remarks, and what all of them may use."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
+
+from reports.model.page import Page
+from reports.write import unmeasured
+from reports.write.links import anchor
+
+TEMPLATES = Path(__file__).parents[1] / "pages"
+
+CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+FOREIGN = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")  # of all HTML our pages have these and comments
+
+
+def inert(text: str) -> str:
+    """HTML or Markdown whose tags are words to read, but for those that our pages have: names may hold anything."""
+    return FOREIGN.sub("&lt;", text)
+
+
+def inert_page(text: str) -> str:
+    """The same of a whole Markdown page, where code stays as it is."""
+    parts = CODE.split(text)
+    return "".join(part if index % 2 else inert(part) for index, part in enumerate(parts))
+
+
+def environment(folder: Path = TEMPLATES) -> Environment:
+    """Templates fail loudly on a name that has no value, and print a mark for a number that is not known.
+
+    Those of another folder are found as "own/NAME"; so none of them hides "base.md".
+    """
+    return _environment(folder, tuple(unmeasured.FILTERS.items()))
+
+
+def template(text: str) -> Template:
+    """A template that stands in the code, like the remark of an experiment."""
+    return _template(text, tuple(unmeasured.FILTERS.items()))
+
+
+# To compile a template takes ten times as long as to fill it in.
+Filters = tuple[tuple[str, Callable[..., Any]], ...]
+
+
+@cache
+def _template(text: str, filters: Filters) -> Template:
+    return _environment(TEMPLATES, filters).from_string(text)
+
+
+@cache
+def _environment(folder: Path, filters: Filters) -> Environment:
+    out = Environment(
+        loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+        finalize=unmeasured.marked,
+    )
+    out.filters |= dict(filters) | {"anchor": anchor}
+    return out
+
+
+def template_of(page: Page, file: str, generic: str) -> Template:
+    """The page's own template `file` ("page.md" or "data.md"), that of its name here, or the generic one."""
+    if page.template is not None:
+        own = page.template if file == "page.md" else page.template.with_name(file)
+        return environment(own.parent).select_template([f"own/{own.name}", generic])
+    return environment().select_template([f"{page.name}/{file}", generic])
