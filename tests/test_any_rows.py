@@ -18,7 +18,7 @@ import pytest
 
 from reports.check.shown import Pose, Shown
 from reports.cli.selection import shown_cells
-from reports.gate.declared import Softened
+from reports.gate.declared import Softened, all_tasks
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank
@@ -220,7 +220,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         return "" if MARK in clause else clause
 
     monkeypatch.setitem(FILTERS, "if_measured", kept)
-    answers = {task: still(task) for task in page.all_tasks()}
+    answers = {task: still(task) for task in all_tasks(page)}
     # A body that stays where it is does not slip: what remarks say of motions needs the motions themselves.
     said = (
         task
@@ -332,7 +332,7 @@ def still(task: Task, lost: bool = False) -> Answer:
 def some_answers(page: Page, chance: random.Random) -> dict[Task, Answer]:
     """To a part of a page's tasks, some of them failed."""
     found = {}
-    for task in page.all_tasks():
+    for task in all_tasks(page):
         match chance.choice(["missing", "failed", "lost", "still", "still"]):
             case "failed":
                 found[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
@@ -341,12 +341,12 @@ def some_answers(page: Page, chance: random.Random) -> dict[Task, Answer]:
     return found
 
 
-WITH_TASKS = [page for page in PAGES if page.all_tasks()]
+WITH_TASKS = [page for page in PAGES if all_tasks(page)]
 
 
 @pytest.mark.parametrize("page", WITH_TASKS, ids=lambda page: page.name)
 def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
-    tasks = page.all_tasks()
+    tasks = all_tasks(page)
     chance = random.Random(page.name)
     for answers in (
         {},
@@ -367,7 +367,7 @@ def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
         (skate.PAGE, slipping),
         (wheels.PAGE, wheels_failures.folding),
     ):
-        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in page.all_tasks()}))
+        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in all_tasks(page)}))
         assert [seen for seen in told if "exact" in seen.method or "closed form" in seen.method]
         engines = [seen for seen in told if "reference" not in seen.method]
         lost = [seen for seen in engines if seen.outcome == "**aborted**: no such thing"]
@@ -386,7 +386,7 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
 
 def test_an_experiment_of_which_no_task_was_run_says_so():
     page = replace(skate.PAGE, figures=lambda material: {}, maps=())
-    for answers, waiting in (({}, True), ({task: still(task) for task in page.all_tasks()}, False)):
+    for answers, waiting in (({}, True), ({task: still(task) for task in all_tasks(page)}, False)):
         text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
         section = text.split("### The sleigh run backwards")[1].split("###")[0]
         assert "exact motion" in section

@@ -20,6 +20,7 @@ from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCent
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
+from reports.gate.declared import all_tasks
 from reports.model.cells import Cell, sweep_cells
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
@@ -212,7 +213,7 @@ def test_a_page_can_be_written_from_nothing_and_from_a_few_rows(page, undrawn):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_pages_observations_are_computed_and_say_something(page):
-    material = Material({}, {task: answered(task) for task in page.all_tasks()})
+    material = Material({}, {task: answered(task) for task in all_tasks(page)})
     told = [seen for failure in page.failures if failure.observations for seen in failure.observations(material)]
     assert all(seen.outcome and "nan" not in seen.outcome for seen in told)
     assert told

@@ -17,6 +17,7 @@ import pytest
 
 from engines import registry, single_run
 from reports.cli.selection import page_tasks
+from reports.gate.declared import all_tasks
 from reports.model.page import Material
 from reports.model.tasks import answered
 from reports.pages.faults import groove, scripts
@@ -47,7 +48,7 @@ def material(started: dict[str, str]) -> Material:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scripts.subprocess, "run", noted)
-        return Material({}, {task: answered(task) for task in PAGE.all_tasks()})
+        return Material({}, {task: answered(task) for task in all_tasks(PAGE)})
 
 
 def not_here(name: str) -> str:
@@ -209,5 +210,5 @@ def test_releases_find_again_what_was_recorded(release: tuple[str, str, tuple[st
 
 
 def test_all_tasks_of_the_page_are_run_and_shown() -> None:
-    assert set(PAGE.all_tasks()) == {*SCRIPTS.values(), *GROOVES, *EQUALITIES, *BEADS, OFFSETS}
+    assert set(all_tasks(PAGE)) == {*SCRIPTS.values(), *GROOVES, *EQUALITIES, *BEADS, OFFSETS}
     assert {path.stem for path in Path(scripts.FOLDER).glob("*.py")} == set(SCRIPTS)

@@ -15,6 +15,7 @@ from engines import Unsupported, mujoco, pymunk, registry
 from reference.scenes import SCENES
 from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
+from reports.gate.declared import all_tasks
 from reports.model import fingerprint
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
@@ -177,7 +178,7 @@ def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
     failure = Failure("Kept", "It should turn.", tasks=(dear, mine))
     page = Page("discs", "Discs", "One disc.", (Disc(),), (Toy(),), failures=(failure,), tasks=(cheap, other, mine))
     engines = (Toy(), FailingToy("refuse"))
-    assert page.all_tasks() == (cheap, other, mine, dear)
+    assert all_tasks(page) == (cheap, other, mine, dear)
     assert choose_tasks((Disc(),), engines, (page,), full=False) == (cheap, other, mine)
     assert choose_tasks((Disc(),), engines, (page,), full=True) == (cheap, other, mine, dear)
     assert choose_tasks((Disc(),), engines[:1], (page,), full=True) == (cheap, mine, dear)
@@ -188,7 +189,7 @@ def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
 def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
     """But those of engines whose package is not here."""
     every = {
-        task for page in PAGES for task in page.all_tasks() if task.engine is None or not registry.missing(task.engine)
+        task for page in PAGES for task in all_tasks(page) if task.engine is None or not registry.missing(task.engine)
     }
     assert set(choose_tasks(SCENES, choose_engines(None, None, known_engines(PAGES)), PAGES, full=True)) == every
     assert not any(isinstance(cell, Task) for cell in choose_cells(SCENES[:1], (), PAGES, full=True))
@@ -197,14 +198,14 @@ def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
 def test_no_answer_is_stale_because_of_words_or_pictures():
     """A task's module, and what it imports, is apart from pages' texts, their tables and their charts."""
     words = re.compile(r"reports\.(charts|cli|pages\.page|pages\.\w+\.(page|experiments|expectations)|text)\b")
-    for task in {task for page in PAGES for task in page.all_tasks()}:
+    for task in {task for page in PAGES for task in all_tasks(page)}:
         files, _ = fingerprint._closure(type(task).__module__)
         assert [name for name, _ in files if words.match(name)] == [], type(task).__name__
 
 
 @cache
 def answers(page: Page) -> dict[Task, Answer]:
-    return {task: answered(task) for task in page.all_tasks()}
+    return {task: answered(task) for task in all_tasks(page)}
 
 
 def refusing(monkeypatch) -> list[str]:

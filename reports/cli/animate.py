@@ -60,7 +60,7 @@ def animate(
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
     """The engines of these names. Raises BadInput for one that is not known, and for too many."""
     from engines.registry import method
-    from reports.cli.selection import nearest
+    from reports.model.ending import nearest
 
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST]

@@ -87,7 +87,7 @@ def atlas(
 
 def chosen(scenes: str | None) -> tuple[Subject, ...]:
     """The maps of these names. Raises BadInput."""
-    from reports.cli.selection import nearest
+    from reports.model.ending import nearest
     from reports.pages.atlas.subjects import SUBJECTS
 
     known = {subject.name: subject for subject in SUBJECTS}

@@ -58,9 +58,9 @@ def compare(
     if cost is not None and not 0 < cost < math.inf:
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     from engines.registry import OTHERS, VARIANTS
-    from reports.cli.selection import nearest
     from reports.cli.terminal import Terminal
     from reports.cli.versions import named_scenes
+    from reports.model.ending import nearest
     from reports.run.temporary import temporary_folder
     from reports.versions.comparison import compared
 

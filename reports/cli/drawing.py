@@ -15,6 +15,7 @@ from pathlib import Path
 from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.known import Known, registered, with_remembered
 from reports.cli.selection import shown_cells
+from reports.gate.declared import all_tasks
 from reports.model.outcomes import Loss
 from reports.model.page import Material, Page
 from reports.pages.rendering import render_page
@@ -34,7 +35,7 @@ def known_to(store: Store, publish: bool) -> Known:
 
 def material_of(page: Page, store: Store) -> Material:
     """All that is stored of a page."""
-    return Material(store.get(shown_cells(page)), store.answers(page.all_tasks()))
+    return Material(store.get(shown_cells(page)), store.answers(all_tasks(page)))
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from engines import Engine, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene
 from reference.variation import told_apart, with_settings
-from reports.cli.selection import known_engines, nearest
+from reports.cli.selection import known_engines
 from reports.model import catalogue
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 
 

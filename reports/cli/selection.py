@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Sequence
 
 from engines import Engine
 from reference.scene import Scene
 from reference.validation import LARGEST_COUNT
+from reports.gate.declared import all_tasks
 from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 from reports.model.tasks import Task
 from reports.model.usual_steps import usual_cells
@@ -22,23 +21,6 @@ QUICK_SECONDS = 0.02
 QUICK_MOST = 0.5
 # By the formulas of engines and tasks alone: what tasks of a quick run, and cells of many versions, take at most [s].
 QUICK_CELL = 0.1
-NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
-
-
-def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
-    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not.
-
-    `absent`: names that are known and can't be had here, each with the sentence that says how they can.
-    """
-    names = {name.lower(): name for name in (*known, *absent)}
-    low = word.lower()
-    near = difflib.get_close_matches(low, names, 1, 0.4)
-    if not near:
-        near = [name for name in names if low and (low in name or name in low)][:1]
-    hint = f"did you mean {names[near[0]]!r}?" if near else f"there are {', '.join(names.values())}"
-    if near and names[near[0]] in absent:
-        hint += f" {absent[names[near[0]]]}"
-    return BadInput(f"unknown {kind} {word!r}: {hint}")
 
 
 def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:
@@ -94,7 +76,7 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     from engines.registry import ENGINES, INSTALLED, missing
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
-    kept = (task.engine for page in pages for task in page.all_tasks() if task.engine is not None)
+    kept = (task.engine for page in pages for task in all_tasks(page) if task.engine is not None)
     named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept])
     return tuple(engine for engine in named if not missing(engine))
 
@@ -163,7 +145,7 @@ def choose_tasks(
         task
         for page in pages
         if any(page.is_run_with(scene) for scene in scenes)
-        for task in page.all_tasks()
+        for task in all_tasks(page)
         if (task.engine is None or task.engine in engines) and (full or task.cost <= QUICK_CELL)
     )
     return tuple(dict.fromkeys(found))
@@ -203,7 +185,7 @@ def page_tasks(page: Page) -> tuple[Task, ...]:
     """Every task that a page asks for, but those of engines that are not installed here."""
     from engines.registry import missing
 
-    return tuple(task for task in page.all_tasks() if task.engine is None or not missing(task.engine))
+    return tuple(task for task in all_tasks(page) if task.engine is None or not missing(task.engine))
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:

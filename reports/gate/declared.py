@@ -13,6 +13,7 @@ from reference.scene import Scene
 from reports.gate.judge import QUANTITY_NAMES
 from reports.gate.prediction import DAMPING, Kind, given, kinds, softened
 from reports.model.cells import mechanism_of
+from reports.model.page import Page
 from reports.model.tasks import Answer, Task, Values
 
 # The judge's own steps take minutes for more bodies than this: of those only the gate asks it.
@@ -64,3 +65,10 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
         return given(soft, quantity, softness, mechanism.holonomic.tolist())
     except KeyError:  # the judge was not asked, or failed
         return math.nan
+
+
+def all_tasks(page: Page) -> tuple[Task, ...]:
+    """The tasks of a page, of its experiments, and of what its engines declare, each once."""
+    experiments = [task for failure in page.failures for task in failure.tasks]
+    declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
+    return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))

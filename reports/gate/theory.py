@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.prediction import Prediction
 from reports.model.checks import Check
+from reports.model.convergence import ROOM_SOFT
 from reports.model.measure import SATURATED, Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
@@ -28,8 +29,6 @@ ROUNDING = {quantity.name: quantity.rounding for quantity in QUANTITIES}
 # steps has 5^2 / 2 at second order, and the grid's right methods lie within a decade of the judge, most within a third
 # of one. It is narrow enough only because a method's own coarser steps bound it too.
 ROOM = 20.0
-# Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
-ROOM_SOFT = 2.0
 # Room above what a method's own coarser steps let expect of a finer one: their constant is known, and what is left is
 # the next power of the step, and that a largest error over samples is met at another one. It is below the three of half
 # a decade, so that an error that stays is seen between the two finest steps even at first order.

@@ -12,9 +12,8 @@ from engines import Engine
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.validation import Count, Valid
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, describe
 from reports.model.fingerprint import digest_of, modules_behind, modules_of
-from reports.run.worker import describe
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 

@@ -17,6 +17,8 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, Quantity
 
+# Room above the error of the declared softness: its estimate of a row's own inertia is right within about this.
+ROOM_SOFT = 2.0
 # A local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5.
 FLAT = 0.35
 # Fewest points that carry an order with a word on its fit; two points give a slope and nothing to check it by.

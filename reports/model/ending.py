@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import ClassVar
 
+LONGEST = 500  # characters of a sentence
 FINE = 0
 BROKEN = 1
 REFUSED = 2
@@ -39,3 +43,31 @@ class FileTrouble(Ending):
     """Which file, what is wrong with it, and what to do."""
 
     status = REFUSED
+
+
+NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
+
+
+def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
+    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not.
+
+    `absent`: names that are known and can't be had here, each with the sentence that says how they can.
+    """
+    names = {name.lower(): name for name in (*known, *absent)}
+    low = word.lower()
+    near = difflib.get_close_matches(low, names, 1, 0.4)
+    if not near:
+        near = [name for name in names if low and (low in name or name in low)][:1]
+    hint = f"did you mean {names[near[0]]!r}?" if near else f"there are {', '.join(names.values())}"
+    if near and names[near[0]] in absent:
+        hint += f" {absent[names[near[0]]]}"
+    return BadInput(f"unknown {kind} {word!r}: {hint}")
+
+
+def describe(error: BaseException) -> str:
+    """'Type: message', whatever the exception does when it is asked for its message."""
+    try:
+        message = str(error)
+    except Exception:
+        message = "(it can't be printed)"
+    return f"{type(error).__name__}: {message}"[:LONGEST].encode("utf-8", "replace").decode("utf-8")

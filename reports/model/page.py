@@ -11,7 +11,6 @@ from engines import Engine, Promise
 from engines.registry import missing
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reports.gate.declared import soft_tasks
 from reports.model.cells import Cell, Purpose
 from reports.model.checks import Deviation
 from reports.model.measure import Measurement
@@ -199,9 +198,3 @@ class Page:
             *(cell for failure in self.failures for cell in failure.cells),
             *(cell for picture in self.maps for _, cell in picture.cells),
         )
-
-    def all_tasks(self) -> tuple[Task, ...]:
-        """The tasks of the page, of its experiments, and of what its engines declare, each once."""
-        experiments = [task for failure in self.failures for task in failure.tasks]
-        declared = [task for scene in self.scenes for task in soft_tasks(scene, self.engines_of(scene))]
-        return tuple(dict.fromkeys([*self.tasks, *experiments, *declared]))

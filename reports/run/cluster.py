@@ -23,14 +23,13 @@ from itertools import count
 from typing import Any
 
 from reports.model.cells import Cell
-from reports.model.ending import BadInput
+from reports.model.ending import BadInput, describe
 from reports.model.fingerprint import digest_of, modules_of, versions_of
 from reports.model.outcomes import Loss, Outcome
 from reports.run import foreman
 from reports.run.expected import expected_seconds
 from reports.run.supervisor import TICK, Answer, Watch, WorkersLost, wall_limit
 from reports.run.temporary import temporary_folder
-from reports.run.worker import describe
 from reports.run.worker_process import interrupts_held
 
 ADDRESS = re.compile(r"(?:tcp|tls)://\S+:\d+")

@@ -27,12 +27,12 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
-from reports.model.ending import Broken
+from reports.model.ending import Broken, describe
 from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.run.processors import apart
 from reports.run.temporary import temporary_folder
 from reports.run.waiting import Waiting
-from reports.run.worker import READY, SPENT, cpu_time, describe, timed_out
+from reports.run.worker import READY, SPENT, cpu_time, timed_out
 from reports.run.worker_process import (
     Job,
     Worker,

@@ -20,12 +20,12 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome
 from reports.run.processors import stay_on
 
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
-LONGEST = 500  # characters of a sentence
 SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 LOOK = 0.2  # s between two looks at its own CPU time
@@ -179,15 +179,6 @@ def _traces() -> tuple[Any, ...]:
     blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ()) if hasattr(signal, "pthread_sigmask") else set()
     python_streams = (sys.stdout, sys.stderr, getattr(sys.stdout, "closed", True), getattr(sys.stderr, "closed", True))
     return folder, streams, handlers, blocked, python_streams, threading.active_count(), dict(os.environ)
-
-
-def describe(error: BaseException) -> str:
-    """'Type: message', whatever the exception does when it is asked for its message."""
-    try:
-        message = str(error)
-    except Exception:
-        message = "(it can't be printed)"
-    return f"{type(error).__name__}: {message}"[:LONGEST].encode("utf-8", "replace").decode("utf-8")
 
 
 def timed_out(limit: float) -> str:

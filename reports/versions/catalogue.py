@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from engines import Engine
-from reports.cli.selection import nearest
+from reports.model.ending import nearest
 from reports.model.requirements import normalised
 
 # Names that a distribution had before; the first that has a version is taken.

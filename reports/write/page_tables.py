@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from reports.gate.theory import ROOM_SOFT
-from reports.model.convergence import ENOUGH, Sweep, Verdict, by_method, groups, sweeps
+from reports.model.convergence import ENOUGH, ROOM_SOFT, Sweep, Verdict, by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
