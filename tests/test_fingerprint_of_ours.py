@@ -68,19 +68,39 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     ]
     # What only prints or draws can't change a row.
     assert {name for name in files if name.startswith("reports/")} == {
-        f"reports/{name}"
-        for name in (
-            "__init__",
-            *(f"grid/{name}" for name in ("__init__", "cells", "errors", "fingerprint", "measure", "outcomes", "pool")),
-            *(
-                f"grid/{name}"
-                for name in ("ending", "expected", "imports", "processors", "requirements", "spending", "supervisor")
-            ),
-            *(
-                f"grid/{name}"
-                for name in ("tasks", "temporary", "timing", "truths", "waiting", "worker", "worker_process")
-            ),
-        )
+        "reports/__init__",
+        *(
+            f"reports/model/{name}"
+            for name in (
+                "__init__",
+                "cells",
+                "ending",
+                "errors",
+                "fingerprint",
+                "imports",
+                "measure",
+                "outcomes",
+                "requirements",
+                "spending",
+                "tasks",
+                "timing",
+                "truths",
+            )
+        ),
+        *(
+            f"reports/run/{name}"
+            for name in (
+                "__init__",
+                "expected",
+                "pool",
+                "processors",
+                "supervisor",
+                "temporary",
+                "waiting",
+                "worker",
+                "worker_process",
+            )
+        ),
     }
 
 
