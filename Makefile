@@ -33,7 +33,7 @@ check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-bench: .venv/installed-bench     ## what stepping costs beside the bare loops, the reference beside its peers, the site
+bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the site
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 

@@ -25,7 +25,7 @@ import pymunk
 from engines import Unsupported
 from engines.mujoco.reading import READER
 from reference.validation import InvalidMechanism
-from reports.check.comparing import refuse_disagreement
+from reports.check.judging import refuse_disagreement
 from reports.pages.your_model.others import TABLE
 
 ROOT = Path(__file__).resolve().parents[1]

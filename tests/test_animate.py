@@ -16,9 +16,8 @@ from reference.four_bar import FreeFourBar
 from reports.cli.commands import invoke
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
-from reports.site.animated import PAUSE, animation, decades
+from reports.site.animated import PAUSE, animation, decades, ffmpeg, film
 from reports.site.embed import Shown, shown
-from reports.site.film import ffmpeg, film
 from reports.site.lessons import LESSONS, take_like
 
 ROOT = Path(__file__).parents[1]
@@ -75,7 +74,7 @@ def test_errors_are_drawn_over_the_decades_that_they_have():
 
 
 def test_a_film_is_written(falling, tmp_path, monkeypatch):
-    monkeypatch.setattr("reports.site.film.FRAMES", 4)
+    monkeypatch.setattr("reports.site.animated.FRAMES", 4)
     film(falling, "A title", tmp_path / "one.gif")
     from PIL import Image
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.check.shown import Pose, Shown
+from reports.check.pictures import Pose, Shown
 from reports.cli.selection import shown_cells
 from reports.gate.declared import Softened, all_tasks
 from reports.model.catalogue import PAGES

@@ -13,7 +13,6 @@ from pymunk import Space
 from engines import Unsupported
 from engines.mujoco.reading.other_settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
-from reports.check import settings
 from reports.check.request import Answer, Refused, Request, answered
 from reports.cli.check import SWITCHED_OFF
 from tests.test_check import FOUR_BAR, found_in
@@ -22,7 +21,7 @@ from tests.test_check import FOUR_BAR, found_in
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
     """Few settings are tried: what is asked here is whether a model is refused."""
-    monkeypatch.setattr(settings, "PATIENCE", 0.4)
+    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
 
 
 BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'

@@ -1,7 +1,6 @@
 """`crosscheck bench`: what it compares is the same motion, and what is missing is told."""
 
 import re
-import sys
 from types import SimpleNamespace
 
 import pytest
@@ -12,9 +11,7 @@ from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import LinkPendulum
 from reference.rolling.singular_cases import SquareOnCatenaries
 from reports.bench import judge
-from reports.bench.four_bar import floor_ratio, pylinkage_ratio
-from reports.bench.loops import loop_costs
-from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, timings_alike
+from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, loop_costs, timings_alike
 from reports.cli.bench import bench
 from reports.model import spending
 from reports.model.cells import Cell
@@ -32,21 +29,6 @@ def test_a_part_is_charged_without_the_parts_inside_it(monkeypatch):
         pass
     assert spending.taken() == {"outer": 7.0, "inner": 3.0}
     assert spending.taken() == {}
-
-
-def test_the_bench_times_the_same_motion_as_pylinkage():
-    pytest.importorskip("pylinkage", reason="pylinkage comes with the extra `bench`: pip install -e '.[bench]'")
-    result = pylinkage_ratio(count=1000)
-    # pylinkage adds up its crank angle step by step: a thousand roundings.
-    assert result["difference"] < 1e-12
-    assert result["ratio"] == result["pylinkage"] / result["ours"]
-
-
-def test_the_bench_says_what_is_missing(monkeypatch):
-    monkeypatch.setitem(sys.modules, "pylinkage", None)
-    with pytest.raises(RuntimeError, match="'bench' extra"):
-        pylinkage_ratio(count=1000)
-    assert floor_ratio(count=1000)["floor"] > 0
 
 
 def test_an_engine_is_compared_with_the_loop_that_is_declared_for_its_name():

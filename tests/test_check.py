@@ -18,19 +18,13 @@ from reference.four_bar import FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
-from reports.check import rendering, settings
-from reports.check.checked import check
-from reports.check.comparing import errors
+from reports.check import rendering
+from reports.check.checked import best, cheapest, check
 from reports.check.facts import facts_of
-from reports.check.judging import judged
-from reports.check.law import accelerations
-from reports.check.numbers import data
-from reports.check.pictures import pictures
-from reports.check.readers import read
-from reports.check.request import Answer, Request, answered
-from reports.check.settings import best, cheapest
-from reports.check.shown import from_text, shown_of
-from reports.check.telling import sections, verdict
+from reports.check.judging import accelerations, errors, judged
+from reports.check.pictures import from_text, pictures, shown_of
+from reports.check.request import Answer, Request, answered, read
+from reports.check.telling import data, sections, verdict
 
 FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
 <default><geom contype="0" conaffinity="0" size="0.02" type="capsule"/><joint axis="0 1 0"/></default>
@@ -59,7 +53,7 @@ def make():
 def _quick():
     """Few settings are tried: what is asked here is whether they are told rightly."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(settings, "PATIENCE", 0.4)
+        patch.setattr("reports.check.checked.PATIENCE", 0.4)
         yield
 
 

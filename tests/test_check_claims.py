@@ -11,14 +11,10 @@ import pytest
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import Trajectory
-from reports.check import settings
-from reports.check.checked import Checked
-from reports.check.comparing import Errors, errors, opening
+from reports.check.checked import Checked, parts_of, tried
 from reports.check.facts import facts_of
-from reports.check.numbers import data
-from reports.check.parts import parts_of
-from reports.check.settings import tried
-from reports.check.telling import sections, verdict
+from reports.check.judging import Errors, errors, opening
+from reports.check.telling import data, sections, verdict
 from tests.test_check import FOUR_BAR, PENDULUM, found_in
 
 
@@ -26,7 +22,7 @@ from tests.test_check import FOUR_BAR, PENDULUM, found_in
 def _quick():
     """Few settings are tried: what is asked here is what is said of them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(settings, "PATIENCE", 0.3)
+        patch.setattr("reports.check.checked.PATIENCE", 0.3)
         yield
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reports.check.checked import parts_of
 from reports.check.judging import judged
-from reports.check.parts import parts_of
 from tests.toys import Disc, turning
 
 SPINNING = Disc(rate=1000.0).mechanism()

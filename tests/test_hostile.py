@@ -22,8 +22,8 @@ from reports.model.measure import blank, measure
 from reports.model.page import Material
 from reports.pages.rendering import render_page
 from reports.run.supervisor import supervise
+from reports.site.folder import server
 from reports.site.markdown import Formulas, html
-from reports.site.serving import server
 from reports.write.csv_files import as_csv
 from reports.write.templates import inert_page
 from tests.test_command_line import call, one_line

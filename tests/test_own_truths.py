@@ -18,10 +18,8 @@ from engines.lagrange import TRUTH
 from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
 from reference.validation import InvalidMechanism
-from reports.check import settings
 from reports.check.checked import check
-from reports.check.comparing import refuse_disagreement
-from reports.check.judging import often
+from reports.check.judging import often, refuse_disagreement
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
@@ -34,7 +32,7 @@ LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" m
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
     """Few settings are tried: what is asked here is what is read."""
-    monkeypatch.setattr(settings, "PATIENCE", 0.1)
+    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.1)
 
 
 def mjcf(bodies, more="", flags="", rate=0.0, control=0.0, joint=""):

@@ -15,9 +15,7 @@ from engines.mujoco.reading import read
 from engines.mujoco.reading.other_settings import switch_off
 from engines.mujoco.reading.places import positions
 from engines.reading import Obstacle, Reading
-from reports.check.comparing import refuse_disagreement
-from reports.check.judging import apart
-from reports.check.law import soft_motion
+from reports.check.judging import apart, refuse_disagreement, soft_motion
 
 # Both sides solve small systems of equations whose numbers differ by a factor of a thousand at most.
 ROUNDING = 1e-9

@@ -25,7 +25,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk.reading import read
 from engines.reading import Obstacle
-from reports.check.comparing import refuse_disagreement
+from reports.check.judging import refuse_disagreement
 
 # Two small steps, extrapolated: what is left is of the order of the step squared, a hundred-millionth.
 STEPPED = 1e-6

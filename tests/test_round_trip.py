@@ -26,7 +26,7 @@ from reference.joints import Drive, Gear, Pin, Roll, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
 from reference.validation import InvalidMechanism
-from reports.check.law import accelerations
+from reports.check.judging import accelerations
 from reports.search.mechanisms import mechanism as random_mechanism
 
 # Numbers are written with all their digits. What is left is the rounding of two ways to the same place, times the

@@ -22,8 +22,8 @@ from reference.joints import Gear
 from reference.mechanism import Mechanism
 from reference.validation import InvalidMechanism
 from reports.search import instant_mjx, relations
+from reports.search.mechanisms import RUN, SHAPES, of_a_shape
 from reports.search.recipe import build
-from reports.search.renumbered import RUN, SHAPES, of_a_shape
 from reports.search.subjects import Adapted, Told
 from tests.mistakes import Misbuilt, Mistake
 

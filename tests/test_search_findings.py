@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from reports.search.page import known_subjects
-from reports.search.shrunk import replayed
+from reports.search.shrinking import replayed
 
 FOLDER = Path(__file__).parent / "findings"
 FINDINGS = sorted(FOLDER.glob("*.json"))

@@ -23,7 +23,7 @@ from engines.pymunk import model as pymunk_model
 from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search import instant_mujoco, motions, raw, raw_draw, raw_law, relations
+from reports.search import instant_mujoco, motions, raw, raw_law, relations
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
@@ -60,7 +60,7 @@ def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, 
 
 def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
     for number in range(25):
-        assert raw_law.errors(raw_draw.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
+        assert raw_law.errors(raw_law.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
 
 
 # ------------------------------------------------------------------------------------- mistakes put into adapters
@@ -428,7 +428,7 @@ def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> N
     """Of first = slope second + bend second^2 with second zero: the rates of a sum are squared, not summed squares."""
     asked = 0
     for number in range(12):
-        model = raw_draw.model(SEED, number, ("tendon",))
+        model = raw_law.model(SEED, number, ("tendon",))
         judge = raw_law.judged(model)
         found = judge.expected(np.zeros((len(model.equalities), 1)))
         for each in model.equalities:
@@ -444,8 +444,8 @@ def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> N
 def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script() -> None:
     """MuJoCo up to 4.0.1: polycoef beyond the slope. One body is left, and the script shows it without our code."""
     subject = Alone()
-    number = next(n for n in range(20) if subject.ask(raw_draw.model(SEED, n, ("joint",)), n, ("instant",)).faults)
-    case = raw_draw.model(SEED, number, ("joint",))
+    number = next(n for n in range(20) if subject.ask(raw_law.model(SEED, n, ("joint",)), n, ("instant",)).faults)
+    case = raw_law.model(SEED, number, ("joint",))
 
     def still(smaller: raw.Model) -> bool:
         try:

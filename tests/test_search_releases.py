@@ -12,7 +12,7 @@ import pytest
 
 from reports.model.ending import BadInput
 from reports.run.installed import installed
-from reports.search import raw, raw_draw, raw_law
+from reports.search import raw, raw_law
 from reports.search.release import DISTRIBUTIONS, Release
 from reports.search.subjects import LAW
 
@@ -22,7 +22,7 @@ SEED = 1
 
 def first_fault(release: Release, cases: int) -> tuple[int, raw.Model] | None:
     for number in range(cases):
-        model = raw_draw.model(SEED, number, KINDS)
+        model = raw_law.model(SEED, number, KINDS)
         told = release.asked(model)
         assert "errors" in told, told
         if not told["errors"]["acceleration"] <= LAW:
@@ -54,7 +54,7 @@ def test_the_fault_of_a_past_release_is_found(version: str, most: int) -> None:
 def test_four_thousand_cases_of_connects_welds_and_hinges_give_nothing() -> None:
     begin = time.process_time()
     worst = max(
-        raw_law.errors(raw_draw.model(SEED, number, ("connect", "weld")))["acceleration"] for number in range(4000)
+        raw_law.errors(raw_law.model(SEED, number, ("connect", "weld")))["acceleration"] for number in range(4000)
     )
     print(f"4,000 cases in {time.process_time() - begin:.0f} s of CPU time, the worst error is {worst:.1e}")
     assert worst <= LAW

@@ -22,13 +22,12 @@ from reference.four_bar import DrivenFourBar
 from reference.scene import Scene
 from reports.model.tasks import answered
 from reports.site.build import build
+from reports.site.folder import compressed_size, server, write_site
 from reports.site.joints import measure_of
+from reports.site.lesson import Source
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import BIASES, IMPEDANCES, INTEGRATORS, SWEEPS, TIME_CONSTANTS, TOLERANCES, Live
-from reports.site.packages_used import MUJOCO
-from reports.site.serving import server
-from reports.site.source import Source
-from reports.site.writing import compressed_size, write_site
+from reports.site.packages import MUJOCO
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 if BROWSER is None:

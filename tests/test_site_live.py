@@ -31,8 +31,7 @@ from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
 from reports.site.live.data import packed, template
-from reports.site.live.mujoco_text import changes, text_of
-from reports.site.live.munk_plan import Part, plan_of
+from reports.site.live.models import Part, changes, plan_of, text_of
 from reports.site.live.sliders import Live
 from reports.site.rows import stored_rows
 

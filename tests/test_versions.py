@@ -28,11 +28,9 @@ from reports.model.page import Material
 from reports.pages.versions import page
 from reports.run import installed as installation
 from reports.run.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
-from reports.versions.changes import CHANGES, named
-from reports.versions.column import column, modules_in
-from reports.versions.comparison import compared
-from reports.versions.request import Request, TreesRow
-from reports.versions.steps import steps
+from reports.versions.catalogue import RELEASES, changes_between
+from reports.versions.column import Request, TreesRow, column, modules_in
+from reports.versions.comparison import compared, steps
 from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
@@ -252,11 +250,11 @@ def test_steps_are_found_in_the_errors_alone():
 
 
 def test_a_change_is_looked_up_between_two_versions():
-    assert [each.version for each in named("mujoco", "3.6.0", "4.0.1", worse=False)] == ["3.7.0", "4.0.1"]
-    assert [each.version for each in named("mujoco", "3.6.0", "4.0.1", worse=True)] == ["4.0.0"]
-    assert named("mujoco", "3.7.0", "3.17.0", worse=False) == ()
-    assert named("pymunk", "3.6.0", "4.0.0", worse=False) == ()
-    assert all(each.source.startswith("https://") for each in CHANGES)
+    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1", worse=False)] == ["3.7.0", "4.0.1"]
+    assert [each.version for each in changes_between("mujoco", "3.6.0", "4.0.1", worse=True)] == ["4.0.0"]
+    assert changes_between("mujoco", "3.7.0", "3.17.0", worse=False) == ()
+    assert changes_between("pymunk", "3.6.0", "4.0.0", worse=False) == ()
+    assert all(each.source.startswith("https://") == bool(each.changed) for each in RELEASES)
 
 
 def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):

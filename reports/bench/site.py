@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.site.serving import server
-from reports.site.writing import MARKER, compressed_size
+from reports.site.folder import MARKER, compressed_size, server
 
 SIZE, FIRST, SECOND = 6.0, 1.0, 16.0  # MB, s, ms: what the site is to stay below
 STEP = 4e-3  # s

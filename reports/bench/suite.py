@@ -1,4 +1,4 @@
-"""Where the time of a run goes: CPU seconds by part, engine and scene, and what the workers wait."""
+"""What a run costs over the bare stepping loop of an engine, and where CPU time goes, by part, engine and scene."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from engines import Engine, Unsupported
+from engines.entry_points import registered_by_key
+from engines.loading import Kind
+from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Loss
@@ -15,6 +19,44 @@ from reports.model.spending import taken
 from reports.model.tasks import Task
 from reports.run.pool import TIMED, run_cells
 from reports.run.supervisor import Answer, supervise
+
+BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
+TURNS = 7  # of each, alternating, so that a slow spell of the machine meets both
+
+
+@dataclass(frozen=True)
+class LoopCost:
+    """CPU seconds per step of `run` and of the bare loop, the least of TURNS each."""
+
+    engine: Engine
+    steps: int
+    run: float
+    bare: float
+
+    @property
+    def ratio(self) -> float:
+        return self.run / self.bare
+
+
+def loop_costs(engines: Iterable[Engine], mechanism: Mechanism, dt: float, samples: int, every: int) -> list[LoopCost]:
+    """For each engine that can build the mechanism and has a bare loop under `crosscheck.bare_loops`."""
+    out = []
+    steps = samples * every
+    loops = registered_by_key("crosscheck.bare_loops", BARE_LOOP)
+    for engine in engines:
+        bare_loop = loops.get(engine.name)
+        if bare_loop is None:
+            continue
+        runs, bare = [], []
+        try:
+            for _ in range(TURNS):
+                runs.append(engine.build(mechanism, dt)(samples, every).stepping)
+                bare.append(bare_loop(engine, mechanism, dt, steps))
+        except Unsupported:
+            continue
+        out.append(LoopCost(engine, steps, min(runs) / steps, min(bare) / steps))
+    return out
+
 
 STARTING, BETWEEN, OTHER = "starting workers", "between items", "other work on items"
 NEARLY = 0.1  # relative: timings that differ by less count as the same

@@ -2,20 +2,147 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.reading import Reading
+from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism
-from reports.check.comparing import Errors, Opening, errors, opening, refuse_disagreement
 from reports.check.facts import Facts, facts_of
-from reports.check.judging import Judged, judged, often
-from reports.check.parts import Parts, parts_of
-from reports.check.settings import Tried, best, cheapest, same_step, tried
+from reports.check.judging import (
+    Errors,
+    Judged,
+    Opening,
+    apart,
+    errors,
+    judged,
+    often,
+    opening,
+    refuse_disagreement,
+    soft_motion,
+)
+
+PATIENCE = 5.0  # s of CPU time for all settings together
+LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """One setting: its largest error in the measure of a tolerance, and the CPU time of stepping [s]."""
+
+    change: Change
+    error: float
+    cost: float
+    errors: Errors
+    run: Trajectory
+
+
+def tried(
+    reading: Reading,
+    truth: Trajectory,
+    samples: int,
+    every: int,
+    own: Trajectory,
+    told: Callable[[int, int], None],
+    patience: float | None = None,
+) -> list[Tried]:
+    """Runs at the documented settings, coarse steps first. `own`: at the user's own, which come first in the answer.
+
+    Left out is what takes too long: by how often the engine would step, from what it took so far. `patience` [s] of CPU
+    time, PATIENCE unless given; if it is infinite all are run, whatever a machine takes.
+    """
+    model, mechanism = reading.model, reading.mechanism
+    patience = PATIENCE if patience is None else patience
+    smallest = 0.0 if patience == float("inf") else model.dt * max(own.stepping, 1e-4) / LONGEST
+    changes = model.changes(min(smallest, model.dt))
+    order = sorted(range(1, len(changes)), key=lambda index: -changes[index].dt)
+    begin, rate = time.process_time(), max(own.stepping, 1e-5) / (samples * every)
+    wrong = errors(mechanism, truth, own)
+    found = [(0, Tried(changes[0], wrong.largest, own.stepping, wrong, own))]
+    for number, index in enumerate(order):
+        change = changes[index]
+        told(number, len(changes))
+        steps = samples * every * model.dt / change.dt
+        if time.process_time() - begin + steps * rate > patience:
+            continue
+        run = model.run(samples, every, change)
+        rate = max(rate, run.stepping / steps)
+        wrong = errors(mechanism, truth, run)
+        found.append((index, Tried(change, wrong.largest, run.stepping, wrong, run)))
+    return [each for _, each in sorted(found, key=lambda pair: pair[0])]
+
+
+def cheapest(found: list[Tried], tolerance: float) -> Tried | None:
+    """The setting of the least cost whose error is within a tolerance, if there is one."""
+    good = [each for each in found if each.error <= tolerance]
+    return min(good, key=lambda each: each.cost, default=None)
+
+
+def best(found: list[Tried]) -> list[Tried]:
+    """The settings that no other beats in both error and cost, the cheapest first."""
+    out: list[Tried] = []
+    for each in sorted(found, key=lambda one: (one.cost, one.error)):
+        if np.isfinite(each.error) and (not out or each.error < out[-1].error):
+            out.append(each)
+    return out
+
+
+def same_step(found: list[Tried], own: Tried) -> list[Tried]:
+    """The user's own settings at ever smaller steps, the largest step first."""
+    like = [each for each in found if each.change.options == own.change.options]
+    return sorted(like, key=lambda each: -each.change.dt)
+
+
+Array = NDArray[np.float64]
+FALLS = 0.75  # of the error before: a smaller step is taken to help
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Largest errors in the measure of a tolerance; NaN where a part can't be told.
+
+    `softness`: by how much the motion that the engine declares is off the ideal one; `step`: by how much the user's run
+    is off the declared motion; `rest`: what of that stays at the smallest step that was tried, `smallest` [s], and
+    whether it was still falling there: then it is a bound, and no sign of a third part.
+    """
+
+    softness: float
+    step: float
+    rest: float
+    smallest: float
+    falling: bool
+    divided: bool = True  # False: the engine declares no law whose motion can be worked out
+
+
+def parts_of(reading: Reading, truth: Trajectory, own: Trajectory, smaller: list[Tried]) -> Parts:
+    """From the user's run, and those of the same settings at `smaller` steps, the largest step first."""
+    mechanism, model = reading.mechanism, reading.model
+    declared = truth.pose
+    if not model.declares:
+        rests = [each.error for each in smaller]
+        last = rests[-1] if rests else float("nan")
+        falling = len(rests) > 1 and rests[-1] < FALLS * rests[-2]
+        step = smaller[-1].change.dt if smaller else float("nan")
+        return Parts(float("nan"), _largest(apart(mechanism, own.pose, declared)), last, step, falling, False)
+    if model.softly_held:
+        declared, _ = soft_motion(mechanism, model.give, truth.t)
+    softness = _largest(apart(mechanism, declared, truth.pose)) if model.softly_held else 0.0
+    step = _largest(apart(mechanism, own.pose, declared))
+    rests = [_largest(apart(mechanism, each.run.pose, declared)) for each in smaller]
+    if not rests:
+        return Parts(softness, step, float("nan"), float("nan"), False)
+    falling = len(rests) > 1 and rests[-1] < FALLS * rests[-2]
+    return Parts(softness, step, rests[-1], smaller[-1].change.dt, falling)
+
+
+def _largest(values: Array) -> float:
+    return float(values.max()) if np.isfinite(values).all() else float("inf")
+
 
 SAMPLES = 200  # about so many instants are compared
 LOOKS = 10  # times a sample at most: how often a motion is asked what it meets; an engine looks once a step

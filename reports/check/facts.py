@@ -11,7 +11,7 @@ from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Mechanism
 from reference.row_system import undetermined
 from reference.trajectory import Trajectory
-from reports.check.law import accelerations
+from reports.check.judging import accelerations
 
 Array = NDArray[np.float64]
 # The least singular value beside the largest below which rows nearly depend on one another.

@@ -1,20 +1,74 @@
-"""The judge's motion of a mechanism, what the judge itself may be wrong by, and how long it can be trusted."""
+"""The judge of a check: the ideal motion, how long it can be trusted, and a run of the user's model beside it.
+
+The law of motion stands here in plain equations too, with joints that hold exactly or give way as an engine declares.
+It is a second way to the same accelerations as the judge's, and the only one with a compliance that grows and falls
+with the gap. J a = bias - damping slip - stiffness gap - compliance F, and M a = f + J^T F.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
+from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.lagrange.dynamics import Dynamics
+from engines.reading import Give, Reading
 from reference.mechanism import Mechanism
-from reference.trajectory import Trajectory
+from reference.row_system import solve_symmetric, undetermined
+from reference.trajectory import Trajectory, energy
 from reference.validation import InvalidMechanism
 
 Array = NDArray[np.float64]
+TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
+
+
+def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, give: Give | None = None) -> Array:
+    """(bodies, 3) [m/s^2, rad/s^2] at pose and twist (bodies, 3)."""
+    inverse = 1 / mechanism.inertias.reshape(-1)
+    free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape).reshape(-1)
+    if not mechanism.row_count:
+        return free.reshape(-1, 3)
+    rows = mechanism.joint_rows.dense(pose)
+    step = 1e-100
+    bias = -np.imag(mechanism.joint_rows.velocities(pose + 1j * step * twist, twist)) / step
+    right = bias - rows @ free
+    matrix = (rows * inverse) @ rows.T
+    if give is not None:
+        slip = rows @ twist.reshape(-1) - mechanism.rate
+        gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
+        right = right - give.damping * slip - give.stiffness * gap
+        right = right + np.nan_to_num(give.instead - bias)
+        matrix = matrix + np.diag(give.compliance)
+    return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
+
+
+def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array) -> tuple[Array, Array]:
+    """Poses and twists (times, bodies, 3) of joints that give way; NaN from where the equations are not solved."""
+    count = mechanism.pose.size
+    lengths = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
+    allowed = TOLERANCE * np.concatenate([lengths, lengths / mechanism.time_scale])
+
+    def rates(at: float, state: Array) -> Array:
+        pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
+        gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
+        change = accelerations(mechanism, pose, twist, at, give(gap))
+        return np.concatenate([state[count:], change.reshape(-1)])
+
+    start = np.concatenate([mechanism.pose.reshape(-1), mechanism.twist.reshape(-1)])
+    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "DOP853", t_eval=t, rtol=TOLERANCE, atol=allowed)
+    out = np.full((len(t), 2, *mechanism.pose.shape), np.nan)
+    done = found.y.shape[1]
+    out[:done] = found.y.T.reshape(done, 2, -1, 3)
+    return out[:, 0], out[:, 1]
+
+
 LOOSER = replace(TRUTH, tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
 NUDGE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
 SEEDS = (1, 2)
@@ -87,3 +141,115 @@ def _growth(mechanism: Mechanism, motion: Trajectory, samples: int, spacing: flo
 
 def _size(difference: Array, unit: Array) -> Array:
     return np.sqrt(np.sum((difference / unit) ** 2, axis=(1, 2)))
+
+
+# Of the largest acceleration: rounding of equations that are solved twice, with room for badly scaled masses.
+AGREE = 1e-6
+QUANTITIES = ("angle", "position", "reaction", "energy")
+UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Of one run over its samples (times,); NaN where it gave up, or where there is nothing to compare."""
+
+    t: Array
+    of: dict[str, Array]  # by QUANTITIES
+    whole: Array  # the larger of angles [rad] and places in lengths of the mechanism: what a tolerance is for
+    finished: bool
+
+    @property
+    def largest(self) -> float:
+        """Infinite for a run that gave up."""
+        return float(np.nanmax(self.whole)) if self.finished else float("inf")
+
+    def worst(self, quantity: str) -> float:
+        values = self.of[quantity]
+        return float(np.nanmax(values)) if np.isfinite(values).any() else float("nan")
+
+
+def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:
+    """Of a run at the judge's instants."""
+    difference = run.pose - truth.pose
+    angle = np.abs(difference[..., 2]).max(axis=1)
+    position = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1)
+    kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
+    span = float(kinetic.max())
+    drift = (
+        np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if span > 0 else np.full_like(angle, np.nan)
+    )
+    of = {"angle": angle, "position": position, "reaction": _reaction(mechanism, truth, run), "energy": drift}
+    finished = bool(np.isfinite(run.pose).all())
+    return Errors(run.t, of, apart(mechanism, run.pose, truth.pose), finished)
+
+
+def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
+    """The largest error of the rows that rigid bodies determine (times,), in the largest true one of its kind."""
+    out = np.full(len(run.t), np.nan)
+    if not mechanism.row_count:
+        return out
+    told = ~undetermined(mechanism.rows(mechanism.pose), mechanism.length_scale)
+    for rows in (mechanism.turning & told, ~mechanism.turning & told):
+        true = truth.reaction[:, rows]
+        scale = float(np.abs(true).max()) if true.size else 0.0
+        if scale > 0:
+            # A row whose force an engine does not know, such as that of a prescribed crank, hides no other.
+            off = np.fmax.reduce(np.abs(run.reaction[:, rows] - true), axis=1) / scale
+            out = np.fmax(out, off)
+    return out
+
+
+@dataclass(frozen=True)
+class Opening:
+    """The joint that opens most, by how much [m or rad], and when [s]."""
+
+    row: str
+    gap: float
+    unit: str
+    t: float
+
+
+def opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
+    """Of a run; None where no joint has a gap."""
+    if not mechanism.row_count:
+        return None
+    gap = np.abs(mechanism.gap(run.pose, run.t))
+    scaled = np.nan_to_num(np.where(mechanism.turning, gap, gap / mechanism.length_scale))
+    sample, row = np.unravel_index(int(np.argmax(scaled)), scaled.shape)
+    unit = "rad" if mechanism.turning[row] else "m"
+    return Opening(mechanism.row_names[row], float(gap[sample, row]), unit, float(run.t[sample]))
+
+
+def refuse_disagreement(reading: Reading) -> float:
+    """The start's accelerations in the engine and by the judge, relative to the largest, if they agree.
+
+    The engine's declared softness is part of the comparison. Raises Unsupported, with the element that explains a
+    disagreement if one does.
+    """
+    mechanism, model = reading.mechanism, reading.model
+    give = model.give(np.zeros(mechanism.row_count)) if model.softly_held else None
+    expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)
+    found = model.start()
+    off = _apart(mechanism, found, expected)
+    if off <= AGREE:
+        return off
+    for element in model.elements:
+        if _apart(mechanism, model.without(element), expected) <= AGREE:
+            raise Unsupported(
+                f"at t = 0 the accelerations differ from those of the ideal mechanism by {off:.1g} of themselves, and "
+                f"agree without '{element}': it acts at the start, and in no ideal joint; give --without {element}"
+            )
+    for element, reason in model.suspects.items():
+        raise Unsupported(f"{element}: {reason}; at t = 0 the accelerations are wrong by {off:.1g} of themselves")
+    size = np.abs(found - expected) * [1.0, 1.0, mechanism.length_scale]
+    body = mechanism.bodies[int(np.argmax(size.max(axis=1)))].name
+    raise Unsupported(
+        f"at t = 0 the accelerations of {model.engine} differ from those of the ideal mechanism by {off:.1g} of "
+        f"themselves, most of all at {body!r}, and no single kind of element explains it"
+    )
+
+
+def _apart(mechanism: Mechanism, found: Array, expected: Array) -> float:
+    unit = np.array([1.0, 1.0, mechanism.length_scale])
+    size = max(float(np.abs(expected * unit).max()), mechanism.length_scale / mechanism.time_scale**2)
+    return float(np.abs((found - expected) * unit).max()) / size

@@ -1,13 +1,13 @@
-"""What a check found, in sections of sentences, tables, lines to copy and pictures."""
+"""What a check says: sections of sentences and tables for a reader, and all numbers as plain data for programs."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
-from reports.check.checked import Checked
-from reports.check.comparing import QUANTITIES, UNITS
-from reports.check.settings import Tried
+from reports.check.checked import Checked, Tried
+from reports.check.judging import QUANTITIES, UNITS
 
 MOST_NAMED = 6
 CHEAPER = 0.9  # of the user's CPU time: what differs by less may be the clock's noise
@@ -235,3 +235,57 @@ def _table(found: Checked) -> Section:
         "alone, on this machine. Of settings with the same errors the cheapest is listed, or yours.",
     )
     return Section("What to change", sentences, header, tuple(row(*each) for each in alike.items()))
+
+
+def data(found: Checked) -> dict[str, Any]:
+    """All numbers of the report, for other programs."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, float) and not math.isfinite(value):
+            return None
+        if isinstance(value, dict):
+            return {key: plain(each) for key, each in value.items()}
+        if isinstance(value, tuple | list):
+            return [plain(each) for each in value]
+        return value
+
+    def setting(each: Tried | None) -> Any:
+        if each is None:
+            return None
+        return {
+            "words": each.change.words,
+            "step": each.change.dt,
+            "error": each.error,
+            "reaction": each.errors.worst("reaction"),
+            "cpu": each.cost,
+            "lines": list(each.change.lines),
+        }
+
+    own, judge = found.own_errors, found.judge_errors
+    return plain(
+        {
+            "name": found.name,
+            "engine": found.reading.model.engine,
+            "duration": found.duration,
+            "tolerance": found.tolerance,
+            "met": found.met,
+            "assumed": found.reading.model.assumed,
+            "error": own.largest,
+            "cpu": found.cost,
+            "facts": asdict(found.facts),
+            "horizon": found.judge.horizon,
+            "growth": float(found.judge.growth[-1]),
+            "agreement_at_start": found.agreement,
+            "notes": [asdict(note) for note in found.reading.notes],
+            "settings": dict(found.reading.model.settings),
+            "errors": {quantity: own.worst(quantity) for quantity in QUANTITIES},
+            "judge_errors": {quantity: judge.worst(quantity) for quantity in QUANTITIES},
+            "over_time": {"t": own.t.tolist(), **{name: values.tolist() for name, values in own.of.items()}},
+            "parts": asdict(found.parts),
+            "opening": None if found.opens is None else asdict(found.opens),
+            "warnings": list(found.own.warnings),
+            "tried": [setting(each) for each in found.table],
+            "advised": setting(found.advised),
+            "next_decade": setting(found.decade),
+        }
+    )

@@ -1,4 +1,4 @@
-"""`crosscheck bench`: stepping beside bare loops, a search, the reference beside another library, and the site."""
+"""`crosscheck bench`: stepping beside bare loops, and the site."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def bench(
     workers: Workers = None,
     site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
 ) -> None:
-    """Time `run` against bare loops, a search, the reference against another library, and the site; asserts nothing.
+    """Time `run` against bare loops, and the site; asserts nothing.
 
     `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
     times exact multipliers: an evaluation, steps, chains, many mechanisms at once, and the truths.
@@ -36,10 +36,8 @@ def bench(
 
         bench_suite(scene[1:], full, workers)
         return
-    from engines.registry import ENGINES, VARIANTS
-    from reports.bench import four_bar
-    from reports.bench.instants import instant_costs
-    from reports.bench.loops import loop_costs
+    from engines.registry import ENGINES
+    from reports.bench.suite import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
     from reports.write.provenance import machine, versions
@@ -57,23 +55,6 @@ def bench(
             header = ["method", "bare loop [us/step]", "run [us/step]", "ratio [1]"]
             print_table(console, f"{one.name}: run over the bare loop", header, body, 1)
             console.print()
-    instants = [
-        (each.name, number(1e3 * each.drawing), number(1e3 * each.asking), f"{each.asked:.0%}", f"{each.rate:.0f}")
-        for each in instant_costs(VARIANTS)
-        if each.asked
-    ]
-    header = ["method", "drawing [ms]", "asking [ms]", "have a law", "mechanisms a second"]
-    print_table(console, "search: random mechanisms of every kind, asked one instant", header, instants, 1)
-    console.print()
-    floor = four_bar.floor_ratio()
-    console.print(f"four-bar kinematics, {floor['count']} crank angles, all six outputs: {floor['ours']:.3f} s,")
-    console.print(f"  {floor['ratio']:.2f} times one tan and two arctan2 an angle")
-    try:
-        other = four_bar.pylinkage_ratio()
-    except RuntimeError as reason:
-        console.print(f"  {reason}: pip install -e '.\\[bench]'")
-    else:
-        console.print(f"  pylinkage {other['pylinkage']:.3f} s, {other['ratio']:.1f} times ours")
     _site(console, site)
     console.print(f"{versions()}; {machine()}")
 

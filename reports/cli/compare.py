@@ -148,8 +148,7 @@ def _column(
 ) -> Column:
     from reports.cli.selection import QUICK_CELL
     from reports.model.cells import QUICK
-    from reports.versions.column import column, modules_in
-    from reports.versions.request import Request
+    from reports.versions.column import Request, column, modules_in
 
     request = Request(
         scenes,

@@ -162,7 +162,7 @@ def run_pieces(
 def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
     """A line for each check of each subject: how many cases, the errors' distribution, how many are faults."""
     from reports.cli.terminal import print_table
-    from reports.search.summary import HEADER, summary
+    from reports.search.chunk import HEADER, summary
 
     print_table(terminal, "Errors, each relative to the largest of what it is an error of", HEADER, summary(told), 2)
 
@@ -172,7 +172,7 @@ def shrink_and_write(terminal: Terminal, store: Store, told: Sequence[Asked], fo
     from reports.cli.terminal import progress
     from reports.run.files import write_whole
     from reports.run.running import missing, run_into
-    from reports.search.shrunk import Shrink, files_of, line_of, worst_of
+    from reports.search.shrinking import Shrink, files_of, line_of, worst_of
 
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
     if not tasks:

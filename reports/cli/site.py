@@ -35,9 +35,8 @@ def site(
     """Write the results as a static site: lessons with moving pictures, tables, charts, engines in the page."""
     from reports.run.files import folder_for
     from reports.site.build import build
-    from reports.site.serving import serve_folder, server
-    from reports.site.source import Source
-    from reports.site.writing import REMEDY, refuse_strangers, write_site
+    from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
+    from reports.site.lesson import Source
 
     if not 0 < port < 65536:
         raise BadInput(f"--port is {port}; give a number from 1 to 65535")

@@ -41,7 +41,7 @@ def versions(
     from reports.cli.report import published, refuse_outside_a_checkout
     from reports.cli.terminal import Terminal
     from reports.run.files import write_whole
-    from reports.versions.table import as_csv, as_published, merged, read
+    from reports.versions.table import as_csv, as_published, catalogued, merged, read
 
     if publish:
         refuse_outside_a_checkout()
@@ -52,7 +52,7 @@ def versions(
     console = Terminal(WIDTH)
     wrong: list[str] = []
     with kept() as check:
-        table = read(Path(results) / DATA) if everything else None
+        table = catalogued(read(Path(results) / DATA)) if everything else None
         for name, numbers in asked.items():
             engines = [each for each in (*VARIANTS, *OTHERS) if each.name == name]
             found = []
@@ -81,17 +81,17 @@ def versions(
 def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:
     """Engine -> versions. Raises BadInput for words that don't go together, or are not known."""
     from engines.registry import OTHERS, VARIANTS
-    from reports.versions.catalogue import VERSIONS, distributions
+    from reports.versions.catalogue import compared_versions, distributions
 
     if everything:
         if engine is not None:
             raise BadInput("--all runs the versions of every engine; leave the engine out")
-        return dict(VERSIONS)
+        return compared_versions()
     if engine is None:
         raise BadInput("name an engine and versions, such as: crosscheck versions mujoco 3.6.0 4.0.1; or give --all")
     distributions((*VARIANTS, *OTHERS), engine)
     if not numbers:
-        known = " ".join(VERSIONS.get(engine, ()))
+        known = " ".join(compared_versions().get(engine, ()))
         raise BadInput(f"name versions of {engine}" + (f", such as {known}" if known else ""))
     return {engine: tuple(dict.fromkeys(numbers))}
 
@@ -122,8 +122,7 @@ def _column(
     from reports.cli.selection import QUICK_CELL
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
-    from reports.versions.column import column, modules_in
-    from reports.versions.request import Request
+    from reports.versions.column import Request, column, modules_in
 
     place = installed(distributions(engines, name), number)
     begin = monotonic()

@@ -7,6 +7,7 @@ Velocities are the nearest ones to those written that the joints allow.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from decimal import Decimal
@@ -16,12 +17,157 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.body import Body, Triple
-from reference.joints import Joint
+from reference.curves import Circle, Curve, Ellipse, Line, Placed, Ring
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.mechanism import Mechanism
+from reference.plane import components, rotated
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
 from reference.scales import length_scale
 from reference.validation import InvalidMechanism
-from reports.search.joining import Joining, beside
-from reports.search.parts import ANGLE, FORCES, RATE, Link, Recipe, ladder
+from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, Link, Recipe, Rim, ladder
+
+Point = tuple[Decimal, Decimal]
+
+
+@dataclass(frozen=True, eq=False)
+class Joining:
+    """The bodies of a recipe where they stand, with their `places` [m] and `sizes` [m], the ground's first, and the
+    unit of `time` [s]: what a link needs to become a joint or a force.
+    """
+
+    bodies: Sequence[Body]
+    places: Sequence[Point]
+    sizes: Sequence[Decimal]
+    time: Decimal
+
+    def check(self, link: Link, number: int) -> None:
+        """Raise InvalidMechanism for a link of bodies that are not there, or of an unknown kind."""
+        count = len(self.bodies)
+        if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
+            raise InvalidMechanism(
+                f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
+                f"to {count}, the second from 1, and they must differ"
+            )
+        if link.kind not in EVERY or (link.kind == "roll" and len(link.rims) != 2):
+            raise InvalidMechanism(
+                f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
+                f"{', '.join(EVERY)}, a roll with two rims"
+            )
+
+    def joint(self, link: Link, number: int) -> Joint:
+        """The joint of a link that is one, `number` being its own. Raises InvalidMechanism for one that can't be."""
+        self.check(link, number)
+        size, name, ends = self.sizes[link.second], f"{link.kind} {number}", self._ends(link)
+        (first, second), (first_angle, second_angle) = self._points(link), self._angles(link)
+        direction = float(link.turn * ANGLE)
+        match link.kind:
+            case "pin":
+                return Pin(name, *ends, first, second)
+            case "slot":
+                along, line = float(link.more * size / 10), direction - first_angle
+                through = (first[0] + along * math.cos(line), first[1] + along * math.sin(line))
+                return Slot(name, *ends, through, line, second)
+            case "skate":
+                return Skate(name, *ends, second, direction - second_angle)
+            case "drive":
+                return Drive(name, *ends, float(link.more * RATE / self.time), second_angle - first_angle)
+            case "roll":
+                ground, ground_arc = _touching(link.rims[0], size, first, direction - first_angle)
+                curve, arc = _touching(link.rims[1], size, second, direction + math.pi - second_angle)
+                return Roll(name, *ends, Rolling(curve, ground, second_angle - first_angle, ground_arc, arc))
+            case "rod":
+                return Rod(name, *ends, self._far_point(link), second, abs(float(link.more * size / 10)))
+            case "gear":
+                ratio = float(link.more * RATE)
+                return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
+        return Weld(name, *ends, first, second, second_angle - first_angle)
+
+    def force(self, link: Link, number: int) -> ForceElement:
+        """The force of a link that is one. Raises InvalidMechanism for one that can't be.
+
+        Its strength is counted in the second body's own: its mass, its inertia, its size, and the unit of time.
+        """
+        self.check(link, number)
+        body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
+        strength, rate = float(ladder(link.strength)), 1 / float(self.time)
+        _, second = self._points(link)
+        between = self._far_point(link), second
+        first_angle, second_angle = self._angles(link)
+        match link.kind:
+            case "spring":
+                rest = abs(float(link.more * self.sizes[link.second] / 10)) * (1 + link.rest / 10)
+                return Spring(name, *ends, *between, strength * body.mass * rate**2, rest)
+            case "damper":
+                return Damper(name, *ends, *between, strength * body.mass * rate)
+            case "torsion-spring":
+                rest = second_angle - first_angle + float(link.rest * ANGLE)
+                return TorsionSpring(name, *ends, strength * body.inertia * rate**2, rest)
+            case "torsion-damper":
+                return TorsionDamper(name, *ends, strength * body.inertia * rate)
+            case "torque":
+                return Torque(name, *ends, float(link.more * RATE) * body.inertia * rate**2)
+        pull = float(link.more * RATE * self.sizes[link.second]) * body.mass * rate**2
+        direction = float(link.turn * ANGLE)
+        return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
+
+    def _ends(self, link: Link) -> tuple[str | None, str]:
+        return self.bodies[link.first - 1].name if link.first else None, self.bodies[link.second - 1].name
+
+    def _at(self, link: Link) -> Point:
+        return beside(self.places[link.second], link.at, self.sizes[link.second])
+
+    def _points(self, link: Link) -> tuple[Vector, Vector]:
+        """The link's place in the frames of both bodies [m]."""
+        at = self._at(link)
+        return self._own(link.first, at), self._own(link.second, at)
+
+    def _far_point(self, link: Link) -> Vector:
+        """The point [m] of the first body that lies `more` tenths along `turn` from the link's place."""
+        x, y = self._own(link.first, self._at(link))
+        along, line = (
+            float(link.more * self.sizes[link.second] / 10),
+            float(link.turn * ANGLE) - self._angle(link.first),
+        )
+        return x + along * math.cos(line), y + along * math.sin(line)
+
+    def _angles(self, link: Link) -> tuple[float, float]:
+        return self._angle(link.first), self._angle(link.second)
+
+    def _angle(self, body: int) -> float:
+        return self.bodies[body - 1].pose[2] if body else 0.0
+
+    def _own(self, body: int, point: Point) -> Vector:
+        """A point of the world in a body's frame."""
+        x, y = (float(point[axis] - self.places[body][axis]) for axis in (0, 1))
+        return tuple(components(-self._angle(body), x, y))
+
+
+def beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:
+    """A place [m] so many tenths of a size beside another."""
+    return place[0] + tenths[0] * size / 10, place[1] + tenths[1] * size / 10
+
+
+def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[Curve, float]:
+    """The curve through `point` in the direction `tangent` [rad], both in its body's frame, and its arc there [m]."""
+    size = float(ladder(rim.size) * unit)
+    match rim.shape:
+        case "line":
+            return Line(tangent, point), 0.0
+        case "circle" | "ring":
+            sense = 1.0 if rim.shape == "circle" else -1.0
+            polar = tangent - sense * math.pi / 2
+            centre = (point[0] - size * math.cos(polar), point[1] - size * math.sin(polar))
+            return (Circle if sense > 0 else Ring)(size, centre), sense * size * polar
+        case "ellipse":
+            curve = Ellipse(size, float(ladder(rim.size) * ladder(rim.ratio) * unit))
+            parameter = np.asarray(float(rim.place * ANGLE))
+            turn = tangent - float(curve.angle_of(parameter))
+            x, y = (point - rotated(np.asarray(turn), curve.point_of(parameter))).tolist()
+            return Placed(curve, (x, y), turn), float(curve.arc_of(parameter))
+    raise InvalidMechanism(f"recipe: a rim is a {rim.shape!r}; it must be one of {', '.join(SHAPES)}")
+
 
 Array = NDArray[np.float64]
 # Rows of which a combination is smaller than this, beside the largest, are left out: their forces, and what becomes of

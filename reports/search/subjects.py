@@ -24,15 +24,14 @@ from reports.search import (
     mechanisms,
     motions,
     raw,
-    raw_draw,
     raw_law,
     relations,
 )
 from reports.search.law import Fault, NotAsked
+from reports.search.mechanisms import of_a_shape
 from reports.search.parts import EVERY, Recipe, as_text, from_text
 from reports.search.recipe import build
 from reports.search.release import release
-from reports.search.renumbered import of_a_shape
 
 ORACLES = ("instant", "relations", "motions")
 OURS = "our own error"  # of an oracle that raises: no fault of the engine
@@ -115,7 +114,7 @@ class Alone:
         return raw.KINDS
 
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> raw.Model:
-        return raw_draw.model(seed, number, kinds)
+        return raw_law.model(seed, number, kinds)
 
     def ask(self, case: raw.Model, number: int, oracles: Sequence[str]) -> Told:
         def instant() -> dict[str, tuple[float, float]]:

@@ -1,4 +1,4 @@
-"""What a lesson is made of: motions that were kept, five steps of words, and a picture that moves for each."""
+"""What a lesson is made of, motions that were kept, five steps of words and pictures; and what a site is built from."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.tasks import Motion
+from reports.model.tasks import Answer, Motion
 from reports.site.live.sliders import Live
 
 Point = tuple[float, float]
@@ -95,3 +95,18 @@ class Lesson:
         """All motions that have to be run."""
         own = [motion for take in self.takes.values() for motion in take.motions().values()]
         return (*own, *(motion for live in self.live for motion in live.shipped().values()))
+
+
+@dataclass
+class Source:
+    """What a site is built from: Markdown pages and pictures by file name, and the answers to the lessons' tasks."""
+
+    pages: Mapping[str, str]
+    pictures: Mapping[str, str]
+    tables: Mapping[str, str]  # CSV files by name
+    answers: Mapping[Motion, Answer]
+    cache: Path
+    foot: str
+    contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
+    api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
+    troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each

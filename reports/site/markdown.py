@@ -1,14 +1,20 @@
-"""The Markdown pages as HTML: the words are those of the pages, links lead to the site's own files."""
+"""The Markdown pages as HTML: links lead to the site's own files, and formulas are MathML, by KaTeX in Node."""
 
 from __future__ import annotations
 
+import json
 import re
+import shutil
+import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from html import escape
+from pathlib import Path
 
 from markdown_it import MarkdownIt
 
+from reports.run.temporary import temporary_folder
+from reports.site.packages import KATEX, NotFetched, fetched
 from reports.write.templates import CODE, inert
 
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
@@ -97,3 +103,41 @@ def section(text: str, heading: str) -> str | None:
 def with_formulas(text: str, rendered: list[str]) -> str:
     """The page with its formulas put in."""
     return MARKED.sub(lambda found: rendered[int(found[1])], text)
+
+
+SCRIPT = Path(__file__).with_name("formulas.mjs")
+PATIENCE = 120  # s for all formulas
+
+
+def rendered(formulas: Formulas, cache: Path) -> tuple[list[str], str]:
+    """The formulas in their order, and why they are TeX as written; empty if they are not.
+
+    Raises ValueError for a formula that KaTeX does not understand: it would be wrong on the Markdown page too.
+    """
+    asked = list(formulas.found)
+    node = shutil.which("node")
+    if node is None:
+        return _as_written(asked), "node is not installed"
+    try:
+        module = fetched(KATEX, cache)["dist/katex.mjs"]
+    except NotFetched as reason:
+        return _as_written(asked), str(reason)
+    with temporary_folder() as folder:
+        path = folder / "katex.mjs"
+        path.write_bytes(module)
+        ended = subprocess.run(
+            [node, str(SCRIPT), str(path)],
+            input=json.dumps(asked),
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            encoding="utf-8",
+        )
+    if ended.returncode:
+        told = [line for line in ended.stderr.splitlines() if "Error" in line]
+        raise ValueError(f"KaTeX refuses a formula: {told[0] if told else ended.stderr[-200:]}")
+    return json.loads(ended.stdout), ""
+
+
+def _as_written(asked: list[tuple[str, bool]]) -> list[str]:
+    return [f'<code class="tex{" displayed" if displayed else ""}">{escape(each)}</code>' for each, displayed in asked]

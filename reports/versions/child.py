@@ -49,7 +49,7 @@ def _end(out: BinaryIO) -> None:
 def answer(request: Any, say: Callable[[Any], None]) -> Any:
     """Run what is asked for and say each row; Finished, or a Trouble."""
     from reports.run.supervisor import WorkersLost
-    from reports.versions.request import Finished, Trouble
+    from reports.versions.column import Finished, Trouble
 
     engines = _engines(request)
     if isinstance(engines, Trouble):
@@ -68,7 +68,7 @@ def _engines(request: Any) -> Any:
     """The engines asked for, or a Trouble that says why they can't be used with this version."""
     from engines import registry
     from engines.loading import describe, is_reference
-    from reports.versions.request import Trouble
+    from reports.versions.column import Trouble
 
     try:
         known = (*registry.VARIANTS, *registry.OTHERS)
@@ -105,9 +105,8 @@ def _run(request: Any, engines: list[Any], say: Callable[[Any], None]) -> None:
     from reports.model.measure import Measurement
     from reports.run.running import missing, run_into
     from reports.run.store import Store
-    from reports.versions.methods import of_trees
-    from reports.versions.request import Running, TreesRow
-    from reports.versions.trees import SIZES, Trees
+    from reports.versions.column import Running, TreesRow
+    from reports.versions.trees import SIZES, Trees, of_trees
 
     cells = [Cell(scene, engine, every) for every in request.every for scene in request.scenes for engine in engines]
     cells = [cell for cell in cells if estimated_cost(cell) <= request.most]

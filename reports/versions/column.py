@@ -11,13 +11,72 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine
+from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
 from reports.model.fingerprint import ROOT
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome, describe_exit
 from reports.run.installed import environment
+from reports.run.pool import TIME_LIMIT
 from reports.run.temporary import temporary_folder
-from reports.versions.request import Finished, Request, Running, TreesRow, Trouble
+
+
+@dataclass(frozen=True)
+class Request:
+    """Which scenes, in which engine at how many steps a sample; what is stored already is not run again.
+
+    engine: a registered name, or a reference (`engines.loading`) that counts from `folder`; its variants of all scenes
+    are run, or those named. modules: top-level packages that have to come from `place`, the version's own folder.
+    most: a cell is left out whose run would take longer by its engine's formula [s].
+    store: where rows are kept, as in every run.
+    """
+
+    scenes: tuple[Scene, ...]
+    engine: str
+    modules: tuple[str, ...]
+    place: Path
+    store: Path
+    variants: tuple[str, ...] = ()
+    every: tuple[int, ...] = (10,)
+    most: float = float("inf")
+    trees: bool = False
+    fresh: bool = False
+    folder: Path = Path(".")
+    limit: float = TIME_LIMIT
+
+
+@dataclass(frozen=True)
+class Running:
+    """Still alive; what it is at."""
+
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """The version can't be used at all: one sentence. `lacks`: it is the version, that has not what is called."""
+
+    sentence: str
+    lacks: bool = True
+
+
+@dataclass(frozen=True)
+class TreesRow:
+    """What an engine made of random trees (`reports.versions.trees`)."""
+
+    engine: str
+    variant: str
+    bodies: int
+    loops: int
+    outcome: str
+    sentence: str
+    miss: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Finished:
+    """All that was asked for was said."""
+
 
 MARK = "known to be wrong"  # the word of adapters for such a release, in the sentence of every row
 # Exceptions of Python for a name that is not there: what our adapter calls is newer than the version.

@@ -1,20 +1,22 @@
-"""Two columns against each other: what became worse, by the rule of the gate's baseline, and what became better."""
+"""Two columns against each other, and steps in a line over versions: both by the rule of the gate's baseline."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, pairwise
 from statistics import median
 
 from reports.gate.baseline import Identity, Old, identity
-from reports.gate.change import drift, growth
+from reports.gate.change import WORSE, drift, growth
 from reports.model.checks import Check
 from reports.model.convergence import Sweep, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
+from reports.run.installed import numbers
+from reports.versions.table import Entry
 
 SLOPE = 0.5  # orders that differ by more are told: two local slopes of one method do by less
 
@@ -110,3 +112,61 @@ def _turns(before: Sequence[Measurement], after: Sequence[Measurement]) -> tuple
 
 def _orders(rows: Sequence[Measurement]) -> dict[tuple[str, str], Sweep]:
     return {(each.scene, each.method): each for each in sweeps(rows) if each.quantity.name == "angle"}
+
+
+@dataclass(frozen=True)
+class Step:
+    """Two neighbours of one line that differ by more than WORSE, or of which one alone can be compared."""
+
+    before: Entry
+    after: Entry
+
+    @property
+    def worse(self) -> bool:
+        """Whether the newer one is."""
+        return size(self.after) > size(self.before)
+
+
+def size(entry: Entry) -> float:
+    """What lines are compared by: the error above rounding; infinite where the run gave none that can be compared."""
+    return max(entry.error, entry.rounding) if entry.comparable else math.inf
+
+
+def ran(entry: Entry) -> bool:
+    """Whether a version can run this at all."""
+    return Outcome(entry.outcome) not in (Outcome.UNSUPPORTED, Outcome.LOST)
+
+
+def lines(entries: Iterable[Entry]) -> dict[tuple[str, str, str], tuple[Entry, ...]]:
+    """(engine, scene, variant) -> its entries, oldest version first; those that could not be run are left out."""
+    found: dict[tuple[str, str, str], list[Entry]] = {}
+    for entry in entries:
+        if ran(entry):
+            found.setdefault((entry.engine, entry.scene, entry.variant), []).append(entry)
+    return {key: tuple(sorted(members, key=lambda e: numbers(e.version))) for key, members in found.items()}
+
+
+def steps(entries: Iterable[Entry]) -> tuple[Step, ...]:
+    """Every step of every line, oldest first."""
+    found = [
+        Step(before, after)
+        for members in lines(entries).values()
+        for before, after in pairwise(members)
+        if differ(size(before), size(after))
+    ]
+    return tuple(sorted(found, key=lambda step: (step.after.engine, numbers(step.after.version))))
+
+
+def differ(before: float, after: float) -> bool:
+    """Whether one is more than WORSE times the other."""
+    if math.isinf(before) or math.isinf(after):
+        return before != after
+    return max(before, after) > WORSE * min(before, after)
+
+
+def by_version(found: Sequence[Step]) -> dict[tuple[str, str, str], list[Step]]:
+    """(engine, last version before, version) -> the steps that stand between these two."""
+    out: dict[tuple[str, str, str], list[Step]] = {}
+    for step in found:
+        out.setdefault((step.after.engine, step.before.version, step.after.version), []).append(step)
+    return out

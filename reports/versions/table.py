@@ -13,8 +13,8 @@ from typing import Any
 from reports.model.outcomes import Outcome
 from reports.model.quantities import DIGITS, agrees, quantity
 from reports.run.installed import numbers
-from reports.versions.column import Column
-from reports.versions.request import TreesRow
+from reports.versions.catalogue import compared_versions
+from reports.versions.column import Column, TreesRow
 
 TREES = "random trees"
 ACCELERATION = "acceleration"
@@ -157,6 +157,17 @@ def _as_published(now: Entry, before: Entry) -> Entry:
 
 def _value(text: str, kind: object) -> Any:
     return float(text) if kind == "float" else text
+
+
+def catalogued(table: Table) -> Table:
+    """The lines of releases that are compared by now, and of engines of which none is named."""
+    known = compared_versions()
+
+    def there(engine: str, version: str) -> bool:
+        return version in known.get(engine, (version,))
+
+    marks = {key: mark for key, mark in table.marks.items() if there(*key)}
+    return Table(tuple(entry for entry in table.entries if there(entry.engine, entry.version)), marks)
 
 
 def merged(old: Table, new: Table) -> Table:

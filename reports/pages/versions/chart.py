@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 from reports.model.outcomes import Outcome
 from reports.plots.stability import HATCHES, outcome_colour
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes
-from reports.versions.steps import lines, size
+from reports.versions.comparison import lines, size
 from reports.versions.table import Entry
 
 # Shades of errors in the heat table: below each bound, from exact to useless; the numbers say which.

@@ -12,9 +12,9 @@ import numpy as np
 from reports.model.page import Material, Page
 from reports.pages.versions.chart import cost, heat_table, over_versions, ratios, variants
 from reports.plots.theme import svg
-from reports.versions.changes import named
-from reports.versions.steps import Step, by_version, steps
-from reports.versions.table import Entry, Table, read
+from reports.versions.catalogue import changes_between
+from reports.versions.comparison import Step, by_version, steps
+from reports.versions.table import Entry, Table, catalogued, read
 from reports.write.tables import markdown, number
 
 DATA = Path(__file__).parents[2] / "results" / "versions.csv"
@@ -23,8 +23,8 @@ EXAMPLES = 2  # of each kind of step that are told
 
 @cache
 def table(path: Path = DATA) -> Table:
-    """What was kept of all versions."""
-    return read(path)
+    """What was kept of all versions that are compared by now."""
+    return catalogued(read(path))
 
 
 def _told(entry: Entry) -> str:
@@ -54,8 +54,8 @@ def step_table(own: Table, engine: str) -> str:
         for worse in (False, True):
             own_way = [step for step in found if step.worse == worse]
             if own_way:
-                known = named(engine, before, after, worse)
-                told = "; ".join(f"{each.version}: {each.what} ([source]({each.source}))" for each in known)
+                known = changes_between(engine, before, after, worse)
+                told = "; ".join(f"{each.version}: {each.changed} ([source]({each.source}))" for each in known)
                 way = f"{len(own_way)} **worse**" if worse else f"{len(own_way)} better"
                 body.append([f"{before} to {after}", way, _example(own_way), told or "no change is known by name"])
     header = ["between", "lines", "largest steps", "what is known of the newer version"]

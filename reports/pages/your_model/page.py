@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from reference.four_bar import FreeFourBar
-from reports.check.pictures import pictures
-from reports.check.shown import from_text
+from reports.check.pictures import from_text, pictures
 from reports.model.page import Material, Page
 from reports.pages.your_model import others
 from reports.pages.your_model.answers import WALKS, Walk

@@ -10,7 +10,7 @@ from reference.pendulum.scenes import LinkPendulum, TenLinks
 from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
 from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import linkages, pendulums
+from reports.site.live import scenes
 
 SHIPPED = (("pymunk as shipped", pymunk.DEFAULT), ("MuJoCo as shipped", mujoco.DEFAULT))
 SET = (("pymunk, tuned", pymunk.TUNED), ("MuJoCo, tuned", mujoco.TUNED))
@@ -78,7 +78,7 @@ FOUR_BAR = Lesson(
             ),
         ),
     ),
-    live=linkages.FOUR_BAR,
+    live=scenes.FOUR_BAR,
 )
 
 SLIDER_CRANK = Lesson(
@@ -110,7 +110,7 @@ SLIDER_CRANK = Lesson(
             ),
         ),
     ),
-    live=linkages.SLIDER_CRANK,
+    live=scenes.SLIDER_CRANK,
 )
 
 TIP = ((0.5, 0.0), (-0.5, 0.0))
@@ -149,7 +149,7 @@ PENDULUM = Lesson(
             ),
         ),
     ),
-    live=pendulums.PENDULUM,
+    live=scenes.PENDULUM,
 )
 
 
@@ -189,5 +189,5 @@ CENTRODES = Lesson(
         Step("engines", frozenset({"centre"}), ("centrodes", "The centre as a measure of an engine")),
         Step("engines", frozenset({"gaps"}), ("centrodes", "Shapes of your own")),
     ),
-    live=linkages.FOUR_BAR[:1],
+    live=scenes.FOUR_BAR[:1],
 )

@@ -7,7 +7,7 @@ from engines.pymunk.methods import ROLL_FACETED, ROLL_PIVOT
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import rolling
+from reports.site.live import scenes
 
 CENTRE = (("roller", (0.0, 0.0)),)
 SHIPPED = (("pymunk, a polygon of 64 corners", pymunk.DEFAULT, 1), ("MuJoCo, contact as shipped", mujoco.DEFAULT, 1))
@@ -49,7 +49,7 @@ ROLLING = Lesson(
             ),
         ),
     ),
-    live=rolling.ROLLING,
+    live=scenes.ROLLING,
 )
 
 GEARS = Lesson(
@@ -80,5 +80,5 @@ GEARS = Lesson(
             ),
         ),
     ),
-    live=rolling.GEARS,
+    live=scenes.GEARS,
 )

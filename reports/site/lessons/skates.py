@@ -6,7 +6,7 @@ from engines import mujoco, pymunk
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import skates
+from reports.site.live import scenes
 
 CENTRE = (("body", (0.0, 0.0)),)
 SLEIGH = ChaplyginSleigh()
@@ -52,7 +52,7 @@ SKATE = Lesson(
             ),
         ),
     ),
-    live=skates.SKATE,
+    live=scenes.SKATE,
 )
 
 CAR = CarAndTrailer()
@@ -93,5 +93,5 @@ WHEELS = Lesson(
             ),
         ),
     ),
-    live=skates.WHEELS,
+    live=scenes.WHEELS,
 )

@@ -1,22 +1,24 @@
-"""Munk2D from pymunk's source package to one JavaScript file, by emscripten, where that is installed.
+"""Munk2D, the engine inside pymunk, from pymunk's source package to one JavaScript file, where emscripten is installed.
 
-`python -m reports.site.munk2d` does it by hand. Nothing is installed unless it is asked with `--install`.
+`python -m reports.site.munk2d FILE` does it by hand; `--install` first gets Debian's emscripten.
 """
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import shutil
 import subprocess
 import sys
 import tarfile
+import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
 from reports.run.temporary import temporary_folder
 from reports.site.packages import NotFetched
 
-SHIM = Path(__file__).with_name("shim.c")
+SHIM = Path(__file__).with_suffix(".c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (
     *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web"),
@@ -62,3 +64,24 @@ def _compile(compiler: str, sources: Path, output: Path) -> Path:
     if ended.returncode:
         raise NotFetched(f"emscripten refuses Munk2D: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
     return output
+
+
+def main() -> int:
+    """Compile it; the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--install", action="store_true", help="first install Debian's package emscripten, by apt-get")
+    given = parser.parse_args()
+    if given.install:
+        subprocess.run(["apt-get", "install", "--yes", "--no-install-recommends", "emscripten"], check=True)
+    with tempfile.TemporaryDirectory() as cache:
+        try:
+            given.file.write_bytes(compiled(Path(cache)))
+        except NotFetched as reason:
+            print(f"crosscheck: {reason}", file=sys.stderr)
+            return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

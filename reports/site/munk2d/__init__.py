@@ -1,1 +1,0 @@
-"""Munk2D, the engine inside pymunk, compiled to WebAssembly from pymunk's own source package."""
