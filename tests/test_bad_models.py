@@ -13,7 +13,7 @@ from pymunk import Space
 from engines import Unsupported
 from engines.mujoco.reading.other_settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
-from reports.check.request import Answer, Refused, Request, answered
+from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
 from tests.test_check import FOUR_BAR, found_in
 
@@ -97,7 +97,7 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
         file.write_bytes(text)
     elif text is not None:
         file.write_text(text)
-    answer = answered(Request(word, str(tmp_path), 0.5, 1e-4, pictures=False))
+    answer = answered(CheckRequest(word, str(tmp_path), 0.5, 1e-4, pictures=False))
     assert isinstance(answer, Refused)
     assert sentence in answer.sentence
     assert "\n" not in answer.sentence
@@ -108,22 +108,22 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
 def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
     (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
-    answer = answered(Request("hits.xml", str(tmp_path), 0.3, 1e-1, (element,), pictures=False))
+    answer = answered(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,), pictures=False))
     if sentence:
         assert isinstance(answer, Refused)
         assert sentence in answer.sentence
     else:
-        assert isinstance(answer, Answer)
+        assert isinstance(answer, CheckReport)
         assert answer.met
 
 
 def test_a_motion_that_meets_a_contact_is_refused_with_a_duration_that_does_not(tmp_path):
     (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
-    refused = answered(Request("hits.xml", str(tmp_path), 0.5, 1e-1, pictures=False))
+    refused = answered(CheckRequest("hits.xml", str(tmp_path), 0.5, 1e-1, pictures=False))
     assert isinstance(refused, Refused)
     duration = float(re.search(r"--duration ([\d.]+)", refused.sentence)[1])  # type: ignore[index]
-    shorter = answered(Request("hits.xml", str(tmp_path), duration, 1e-1, pictures=False))
-    assert isinstance(shorter, Answer)
+    shorter = answered(CheckRequest("hits.xml", str(tmp_path), duration, 1e-1, pictures=False))
+    assert isinstance(shorter, CheckReport)
 
 
 def test_a_step_longer_than_the_motion_is_refused(tmp_path):

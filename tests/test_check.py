@@ -23,7 +23,7 @@ from reports.check.checked import best, cheapest, check
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
 from reports.check.pictures import from_text, pictures, shown_of
-from reports.check.request import Answer, Request, answered, read
+from reports.check.request import CheckReport, CheckRequest, answered, read
 from reports.check.telling import data, sections, verdict
 
 FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
@@ -297,8 +297,8 @@ def test_the_cheapest_setting_is_the_cheapest_that_meets_the_tolerance(shipped):
 def test_redundant_joints_are_told_and_their_reactions_not_compared(tmp_path):
     twice = FOUR_BAR.replace("</equality>", '<connect body1="coupler" body2="rocker" anchor="0.8 0 0.3"/></equality>')
     (tmp_path / "twice.xml").write_text(twice)
-    answer = answered(Request("twice.xml", str(tmp_path), 0.2, 1e-4, pictures=False))
-    assert isinstance(answer, Answer)
+    answer = answered(CheckRequest("twice.xml", str(tmp_path), 0.2, 1e-4, pictures=False))
+    assert isinstance(answer, CheckReport)
     assert answer.data["facts"]["redundant"] == 2
     told = " ".join(sentence for section in answer.sections for sentence in section.sentences)
     assert "2 rows are redundant" in told

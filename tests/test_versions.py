@@ -29,7 +29,7 @@ from reports.pages.versions import page
 from reports.run import installed as installation
 from reports.run.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
 from reports.versions.catalogue import RELEASES, changes_between
-from reports.versions.column import Request, TreesRow, column, modules_in
+from reports.versions.column import TreesRow, VersionRequest, column, modules_in
 from reports.versions.comparison import compared, steps
 from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
 from reports.versions.trees import miss, trees
@@ -109,7 +109,7 @@ def test_a_cost_sets_the_status_where_a_limit_is_given(here):
 
 def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
     place = toy(here, "3.0", "import os\nos.abort()\n")
-    given = Request((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
+    given = VersionRequest((Disc(),), "adapter.py:ENGINE", modules_in(place), place, here / "s.sqlite", folder=here)
     engine = replace(DEFAULT)
     found = column("3.0", given, [engine])
     assert [row.outcome for row in found.rows] == [Outcome.ABORTED]
@@ -347,9 +347,9 @@ def test_random_trees_tell_ideal_constraints_from_wrong_ones():
 def test_trees_that_could_not_be_built_are_told():
     answered = TreesRow("mujoco", "tuned", 12, 4, "finished", "", (1e-5, float("nan"), 0.5))
     failed = TreesRow("mujoco", "extended", 12, 4, "failed", "AttributeError: no MjSpec")
-    from reports.versions.column import Column
+    from reports.versions.column import VersionColumn
 
-    found = entries("mujoco", Column("1", (), (answered, failed)), {})
+    found = entries("mujoco", VersionColumn("1", (), (answered, failed)), {})
     assert [(each.outcome, each.error, each.sentence[:8]) for each in found[:1]] == [("finished", np.inf, "2 of 3 b")]
     assert found[1].outcome == "unsupported"
 

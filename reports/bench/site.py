@@ -36,7 +36,7 @@ STEPPED = """([scene, step, turns]) => {
 
 
 @dataclass(frozen=True)
-class Size:
+class SiteSize:
     """Of a site, each file compressed by itself: all files [MB], and how many there are."""
 
     megabytes: float
@@ -53,14 +53,14 @@ class Times:
     stepped: dict[str, float]
 
 
-def size_of(folder: Path) -> Size:
+def size_of(folder: Path) -> SiteSize:
     """Raises ValueError where no site is."""
     if not (folder / MARKER).is_file():
         raise ValueError(f"{folder} has no site: `crosscheck site` writes one")
     contents = {
         path.name + str(number): path.read_bytes() for number, path in enumerate(folder.rglob("*")) if path.is_file()
     }
-    return Size(compressed_size(contents) / 1e6, len(contents))
+    return SiteSize(compressed_size(contents) / 1e6, len(contents))
 
 
 def times_of(folder: Path) -> Times:

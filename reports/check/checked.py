@@ -16,7 +16,7 @@ from reference.validation import InvalidMechanism
 from reports.check.facts import Facts, facts_of
 from reports.check.judging import (
     Errors,
-    Judged,
+    IdealMotion,
     Opening,
     apart,
     errors,
@@ -159,7 +159,7 @@ class Checked:
     tolerance: float
     agreement: float  # of the accelerations at t = 0
     facts: Facts
-    judge: Judged
+    judge: IdealMotion
     own: Trajectory
     own_errors: Errors
     judge_errors: Errors

@@ -77,7 +77,7 @@ GROWN = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class IdealMotion:
     """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by."""
 
     trajectory: Trajectory
@@ -86,7 +86,7 @@ class Judged:
     horizon: float  # s; the duration if errors grow no faster than about linearly
 
 
-def judged(mechanism: Mechanism, samples: int, spacing: float) -> Judged:
+def judged(mechanism: Mechanism, samples: int, spacing: float) -> IdealMotion:
     """The motion of ideal joints. Raises InvalidMechanism where it can't be followed to the end."""
     motion = TRUTH.build(mechanism, spacing)(samples, 1)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
@@ -100,7 +100,7 @@ def judged(mechanism: Mechanism, samples: int, spacing: float) -> Judged:
     expected = GROWN * (1 + motion.t / mechanism.time_scale)
     beyond = growth > expected
     horizon = float(motion.t[int(np.argmax(beyond))] if beyond.any() else motion.t[-1])
-    return Judged(motion, looser, growth, horizon)
+    return IdealMotion(motion, looser, growth, horizon)
 
 
 def apart(mechanism: Mechanism, pose: Array, other: Array) -> Array:

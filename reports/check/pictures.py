@@ -34,7 +34,7 @@ class Pose:
 
 
 @dataclass(frozen=True)
-class Shown:
+class PictureData:
     """Errors over the times t [s] of three runs, those of quantities that are known, and a moment [s] in two poses.
 
     `advised` is None where the user's own settings are enough; `horizon` [s] where errors do not grow exponentially.
@@ -57,20 +57,20 @@ class Shown:
         return json.dumps(asdict(self), sort_keys=True)
 
 
-def from_text(text: str) -> Shown:
-    """Back from `Shown.as_text`."""
+def from_text(text: str) -> PictureData:
+    """Back from `PictureData.as_text`."""
     data = json.loads(text)
-    return Shown(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
+    return PictureData(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
 
 
-def shown_of(found: Checked, advised: Tried | None = None) -> Shown:
+def shown_of(found: Checked, advised: Tried | None = None) -> PictureData:
     """What is drawn of a check; `advised`: the settings beside the user's own, if not those that it advises."""
     advised = advised or found.advised
     own, judge, mechanism = found.own_errors, found.judge_errors, found.reading.mechanism
     known = [quantity for quantity in QUANTITIES if np.isfinite(own.of[quantity]).any()]
     other = None if advised is None or found.met else advised.errors
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
-    return Shown(
+    return PictureData(
         own.t.tolist(),
         _curves(own, known),
         judge.t.tolist(),
@@ -127,7 +127,7 @@ def _place(mechanism: Mechanism, pose: Array, name: str | None, point: tuple[flo
 LEAST = 1e-16
 
 
-def pictures(shown: Shown) -> dict[str, tuple[str, str]]:
+def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
     """By 'errors' and 'worst': what each shows, and the SVG."""
     named = {
         "errors": ("Errors of your settings over time, beside the judge's own error", _errors(shown)),
@@ -139,7 +139,7 @@ def pictures(shown: Shown) -> dict[str, tuple[str, str]]:
     return {key: (title, svg(figure, title)) for key, (title, figure) in named.items()}
 
 
-def _errors(shown: Shown) -> Figure:
+def _errors(shown: PictureData) -> Figure:
     theme, quantities = LIGHT, list(shown.own)
     with settings():
         figure = new_figure(5.4 if len(quantities) > 2 else 3.1, theme)
@@ -167,7 +167,7 @@ def _errors(shown: Shown) -> Figure:
     return figure
 
 
-def _worst(shown: Shown) -> Figure:
+def _worst(shown: PictureData) -> Figure:
     theme = LIGHT
     with settings():
         figure = new_figure(4.2, theme, width=6.2)

@@ -39,7 +39,7 @@ def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", st
 
 
 @dataclass(frozen=True)
-class Request:
+class CheckRequest:
     """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is."""
 
     word: str
@@ -58,7 +58,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Answer:
+class CheckReport:
     """What was found, as sections and as plain data."""
 
     met: bool
@@ -75,7 +75,7 @@ class Refused:
     sentence: str
 
 
-def answered(request: Request) -> Answer | Refused:
+def answered(request: CheckRequest) -> CheckReport | Refused:
     """In a worker: the check, or why there is none."""
     begin = time.monotonic()
 
@@ -96,9 +96,9 @@ def answered(request: Request) -> Answer | Refused:
     except (Unsupported, InvalidMechanism, ValueError) as reason:
         return Refused(_one_line(request, reason))
     told_sections = tuple(sections(found, drawn))
-    return Answer(found.met, verdict(found), told_sections, data(found), time.monotonic() - begin)
+    return CheckReport(found.met, verdict(found), told_sections, data(found), time.monotonic() - begin)
 
 
-def _one_line(request: Request, reason: Exception) -> str:
+def _one_line(request: CheckRequest, reason: Exception) -> str:
     sentence = " ".join(str(reason).split())
     return sentence if sentence.startswith(("--", request.word)) else f"{request.word}: {sentence}"

@@ -16,7 +16,7 @@ from reports.model.ending import BadInput, Broken
 from reports.run.files import write_whole
 
 if TYPE_CHECKING:
-    from reports.check.request import Answer
+    from reports.check.request import CheckReport
 
 LONGEST = 1000.0  # s of motion
 SUFFIX = ".svg"
@@ -60,10 +60,10 @@ def check(
     for name, path in (("html", html), ("markdown", markdown)):
         if path is not None and (not path.name or path.is_dir()):
             raise BadInput(f"--{name} is {str(path)!r}, which is a folder; give a file")
-    from reports.check.request import Request
+    from reports.check.request import CheckRequest
 
     pictures = html is not None or markdown is not None
-    request = Request(model, os.getcwd(), duration, tolerance, tuple(without or ()), key, step, pictures)
+    request = CheckRequest(model, os.getcwd(), duration, tolerance, tuple(without or ()), key, step, pictures)
     answer = asked(request, limit)
     _write(answer, html, markdown)
     _print(answer, as_json)
@@ -71,8 +71,8 @@ def check(
         raise Missed(answer.verdict)
 
 
-def asked(request: Any, limit: float) -> Answer:
-    """The answer to a Request, from a supervised process, with progress on stderr. Raises BadInput in one line."""
+def asked(request: Any, limit: float) -> CheckReport:
+    """The answer to a CheckRequest, from a supervised process, with progress on stderr. Raises BadInput in one line."""
     from dataclasses import replace
 
     from reports.check.request import Refused, answered
@@ -125,7 +125,7 @@ class _Progress:
             print(f"\r{' ' * self._wide}\r", end="", file=sys.stderr, flush=True)
 
 
-def _write(answer: Answer, html: Path | None, markdown: Path | None) -> None:
+def _write(answer: CheckReport, html: Path | None, markdown: Path | None) -> None:
     from reports.check import rendering
 
     name, files = f"{answer.data['name']} in {answer.data['engine']}", dict[Path, str]()
@@ -140,7 +140,7 @@ def _write(answer: Answer, html: Path | None, markdown: Path | None) -> None:
         write_whole(files, "give another file")
 
 
-def _print(answer: Answer, as_json: bool) -> None:
+def _print(answer: CheckReport, as_json: bool) -> None:
     from reports.check import rendering
     from reports.cli.terminal import written
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from engines import Engine
     from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
-    from reports.versions.column import Column
+    from reports.versions.column import VersionColumn
     from reports.versions.comparison import Comparison
 
 WIDTH = 150  # into a file or a pipe
@@ -145,12 +145,12 @@ def _column(
     scenes: tuple,
     store: Path,
     check: Callable[[], None],
-) -> Column:
+) -> VersionColumn:
     from reports.cli.selection import QUICK_CELL
     from reports.model.cells import QUICK
-    from reports.versions.column import Request, column, modules_in
+    from reports.versions.column import VersionRequest, column, modules_in
 
-    request = Request(
+    request = VersionRequest(
         scenes,
         reference or side.engine,
         modules_in(side.place),

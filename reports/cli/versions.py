@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from engines import Engine
     from reference.scene import Scene
     from reports.cli.terminal import Terminal
-    from reports.versions.column import Column
+    from reports.versions.column import VersionColumn
     from reports.versions.table import Table
 
 WIDTH = 150  # into a file or a pipe
@@ -116,17 +116,17 @@ def _column(
     fresh: bool,
     trees: bool,
     check: object,
-) -> Column:
+) -> VersionColumn:
     from time import monotonic
 
     from reports.cli.selection import QUICK_CELL
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
-    from reports.versions.column import Request, column, modules_in
+    from reports.versions.column import VersionRequest, column, modules_in
 
     place = installed(distributions(engines, name), number)
     begin = monotonic()
-    request = Request(
+    request = VersionRequest(
         scenes,
         name,
         modules_in(place),
@@ -144,7 +144,7 @@ def _column(
     return found
 
 
-def _table(name: str, columns: list[Column]) -> Table:
+def _table(name: str, columns: list[VersionColumn]) -> Table:
     from reports.model.catalogue import PAGES
     from reports.versions.table import Table, entries
 

@@ -141,7 +141,7 @@ HEADER = ("subject", "check", "cases", "median", "99 %", "worst", "faults")
 
 
 @dataclass(frozen=True)
-class Line:
+class Distribution:
     """One check of one subject."""
 
     subject: str
@@ -165,14 +165,14 @@ def label(one: Asked) -> str:
     return f"{chunk.subject.name}{kinds}"
 
 
-def lines(told: Iterable[Asked]) -> list[Line]:
+def lines(told: Iterable[Asked]) -> list[Distribution]:
     """In the order in which subjects and checks first come up."""
     found: dict[tuple[str, str], list[tuple[float, bool]]] = {}
     for one in told:
         for check, (error, bound) in one.told.errors.items():
             found.setdefault((label(one), check), []).append((error, not error <= bound))
     return [
-        Line(subject, check, tuple(error for error, _ in pairs), sum(fault for _, fault in pairs))
+        Distribution(subject, check, tuple(error for error, _ in pairs), sum(fault for _, fault in pairs))
         for (subject, check), pairs in found.items()
     ]
 

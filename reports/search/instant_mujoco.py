@@ -20,7 +20,7 @@ from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
 from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
-from reports.search.law import Answer, Fault, NotAsked, constrained, difference, driving_force, force_difference
+from reports.search.law import Constrained, Fault, NotAsked, constrained, difference, driving_force, force_difference
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -224,7 +224,7 @@ class Instant:
         free = mechanism.unconstrained(pose, twist)
         return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, floor)
 
-    def law(self, velocity_term: bool = True) -> Answer:
+    def law(self, velocity_term: bool = True) -> Constrained:
         """Accelerations (bodies, 3) and forces (rows,); without it, the solver's rows lack their `velocity_term`.
 
         A row of the tree's coordinates is J D with D their directions, and its velocity term (J D)' is what then lacks.
@@ -243,7 +243,7 @@ class Instant:
         told = np.linalg.lstsq(own, (self.law().motion - coasting).reshape(-1), rcond=None)[0]
         return np.asarray(told, dtype=np.float64)
 
-    def missed(self, accelerations: Array, law: Answer | None = None) -> float:
+    def missed(self, accelerations: Array, law: Constrained | None = None) -> float:
         """By what accelerations (nv,) miss the law, relative to the largest."""
         _, _, change = _motion(self.model, self.data, accelerations)
         # What a motion needs is compared with what acts, and with what the motion itself asks for.

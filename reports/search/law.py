@@ -25,20 +25,20 @@ class Fault(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class Constrained:
     """Accelerations or velocities (bodies, 3), and the forces or impulses of the rows (rows,)."""
 
     motion: Array
     force: Array
 
 
-def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Answer:
+def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Constrained:
     """J a = right - give give^T f with M (a - free) = J^T f, for rows (rows, 3 bodies) and `give` (rows, any number).
 
     By the SVD of J M^(-1/2), never through its square.
     """
     if not len(rows):
-        return Answer(free, np.zeros(0))
+        return Constrained(free, np.zeros(0))
     root = np.sqrt(inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
@@ -47,7 +47,7 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
     lacking = left.T @ ((right - rows @ free.reshape(-1)) / norm)
     change = (turned.T @ (lacking / sizes))[: len(root)]
-    return Answer(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
+    return Constrained(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:

@@ -17,7 +17,7 @@ KINDS = ("connect", "weld", "gear", "joint", "tendon")
 
 
 @dataclass(frozen=True)
-class Link:
+class RawBody:
     """A body. `parent`: 0 is the world, 1 the first body. `offset`: tenths of a metre in the parent's frame; `angle` in
     steps of 0.3 rad against it. It has so many `slides` (0 to 2: along the x and y of its own frame as it starts) and
     then, if it `turns`, a hinge at its frame's origin. `centre`: its centre of mass in tenths of a metre; `mass` and
@@ -54,7 +54,7 @@ class Equality:
 class Model:
     """`gravity` in m/s^2; `sparse`: which Jacobian MuJoCo is told to use."""
 
-    links: tuple[Link, ...]
+    links: tuple[RawBody, ...]
     equalities: tuple[Equality, ...]
     gravity: tuple[int, int] = (0, 0)
     sparse: bool = False
@@ -157,7 +157,7 @@ def from_text(text: str) -> Model:
         def plain(values: dict[str, Any]) -> dict[str, Any]:
             return {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
 
-        links = tuple(Link(**plain(each)) for each in told.pop("links"))
+        links = tuple(RawBody(**plain(each)) for each in told.pop("links"))
         equalities = tuple(Equality(**plain(each)) for each in told.pop("equalities"))
         return Model(links, equalities, **plain(told))
     except (TypeError, KeyError, AttributeError) as error:

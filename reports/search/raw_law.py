@@ -19,7 +19,7 @@ from reference.mechanism import Body, Mechanism
 from reference.validation import InvalidMechanism
 from reports.search.law import constrained
 from reports.search.parts import ladder
-from reports.search.raw import Equality, Link, Model, coordinates, wrapped, xml
+from reports.search.raw import Equality, Model, RawBody, coordinates, wrapped, xml
 from reports.search.recipe import LEAST_RANK, NO_MOTION
 
 # pyright: reportAttributeAccessIssue=false
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class IdealModel:
     """A model as the judge sees it: rows of the tree, of the coordinates, and of each equality; all (rows, 3 bodies).
 
     `right` are the values of J a of each; `rates` (coordinates,) a motion that the equalities allow.
@@ -58,7 +58,7 @@ class Judged:
 
 
 @lru_cache(maxsize=4)  # the same model is drawn, judged, and asked of MuJoCo
-def judged(model: Model) -> Judged:
+def judged(model: Model) -> IdealModel:
     """Raises InvalidMechanism where rows are nearly dependent, or something is joined with itself."""
     frames: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0)]
     bodies, tree = [], []
@@ -121,7 +121,7 @@ def _seen(bodies: list[Body], body: int, x: float, y: float) -> tuple[float, flo
     return cosine * (x - at_x) + sine * (y - at_y), cosine * (y - at_y) - sine * (x - at_x)
 
 
-def _moving(model: Model, still: Mechanism, held: int, count: int) -> Judged:
+def _moving(model: Model, still: Mechanism, held: int, count: int) -> IdealModel:
     """With velocities that all rows allow, and the terms that they bring."""
     rows = still.rows(still.pose)
     own = slice(held, held + count)
@@ -162,7 +162,7 @@ def _moving(model: Model, still: Mechanism, held: int, count: int) -> Judged:
         twist = np.zeros_like(twist)
     right = still.bias(still.pose, twist.reshape(-1, 3))
     rates = rows[own] @ twist
-    return Judged(
+    return IdealModel(
         still, (rows[:held], right[:held]), (rows[own], right[own]), tuple(equalities(rows, right, rates)), rates
     )
 
@@ -184,7 +184,7 @@ def errors(model: Model) -> dict[str, float]:
     return {"acceleration": error / size if size > 0 else (np.inf if error > 0 else 0.0)}
 
 
-def found_and_expected(model: Model, judge: Judged) -> tuple[Array, Array]:
+def found_and_expected(model: Model, judge: IdealModel) -> tuple[Array, Array]:
     """Accelerations (coordinates,) of MuJoCo, and of the law that it declares."""
     import mujoco
 
@@ -246,7 +246,7 @@ def _drawn(random: np.random.Generator, kinds: tuple[str, ...]) -> Model:
     for index in range(count):
         slides = 0 if hinged else (0, 0, 1, 2)[whole(0, 3)]
         links.append(
-            Link(
+            RawBody(
                 parent=whole(0, index) if whole(1, 4) == 1 else whole(min(1, index), index),  # few trees, which branch
                 offset=two(8),
                 angle=whole(-10, 10),
@@ -260,7 +260,7 @@ def _drawn(random: np.random.Generator, kinds: tuple[str, ...]) -> Model:
         )
     moving = whole(1, 4) > 1
     if not moving:
-        links = [Link(*(*vars(link).values(),)[:-1]) for link in links]
+        links = [RawBody(*(*vars(link).values(),)[:-1]) for link in links]
     out = Model(tuple(links), (), two(10), sparse=whole(0, 1) == 1)
     size = len(coordinates(out))
     for _ in range(whole(1, MOST_EQUALITIES)):

@@ -37,8 +37,8 @@ CHANGES: dict[str, Change] = {
     "renamed": relabelled,
     "swapped": joints_swapped,
 }
-# Decades of length and mass: in another unit the same mechanism has other numbers.
-UNITS = {"in other lengths": (-3, 0, 0), "in other masses": (0, 2, 0)}
+# Decades of length and of mass: in another unit the same mechanism has other numbers.
+UNITS = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
 NAMES = (*CHANGES, *UNITS)
 
 
@@ -99,16 +99,15 @@ def _rounded(engine: Engine, mechanism: Mechanism) -> float:
     return SEEN / ROUGHLY * max(1.0, mechanism.length_scale / gyration)
 
 
-def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tuple[int, int, int]) -> float:
-    units = tuple(own + more for own, more in zip(recipe.decades, decades, strict=True))
-    other = build(replace(recipe, decades=units))  # type: ignore[arg-type]
-    length, time = 10.0 ** decades[0], 10.0 ** decades[2]
+def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tuple[int, int]) -> float:
+    longer, heavier = decades
+    of_length, of_mass, of_time = recipe.decades
+    other, length = build(replace(recipe, decades=(of_length + longer, of_mass + heavier, of_time))), 10.0**longer
     if abs(other.length_scale / (length * mechanism.length_scale) - 1) > SAME:
         raise NotAsked("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
     run = _run(engine, other)
-    pose = run.pose[-1] / np.array([length, length, 1.0])
-    twist = run.twist[-1] / np.array([length / time, length / time, 1 / time])
-    return _apart(mechanism, engine, pose, twist)
+    unit = np.array([length, length, 1.0])
+    return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit)
 
 
 def touches(engine: Engine) -> bool:

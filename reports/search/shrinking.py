@@ -87,7 +87,7 @@ def _without_link(case: raw.Model, removed: int) -> raw.Model:
     return _of_links(case, links, removed)
 
 
-def _of_links(case: raw.Model, links: Sequence[raw.Link], removed: int = 0) -> raw.Model:
+def _of_links(case: raw.Model, links: Sequence[raw.RawBody], removed: int = 0) -> raw.Model:
     """The model with other links, one of them perhaps gone, and those of its equalities that still have both ends."""
     before = raw.coordinates(case)
     after = raw.coordinates(replace(case, links=tuple(links), equalities=()))

@@ -40,7 +40,7 @@ def placed(pose: Sequence[float]) -> str:
 
 
 @dataclass(frozen=True)
-class Line:
+class Stroke:
     """A line of a drawing: its kind, which gives its look, and its points (points, 2) [m]."""
 
     kind: str
@@ -52,11 +52,11 @@ class Line:
         return f'<path class="{self.kind}" d="{path(self.points, self.closed)}"/>'
 
 
-def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Line]:
+def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
     """What is drawn of a body, in its own frame; its pins are `pins_of`."""
     size = mechanism.length_scale
     points: list[Point] = list(take.ends.get(name, ()))
-    lines: list[Line] = []
+    lines: list[Stroke] = []
     for joint in mechanism.joints:
         for owner, attribute in ((joint.first, "first_point"), (joint.second, "second_point")):
             if owner != name or isinstance(joint, Roll) or not hasattr(joint, attribute):
@@ -67,22 +67,22 @@ def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Line]:
         if isinstance(joint, Skate) and joint.second == name:
             half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
             centre = np.array(joint.second_point)
-            lines.append(Line("blade", np.array([centre - half, centre + half])))
+            lines.append(Stroke("blade", np.array([centre - half, centre + half])))
             points.append((0.0, 0.0))
         if isinstance(joint, Roll):
             for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
                 if owner == name:
                     outline = curve.point(np.linspace(0.0, curve.length, OUTLINE))
-                    lines += [Line("outline", outline, True), Line("spoke", np.array([(0.0, 0.0), outline[0]]))]
-    lines += [Line("curve", np.array(curve)) for owner, curve in take.curves if owner == name]
+                    lines += [Stroke("outline", outline, True), Stroke("spoke", np.array([(0.0, 0.0), outline[0]]))]
+    lines += [Stroke("curve", np.array(curve)) for owner, curve in take.curves if owner == name]
     unique = sorted(dict.fromkeys(points))
     if len(unique) > 1:
-        lines.append(Line("bar", np.array(unique)))
+        lines.append(Stroke("bar", np.array(unique)))
     elif len(unique) == 1 and np.hypot(*unique[0]) > 1e-9 * size:
-        lines.append(Line("bar", np.array([unique[0], (0.0, 0.0)])))
+        lines.append(Stroke("bar", np.array([unique[0], (0.0, 0.0)])))
     elif not lines:
         half = BLOCK * size * np.array([1.0, 0.6])
-        lines.append(Line("outline", half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]), True))
+        lines.append(Stroke("outline", half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]), True))
     return lines
 
 
@@ -106,7 +106,7 @@ def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
     return list(dict.fromkeys(point for owner, point in sides if owner == name))
 
 
-def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Line]:
+def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Stroke]:
     """What does not move: supports, lines of slots, curves that are rolled on; `pose` (times, bodies, 3), the truth."""
     size = mechanism.length_scale
     lines = []
@@ -115,16 +115,16 @@ def ground_lines(mechanism: Mechanism, take: Take, pose: Array) -> list[Line]:
             x, y = joint.first_point if joint.first is None else joint.second_point
             half = SUPPORT * size
             corners = [(x, y), (x - half, y - 1.6 * half), (x + half, y - 1.6 * half)]
-            lines.append(Line("support", np.array(corners), True))
+            lines.append(Stroke("support", np.array(corners), True))
         if isinstance(joint, Slot) and joint.first is None:
             along = np.array([np.cos(joint.line_angle), np.sin(joint.line_angle)])
             origin = np.array(joint.first_point)
             reach = (pose[:, mechanism.body_index(str(joint.second)), :2] - origin) @ along
             ends = (reach.min() - 0.2 * size, reach.max() + 0.2 * size)
-            lines.append(Line("rail", np.array([origin + along * end for end in ends])))
+            lines.append(Stroke("rail", np.array([origin + along * end for end in ends])))
         if isinstance(joint, Roll) and joint.first is None:
-            lines.append(Line("rail", rolled_on(joint, pose, mechanism)))
-    return [*lines, *(Line("curve fixed", np.array(curve)) for owner, curve in take.curves if owner is None)]
+            lines.append(Stroke("rail", rolled_on(joint, pose, mechanism)))
+    return [*lines, *(Stroke("curve fixed", np.array(curve)) for owner, curve in take.curves if owner is None)]
 
 
 def ground(mechanism: Mechanism, take: Take, pose: Array) -> str:

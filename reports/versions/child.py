@@ -1,7 +1,7 @@
 """The process of one column: with a version's folder first on its path, it runs cells and says each row.
 
 Started by `reports.versions.column`, which writes two pickles to its standard input: folders where modules are looked
-for, and a Request. It keeps that open: when it is closed, this process ends, and its workers with it.
+for, and a VersionRequest. It keeps that open: when it is closed, this process ends, and its workers with it.
 """
 
 from __future__ import annotations

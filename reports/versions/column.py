@@ -22,7 +22,7 @@ from reports.run.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
-class Request:
+class VersionRequest:
     """Which scenes, in which engine at how many steps a sample; what is stored already is not run again.
 
     engine: a registered name, or a reference (`engines.loading`) that counts from `folder`; its variants of all scenes
@@ -87,7 +87,7 @@ Watch = Callable[[Sequence[str]], None]
 
 
 @dataclass(frozen=True)
-class Column:
+class VersionColumn:
     """All rows of one version; `trouble`: why there are none of its own, a sentence."""
 
     version: str
@@ -102,7 +102,9 @@ class Column:
         return next(told, "").removeprefix("ours: ")
 
 
-def column(version: str, request: Request, engines: Sequence[Engine], watch: Watch = lambda labels: None) -> Column:
+def column(
+    version: str, request: VersionRequest, engines: Sequence[Engine], watch: Watch = lambda labels: None
+) -> VersionColumn:
     """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it.
 
     engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
@@ -122,7 +124,7 @@ def column(version: str, request: Request, engines: Sequence[Engine], watch: Wat
             case Running(labels):
                 watch(labels)
     if trouble is None:
-        return Column(version, tuple(rows), tuple(trees))
+        return VersionColumn(version, tuple(rows), tuple(trees))
     there = {(row.scene, row.variant, row.every) for row in rows}
     outcome = Outcome.UNSUPPORTED if trouble.lacks else Outcome.ABORTED
     for every in request.every:
@@ -132,7 +134,7 @@ def column(version: str, request: Request, engines: Sequence[Engine], watch: Wat
             for cell in cells
             if (cell.scene.name, cell.engine.variant, every) not in there and estimated_cost(cell) <= request.most
         ]
-    return Column(version, tuple(rows), tuple(trees), trouble.sentence)
+    return VersionColumn(version, tuple(rows), tuple(trees), trouble.sentence)
 
 
 def _told(row: Measurement, version: str) -> Measurement:
@@ -143,7 +145,7 @@ def _told(row: Measurement, version: str) -> Measurement:
     return row
 
 
-def _messages(request: Request) -> Iterator[Any]:
+def _messages(request: VersionRequest) -> Iterator[Any]:
     """What the process says; a Trouble at the end if it ended too early."""
     with temporary_folder() as folder:
         # In a folder of its own: what an engine leaves behind goes with it, and what lies there hides no module.

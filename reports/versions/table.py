@@ -14,7 +14,7 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import DIGITS, agrees, quantity
 from reports.run.installed import numbers
 from reports.versions.catalogue import compared_versions
-from reports.versions.column import Column, TreesRow
+from reports.versions.column import TreesRow, VersionColumn
 
 TREES = "random trees"
 ACCELERATION = "acceleration"
@@ -65,7 +65,7 @@ class Table:
         return tuple(dict.fromkeys(entry.engine for entry in self.entries))
 
 
-def entries(engine: str, column: Column, quantities: Mapping[str, str]) -> list[Entry]:
+def entries(engine: str, column: VersionColumn, quantities: Mapping[str, str]) -> list[Entry]:
     """A column's lines; `quantities`: by which error a scene is compared, the angle's unless it is given."""
     out = []
     for row in column.rows:
