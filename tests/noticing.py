@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 from engines import Engine
 from reference.scene import Scene
-from reports.gate.baseline import Old
-from reports.gate.change import moved
+from reports.gate.change import Old, moved
 from reports.gate.prediction import Prediction, kinds, prediction
-from reports.gate.verdicts import Case, checks
+from reports.gate.theory import Case, checks
 from reports.model.catalogue import PAGES
 from reports.model.cells import FULL, Cell, estimated_cost
 from reports.model.measure import Measurement, measure

@@ -18,7 +18,7 @@ import pytest
 
 from reports.check.pictures import Pose, Shown
 from reports.cli.selection import shown_cells
-from reports.gate.declared import Softened, all_tasks
+from reports.gate.prediction import Softened, all_tasks
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank

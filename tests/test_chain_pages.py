@@ -20,7 +20,7 @@ from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCent
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reference.validation import InvalidMechanism
-from reports.gate.declared import all_tasks
+from reports.gate.prediction import all_tasks
 from reports.model.cells import Cell, sweep_cells
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome

@@ -11,7 +11,7 @@ import pytest
 from engines import Promise, registry
 from reference.scene import Scene
 from reference.scenes import SCENES
-from reports.gate.baseline import Baseline, Old
+from reports.gate.change import Baseline, Old
 from reports.gate.grid_tests import (
     GRID,
     pytest_generate_tests,

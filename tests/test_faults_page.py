@@ -17,7 +17,7 @@ import pytest
 
 from engines import registry, single_run
 from reports.cli.selection import page_tasks
-from reports.gate.declared import all_tasks
+from reports.gate.prediction import all_tasks
 from reports.model.page import Material
 from reports.model.tasks import answered
 from reports.pages.faults import groove, scripts

@@ -11,13 +11,11 @@ from typing import Any
 import pytest
 
 from engines import EXACT, Promise, Softness, Unpromised
-from reports.gate.baseline import Baseline
-from reports.gate.order_check import TOO_FEW, order
+from reports.gate.change import Baseline
 from reports.gate.prediction import Prediction
-from reports.gate.table import lines, report
-from reports.gate.theory import ROOM, ROOM_OWN, idle, theory
-from reports.gate.verdicts import Case, cases, checks
-from reports.gate.walk import Verdict
+from reports.gate.pytest_plugin import lines, report
+from reports.gate.theory import ROOM, ROOM_OWN, TOO_FEW, Case, cases, checks, idle, order, theory
+from reports.gate.walk import CaseVerdict
 from reports.model.cells import Cell
 from reports.model.checks import Check, Deviation, complaints, nearest
 from reports.model.measure import Measurement, blank, measure
@@ -302,10 +300,10 @@ def test_a_deviation_that_doubled_or_went_away_or_has_no_check_is_a_complaint():
 def test_an_outcome_that_is_known_is_that_one_and_no_other(outcome):
     case = Case(SCENE, Toy(), Promise(2), (("outcome", Deviation("by design: x", outcome=Outcome.SATURATED)),))
     ended = row(outcome=outcome)
-    told = Verdict(case, (ended,), theory(JUDGE, Promise(2), None, ended)).theory_complaints
+    told = CaseVerdict(case, (ended,), theory(JUDGE, Promise(2), None, ended)).theory_complaints
     assert len(told) == (outcome != Outcome.SATURATED)
     assert all("known is saturated" in line for line in told)
-    better = Verdict(case, (row(),), theory(JUDGE, Promise(2), None, row())).theory_complaints
+    better = CaseVerdict(case, (row(),), theory(JUDGE, Promise(2), None, row())).theory_complaints
     assert any("deviates no longer" in line for line in better)
 
 
@@ -333,8 +331,8 @@ def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
     assert Check("error", "angle", 0.0, 0.0).passed
 
 
-def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> Verdict:
-    return Verdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, before=(None,))
+def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> CaseVerdict:
+    return CaseVerdict(Case(SCENE, Toy(), Promise(2), known), (row(angle=2e-5),), found, moved, before=(None,))
 
 
 def test_the_report_tells_every_case_its_bound_and_what_failed():

@@ -14,11 +14,23 @@ from engines.altered import Altered
 from engines.lagrange import Lagrange
 from reference.four_bar.scenes import DrivenFourBar
 from reference.mechanism import Mechanism
-from reports.gate.baseline import BadBaseline, Baseline, Old, identity, mixed, read_baseline
-from reports.gate.change import change, cost, drift, growth, known_by_now
-from reports.gate.nudged import Nudge, nudged_cells
-from reports.gate.table import changes
-from reports.gate.verdicts import Case
+from reports.gate.change import (
+    BadBaseline,
+    Baseline,
+    Nudge,
+    Old,
+    change,
+    cost,
+    drift,
+    growth,
+    identity,
+    known_by_now,
+    mixed,
+    nudged_cells,
+    read_baseline,
+)
+from reports.gate.pytest_plugin import changes
+from reports.gate.theory import Case
 from reports.gate.walk import lost, remarks, vanished, walk
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure
@@ -116,6 +128,15 @@ def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
     assert not change(torn, old())[0].passed
     assert change(torn, old(Outcome.TORN))[0].passed
     assert change(torn, old(Outcome.SATURATED), [row(outcome=Outcome.SATURATED)])[0].passed
+
+
+def test_the_numbers_of_a_run_that_is_not_resolved_are_held_and_those_of_a_torn_one_are_luck():
+    now, before = row(outcome=Outcome.UNRESOLVED, angle=2e-5), old(Outcome.UNRESOLVED, angle=1e-5)
+    assert [check.quantity for check in change(now, before) if not check.passed] == ["angle"]
+    near = [row(outcome=Outcome.UNRESOLVED, angle=1.8e-5), row(outcome=Outcome.TORN, angle=9.0)]
+    assert of(change(now, before, near), "angle").passed
+    assert not of(change(now, before, near[1:]), "angle").passed
+    assert [check.quantity for check in change(row(outcome=Outcome.TORN, angle=1.0), old(Outcome.TORN))] == ["outcome"]
 
 
 def test_with_other_versions_another_way_to_fail_fails_and_one_that_is_none_any_more_does_not():

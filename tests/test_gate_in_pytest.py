@@ -11,7 +11,7 @@ from tests.test_gate_baseline import written
 
 SUITE = """
 import pytest
-from reports.gate.verdicts import Case
+from reports.gate.theory import Case
 from engines import Promise
 from tests.toys import Disc, Toy
 

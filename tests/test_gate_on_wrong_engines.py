@@ -10,7 +10,7 @@ import pytest
 from engines import Engine, box2d, mujoco, pymunk, registry
 from reference.four_bar.scenes import DrivenFourBar
 from reports.gate.prediction import prediction
-from reports.gate.verdicts import Case, checks, kinds
+from reports.gate.theory import Case, checks, kinds
 from reports.model.checks import Check
 from reports.model.measure import measure
 from tests.wrong_adapters import MISTAKES, SMALL, Wrong

@@ -9,8 +9,7 @@ import pytest
 
 from engines import Holder, Softness
 from reference.four_bar import FreeFourBar
-from reports.gate.declared import MOST_BODIES, Softened, declared_error, soft_tasks
-from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS
+from reports.gate.prediction import COMPLIANCE, DAMPING, MOST_BODIES, STIFFNESS, Softened, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation

@@ -15,7 +15,7 @@ from engines import Unsupported, mujoco, pymunk, registry
 from reference.scenes import SCENES
 from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
-from reports.gate.declared import all_tasks
+from reports.gate.prediction import all_tasks
 from reports.model import fingerprint
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell

@@ -17,9 +17,8 @@ from engines.lagrange import Lagrange
 from reference.four_bar.scenes import DrivenFourBar
 from reference.slider_crank import DrivenSliderCrank
 from reference.wheels.cart import Cart
-from reports.gate.baseline import Old
-from reports.gate.change import change
-from reports.gate.verdicts import cases
+from reports.gate.change import Old, change
+from reports.gate.theory import cases
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure

@@ -15,7 +15,7 @@ from pathlib import Path
 from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.known import Known, registered, with_remembered
 from reports.cli.selection import shown_cells
-from reports.gate.declared import all_tasks
+from reports.gate.prediction import all_tasks
 from reports.model.outcomes import Loss
 from reports.model.page import Material, Page
 from reports.pages.rendering import render_page

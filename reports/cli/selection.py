@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from engines import Engine
 from reference.scene import Scene
 from reference.validation import LARGEST_COUNT
-from reports.gate.declared import all_tasks
+from reports.gate.prediction import all_tasks
 from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
 from reports.model.ending import BadInput, nearest
 from reports.model.page import Page

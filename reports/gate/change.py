@@ -1,16 +1,201 @@
-"""The gate of change: a row against the same cell of a baseline, and a method against itself over all its scenes."""
+"""The gate of change: a row against the same cell of a baseline, an errors.csv of an earlier run with its versions.
+
+What rounding may do to a run is measured: the same engine of a mechanism whose numbers are rounded otherwise. A start
+alone does not tell it: where a motion is prescribed, or a projection puts the start back, no bit of a result depends on
+the start's last one. So masses, gravity and the points where joints and forces act are rounded otherwise too: all that
+enters a step. No order of summation is tried: another order of bodies is another tree of joints in MuJoCo, and another
+order of sweeps in pymunk, which are other methods with other errors.
+"""
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Iterable, Sequence
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from statistics import median
+from typing import Any, TypeVar
 
-from reports.gate.baseline import Old
+import numpy as np
+
+from engines.altered import Altered
+from reference.mechanism import Mechanism
+from reports.model.cells import Cell
 from reports.model.checks import CHANGE, Check
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.quantities import room
+from reports.model.quantities import QUANTITIES, room
+from reports.write.csv_files import DIGESTS, not_as_written
+from reports.write.provenance import still_installed
+
+# scene, method, samples, steps a sample: the same cell in every run, whatever its settings are by now.
+Identity = tuple[str, str, int, int]
+IDENTITY = ("scene", "engine", "variant", "samples", "every")  # the columns that tell it
+# The file beside errors.csv in whose comments the versions stand, in the words of `reports.write.provenance.versions`.
+BESIDE = "timings.csv"
+
+MOST = 5  # files that a sentence names
+
+
+class BadBaseline(ValueError):
+    """A file that is no errors.csv; the message is one line that says what is wrong with it."""
+
+
+@dataclass(frozen=True)
+class Old:
+    """What a baseline knows of a cell: its outcome, errors by quantity, how many rows' reactions the engine told, and
+    `cpu`, seconds a simulated second (NaN where nobody has timed it)."""
+
+    outcome: Outcome
+    errors: Mapping[str, float]
+    reaction_rows: int = 0
+    cpu: float = math.nan
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """The cells of an earlier run, the versions it was made with ("" where nobody says), and the folder it lies in."""
+
+    cells: Mapping[Identity, Old]
+    versions: str = ""
+    folder: Path | None = None
+
+    @property
+    def same_versions(self) -> bool:
+        """Whether numbers have to be the same: a file whose versions nobody says is taken at its word."""
+        return self.versions == "" or still_installed(self.versions)
+
+
+def mixed(baseline: Baseline) -> str:
+    """One sentence if the baseline's file and the pages beside it were not written together; empty if they were, and
+    where there are none, as in an installed copy."""
+    if baseline.folder is None or not (baseline.folder / "index.md").exists():
+        return ""
+    found = not_as_written(baseline.folder)
+    if found is None:
+        return (
+            f"Nothing says whether {baseline.folder} was written at once: it has no {DIGESTS}; write the report anew."
+        )
+    if not found:
+        return ""
+    more = f" and {len(found) - MOST} more" if len(found) > MOST else ""
+    return f"Not as the report in {baseline.folder} wrote them: {', '.join(found[:MOST])}{more}; write it anew."
+
+
+def identity(row: Measurement) -> Identity:
+    """Which cell a row is of."""
+    return row.scene, row.method, row.samples, row.every
+
+
+def versions_beside(path: Path) -> str:
+    """What an errors.csv was made with, from the timings.csv that is written with it; "" without one."""
+    try:
+        lines = path.with_name(BESIDE).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return ""
+    return next((line.removeprefix("# ") for line in lines if line.startswith("# Python ")), "")
+
+
+def _identity(row: Mapping[str, str]) -> Identity:
+    """Of a row of a file. Raises ValueError or TypeError for a damaged one."""
+    return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
+
+
+def _seconds_beside(path: Path) -> dict[Identity, float]:
+    """CPU seconds a simulated second, from the timings.csv beside an errors.csv, as far as it can be read."""
+    found: dict[Identity, float] = {}
+    try:
+        lines = path.with_name(BESIDE).read_text(encoding="utf-8").splitlines()
+        for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+            if row["purpose"] == "sweep":
+                found[_identity(row)] = float(row["cpu"])
+    except (OSError, ValueError, TypeError, KeyError):
+        return found
+    return found
+
+
+def read_baseline(path: Path) -> Baseline:
+    """Read an errors.csv. Raises BadBaseline, in one line, for a file that is not there or is none."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not text"
+        raise BadBaseline(f"baseline {path}: {reason}; give the errors.csv of a run") from None
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    errors = tuple(q.name for q in QUANTITIES)
+    needed = {*IDENTITY, "purpose", "outcome", "reaction_rows", *errors}
+    missing = sorted(needed - set(rows[0] if rows else ()))
+    if missing:
+        raise BadBaseline(f"baseline {path}: it has no column {missing[0]!r}; give the errors.csv of a run")
+    seconds = _seconds_beside(path)
+    cells: dict[Identity, Old] = {}
+    for number, row in enumerate(rows, start=1):
+        if row["purpose"] != "sweep":
+            continue
+        try:
+            key = _identity(row)
+            told = {name: float(row[name]) for name in errors}
+            cpu = seconds.get(key, math.nan)
+            cells[key] = Old(Outcome(row["outcome"]), told, int(row["reaction_rows"]), cpu)
+        except (ValueError, TypeError):
+            raise BadBaseline(
+                f"baseline {path}: row {number} is damaged ({row['scene']}); give an errors.csv"
+            ) from None
+    return Baseline(cells, versions_beside(path), path.parent)
+
+
+# Roundings that are tried.
+SEEDS = (1, 2, 3)
+EPSILON = float(np.finfo(float).eps)
+
+Part = TypeVar("Part")
+
+
+@dataclass(frozen=True)
+class Nudge:
+    """Masses, inertias and all vectors of a mechanism moved by one rounding up or down, or left; the same for a seed.
+
+    Lone numbers of joints and forces (a gear's ratio, an angle) stay: engines treat some of them, such as 1, in a way
+    of their own. So do zeros.
+    """
+
+    seed: int
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism in other roundings."""
+        random = np.random.default_rng([self.seed, zlib.crc32(repr(mechanism.row_names).encode())])
+        return replace(
+            mechanism,
+            bodies=tuple(_moved(body, random, ("mass", "inertia")) for body in mechanism.bodies),
+            joints=tuple(_moved(joint, random) for joint in mechanism.joints),
+            gravity=_rounded(mechanism.gravity, random),
+            forces=tuple(_moved(force, random) for force in mechanism.forces),
+        )
+
+
+def _moved(part: Part, random: np.random.Generator, lone: tuple[str, ...] = ()) -> Part:
+    """A body, joint or force with its vectors, and these lone numbers, rounded otherwise."""
+    found: dict[str, Any] = {}
+    for field in fields(part):  # type: ignore[arg-type]
+        value = getattr(part, field.name)
+        if isinstance(value, tuple) and value and all(isinstance(each, float) for each in value):
+            found[field.name] = _rounded(value, random)
+        elif field.name in lone:
+            found[field.name] = _rounded((value,), random)[0]
+    return replace(part, **found)  # type: ignore[type-var]
+
+
+def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
+    signs = random.integers(-1, 2, len(values))
+    return tuple(float(value * (1 + EPSILON * sign)) for value, sign in zip(values, signs, strict=True))
+
+
+def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
+    """The same cell in other roundings of all that enters it."""
+    return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)
+
 
 # With other versions an error may become this many times as large: by luck, as where two errors no longer cancel.
 WORSE = 3.0
@@ -29,10 +214,10 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
     The bound is the `room` of the quantity (`reports.model.quantities`), which is never zero, and what `nudged`, the
     same cell in other roundings, differ by: where the motion amplifies rounding. `amplified`: as `Promise.amplified`.
     """
-    if not (Outcome(row.outcome).comparable and old.outcome.comparable):
+    if not _has_numbers(row.outcome, old.outcome):
         same = row.outcome == old.outcome or any(other.outcome == old.outcome for other in nudged)
         return (_outcome(row, old, same),)
-    others = [other for other in nudged if Outcome(other.outcome).comparable]
+    others = [other for other in nudged if _has_numbers(other.outcome, old.outcome)]
     out = []
     for name, before in old.errors.items():
         now = getattr(row, name)
@@ -45,6 +230,14 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
         told = f", {now:.4g}; it was {before:.4g}"
         out.append(Check(CHANGE, name, abs(now - before), sum(value for _, value in terms), terms, told))
     return (*out, *_reactions(row, old))
+
+
+def _has_numbers(now: str, before: str) -> bool:
+    """Whether the numbers of two runs that ended so have to be the same: both can be compared, or both say of
+    themselves that they are not resolved. Those of a run that is torn or lost are as large as chance has it."""
+    if now == before == Outcome.UNRESOLVED:
+        return True
+    return Outcome(now).comparable and Outcome(before).comparable
 
 
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:

@@ -11,8 +11,8 @@ import pytest
 
 from engines import registry
 from reports.gate.pytest_plugin import GIVEN, KNOWN
-from reports.gate.verdicts import Case, cases
-from reports.gate.walk import Verdict, grown, lost
+from reports.gate.theory import Case, cases
+from reports.gate.walk import CaseVerdict, grown, lost
 from reports.model.catalogue import PAGES, with_engines
 from reports.model.outcomes import Outcome
 
@@ -30,7 +30,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("case", [pytest.param(case, id=case.label) for case in found])
 
 
-def verdict_of(verdicts: dict[Case, Verdict], case: Case) -> Verdict:
+def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
     """The verdict of a case; a skip where its engine is an extra that is not installed."""
     if absent := registry.missing(case.engine):
         pytest.skip(absent)
@@ -38,7 +38,7 @@ def verdict_of(verdicts: dict[Case, Verdict], case: Case) -> Verdict:
 
 
 @pytest.mark.crosscheck
-def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, Verdict], case: Case) -> None:
+def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, CaseVerdict], case: Case) -> None:
     verdict = verdict_of(verdicts, case)
     if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
         # What can't be built can't be at any step, and says why.
@@ -49,14 +49,14 @@ def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, Verdict], 
 
 
 @pytest.mark.crosscheck
-def test_a_method_gives_the_numbers_of_the_baseline(verdicts: dict[Case, Verdict], case: Case) -> None:
+def test_a_method_gives_the_numbers_of_the_baseline(verdicts: dict[Case, CaseVerdict], case: Case) -> None:
     verdict = verdict_of(verdicts, case)
     assert not verdict.change_complaints, "\n".join(verdict.change_complaints)
 
 
 @pytest.mark.crosscheck
 def test_with_other_versions_no_method_is_worse_over_all_its_scenes(
-    request: pytest.FixtureRequest, verdicts: dict[Case, Verdict]
+    request: pytest.FixtureRequest, verdicts: dict[Case, CaseVerdict]
 ) -> None:
     found = [str(check) for check in grown(verdicts.values(), request.config.stash[KNOWN]) if not check.passed]
     assert not found, "\n".join(found)

@@ -126,7 +126,7 @@ def stepped(
     project: bool = False,
 ) -> Trajectory:
     """A mechanism's motion as the gate has it: by compiled steps where there are some, else as `in_numpy`."""
-    found = _compiled(mechanism, samples, spacing, order, every, soft, project) if installed() else None
+    found = _compiled(mechanism, samples, spacing, order, every, soft, project)
     return found or in_numpy(mechanism, samples, spacing, order, every, soft, project)
 
 
@@ -142,11 +142,9 @@ def _compiled(
 
     Rows that depend on each other at the start are told apart by their compliances, if they give way.
     """
-    machine = Machine.of(mechanism)
+    machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.dependent):
         return None
-    if soft is not None:
-        machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
     poses, twists = machine.empty(samples)
     tableau = Tableau(*TABLEAUS[order], NODES[order])
     if machine.march(tableau, 1 if project else 0, spacing / every, every, 0, poses, twists) < samples:
@@ -154,8 +152,21 @@ def _compiled(
     reactions, _ = machine.reactions(spacing, poses, twists)
     if not np.all(np.isfinite(reactions)) or machine.told(SMALLEST) < RANK_TOLERANCE:
         return None
-    shape = (samples + 1, *mechanism.pose.shape)
-    t = np.arange(samples + 1, dtype=np.float64) * spacing
+    return _trajectory(mechanism, spacing, poses, twists, reactions)
+
+
+def _machine(mechanism: Mechanism, soft: Softness | None) -> Machine | None:
+    """The compiled mechanism, with joints that give way where a softness is given; None without numba."""
+    machine = Machine.of(mechanism) if installed() else None
+    if machine is not None and soft is not None:
+        machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
+    return machine
+
+
+def _trajectory(mechanism: Mechanism, spacing: float, poses: Array, twists: Array, reactions: Array) -> Trajectory:
+    """Of a machine's poses and twists (times, coordinates and the ground's three), `spacing` [s] apart."""
+    shape = (len(poses), *mechanism.pose.shape)
+    t = np.arange(len(poses), dtype=np.float64) * spacing
     return Trajectory(t, poses[:, :-3].reshape(shape), twists[:, :-3].reshape(shape), reactions)
 
 
@@ -165,10 +176,9 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Softness) 
     singular position is passed, where a spring pulls with its gap over a singular value. None without numba, or where
     more than MOST steps don't do.
     """
-    machine = Machine.of(mechanism) if installed() else None
+    machine = _machine(mechanism, soft)
     if machine is None:
         return None
-    machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
     poses, twists = machine.empty(samples * PARTS)
     tableau, length = Tableau(*TABLEAUS[4], NODES[4]), spacing / PARTS
     unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies) + 1)
@@ -193,10 +203,7 @@ def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Softness) 
             coarse, steps = fine, 3 * steps
         steps = max(1, steps // 3)
     reactions, _ = machine.reactions(length, poses, twists)
-    shape = (samples + 1, *mechanism.pose.shape)
-    t = np.arange(samples + 1, dtype=np.float64) * spacing
-    pose, twist = (found[::PARTS, :-3].reshape(shape) for found in (poses, twists))
-    return Trajectory(t, pose, twist, reactions[::PARTS])
+    return _trajectory(mechanism, spacing, poses[::PARTS], twists[::PARTS], reactions[::PARTS])
 
 
 def in_numpy(

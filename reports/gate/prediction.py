@@ -20,11 +20,14 @@ from engines.motions import is_prescribed
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.judge import QUANTITY_NAMES, errors
+from reports.model.cells import mechanism_of
 from reports.model.errors import constraint_errors, largest, motion_errors
 from reports.model.measure import SATURATED, TORN
+from reports.model.page import Page
+from reports.model.tasks import Answer, Task, Values
 
 # Which rows are soft, and whether they have the term of velocities: what the judge has to run once.
-Kind = tuple[tuple[bool, ...], bool]
+SoftKind = tuple[tuple[bool, ...], bool]
 
 # Joints are compared at these, MuJoCo's as shipped but for a smaller compliance, and results scaled: what gives way is
 # proportional to the compliance and to the inverse stiffness, or to the time 1 / damping by which slip lags.
@@ -62,7 +65,7 @@ class Prediction:
     speed: float
     acceleration: float
     changing: tuple[float, float]
-    soft: Mapping[Kind, Mapping[str, float]]
+    soft: Mapping[SoftKind, Mapping[str, float]]
     gapped: tuple[bool, ...]
     prescribed: bool = False
     earlier: Mapping[str, float] = field(default_factory=dict)
@@ -150,7 +153,7 @@ class Prediction:
 
 
 def given(
-    soft: Mapping[Kind, Mapping[str, float]], quantity: str, softness: Softness | None, gapped: Sequence[bool]
+    soft: Mapping[SoftKind, Mapping[str, float]], quantity: str, softness: Softness | None, gapped: Sequence[bool]
 ) -> float:
     """What a softness costs, in proportion to the judge's own errors by kind (`Prediction.soft`).
 
@@ -180,7 +183,7 @@ def _worse(one: Mapping[str, float], other: Mapping[str, float]) -> Mapping[str,
     return out
 
 
-def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[Kind]:
+def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
     """What the judge has to know of softness to judge these engines in a scene."""
     mechanism, found = scene.mechanism(), set()
     for engine in engines:
@@ -192,7 +195,7 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[Kind]:
 
 
 @cache
-def prediction(scene: Scene, soft: frozenset[Kind] = frozenset()) -> Prediction:
+def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Prediction:
     """The scene's prediction, worked out once a process: a second or two, more for a hundred bodies.
 
     Joints are left alone and projected: where the motion is prescribed a projection leaves nothing of the error, and at
@@ -274,3 +277,61 @@ def _judged(scene: Scene, order: int, every: int) -> Mapping[str, float]:
     found = [errors(scene, order, every, project=project) for project in (False, True)]
     kept = [told for told in found if told["angle"] <= SATURATED] or found
     return _worse(kept[0], kept[-1])
+
+
+# The judge's own steps take minutes for more bodies than this: of those only the gate asks it.
+MOST_BODIES = 20
+# One stage of the judge [s] for a few bodies, about; a step has four.
+STAGE = 1e-3
+
+
+@dataclass(frozen=True)
+class Softened(Task):
+    """Largest errors, by quantity, of joints that give way as the judge's own do; see `reports.gate.prediction`."""
+
+    scene: Scene
+    rows: tuple[bool, ...]
+    complete: bool
+
+    @property
+    def cost(self) -> float:
+        steps = self.scene.samples * max(1, math.ceil(self.scene.spacing * DAMPING / 2))
+        return 4 * STAGE * steps
+
+    @property
+    def label(self) -> str:
+        soft = "soft joints" if self.complete else "joints without their velocity term"
+        return f"{self.scene.name}: {soft}, by the judge"
+
+    def run(self) -> Values:
+        return {name: np.array(value) for name, value in softened(self.scene, self.rows, self.complete).items()}
+
+
+def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...]:
+    """What the judge has to run once to tell what these engines declare in a scene; none where it has many bodies."""
+    if len(mechanism_of(scene).bodies) > MOST_BODIES:
+        return ()
+    return tuple(Softened(scene, *kind) for kind in sorted(kinds(scene, engines)))
+
+
+def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
+    """What the engine's declared softness alone costs at this step [s]; 0 where it declares none, NaN if not known."""
+    mechanism = mechanism_of(scene)
+    softness = engine.softness(mechanism, step)
+    soft: dict[SoftKind, dict[str, float]] = {}
+    for complete in (True, False):
+        rows = softness.rows if softness is not None else ()
+        answer = answers.get(Softened(scene, rows, complete))
+        if answer is not None and answer.finished:
+            soft[rows, complete] = {name: answer.number(name) for name in QUANTITY_NAMES}
+    try:
+        return given(soft, quantity, softness, mechanism.holonomic.tolist())
+    except KeyError:  # the judge was not asked, or failed
+        return math.nan
+
+
+def all_tasks(page: Page) -> tuple[Task, ...]:
+    """The tasks of a page, of its experiments, and of what its engines declare, each once."""
+    experiments = [task for failure in page.failures for task in failure.tasks]
+    declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
+    return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))

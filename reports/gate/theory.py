@@ -1,18 +1,61 @@
-"""The gate of theory: what a method's order, its softness and rounding may cost in a scene, against what it cost."""
+"""The gate of theory: what a method's order, its softness and rounding may cost in a scene, against what it cost.
+
+`Case` is one scene in one method, with what is promised of it; the grid is all of them.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
-from engines import EXACT, Promise, Softness, Unpromised
-from reports.gate.prediction import Prediction
-from reports.model.checks import Check
-from reports.model.convergence import ROOM_SOFT
+from engines import EXACT, Engine, Promise, Softness, Unpromised
+from engines.motions import is_prescribed
+from reference.scene import Scene
+from reports.gate.judge import errors_as_soft
+from reports.gate.prediction import Prediction, kinds, prediction
+from reports.model.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
+from reports.model.checks import Check, Deviation
+from reports.model.convergence import ENOUGH as ENOUGH_POINTS
+from reports.model.convergence import ROOM_SOFT, Verdict, fit
 from reports.model.measure import SATURATED, Measurement
 from reports.model.outcomes import Outcome
+from reports.model.page import Page
 from reports.model.quantities import QUANTITIES
+
+# An observed order may lie this much below the promised one: at a tenth of a radian the next power is a tenth of the
+# leading one, half a decade on a thirtieth, and 10^0.5 in steps turns that into 0.1; the sign of it is unknown. A last
+# point a few times above rounding takes about as much again.
+BELOW = 0.4
+# And this much above it: a promise that is one too low is noticed.
+ABOVE = 0.95
+# Errors above this [rad] are not proportional to what causes them, so no order is read from them.
+PROPORTIONAL = 0.1
+TOO_FEW = "fewer than three steps have an error above rounding and below a tenth of a radian"
+
+
+def order(promise: Promise | Unpromised, rows: Sequence[Measurement]) -> tuple[Check, ...]:
+    """The check of one method's rows, if they can tell: three points that are above rounding and small enough. With
+    fewer it can't fail, and says so.
+
+    measured: how far the observed order is from the promised one, in multiples of what it may be. An error that levels
+    off, grows or jumps about has the order 0.
+    """
+    if isinstance(promise, Unpromised) or promise.order == EXACT:
+        return ()
+    usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]
+    found = fit([row.step for row in usable], [row.angle for row in usable], ROUNDING["angle"])
+    above = [row for row in usable if row.angle > ROUNDING["angle"]]
+    if len(above) < ENOUGH_POINTS:
+        return (Check("order", "angle", 0.0, math.inf, sentence=f", {TOO_FEW}"),)
+    flat = found.verdict in (Verdict.PLATEAU, Verdict.LEVELS, Verdict.GROWS, Verdict.ERRATIC)
+    observed = 0.0 if flat or found.points < 2 else found.order
+    short = promise.order - observed
+    value = f" at {found.plateau:.2g} rad" if found.verdict is Verdict.PLATEAU else f", order {observed:.2f}"
+    told = f", {found.verdict}{value}"
+    return (Check("order", "angle", short / BELOW if short > 0 else -short / ABOVE, 1.0, sentence=told),)
+
 
 # Check -> the quantities that it holds.
 HELD: dict[str, tuple[str, ...]] = {
@@ -173,3 +216,105 @@ def _without_promise(quantity: str, prediction: Prediction, rows: Sequence[Measu
 def idle(checks: Iterable[Check]) -> Counter[str]:
     """How many checks can't fail, by the reason: those with an infinite bound."""
     return Counter(check.sentence.removeprefix(", ") or "no bound" for check in checks if math.isinf(check.bound))
+
+
+# The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
+# fast motion shows only below its time scale.
+STEPS = (*QUICK, 3 * QUICK[-1])
+COST_LIMIT = 0.5
+
+
+@dataclass(frozen=True)
+class Case:
+    """One scene in one method: what is promised, and which checks (by name) are known to be missed."""
+
+    scene: Scene
+    engine: Engine
+    promise: Promise | Unpromised
+    known: tuple[tuple[str, Deviation], ...] = ()
+
+    @property
+    def method(self) -> str:
+        return f"{self.engine.name} {self.engine.variant}"
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name}-{self.method}"
+
+    @property
+    def ours(self) -> bool:
+        """Whether scene and engine are those of this suite, whose rows are published."""
+        return {type(each).__module__.partition(".")[0] for each in (self.scene, self.engine)} <= {
+            "reference",
+            "engines",
+        }
+
+    @property
+    def amplified(self) -> float:
+        """How many times the usual rounding of velocities the method carries."""
+        return self.promise.amplified if isinstance(self.promise, Promise) else 1.0
+
+    def cells(self) -> tuple[Cell, ...]:
+        """What is run of it, coarse steps first.
+
+        In a motion that is prescribed a wrong mass shows in the reactions alone, so those of first order, which are
+        wrong by as much as they change in a step, need finer ones.
+        """
+        mechanism = mechanism_of(self.scene)
+        alone = is_prescribed(mechanism) and isinstance(self.promise, Promise) and self.promise.of("reaction") == 1
+        rigid = self.engine.softness(mechanism, self.scene.spacing) is None
+        steps = FULL if alone and rigid else STEPS
+        return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT)
+
+
+def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
+    """The grid: what an engine promises of a scene's mechanism, unless the page knows better of that motion."""
+    return tuple(
+        _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
+    )
+
+
+def _case(page: Page, scene: Scene, engine: Engine) -> Case:
+    method = f"{engine.name} {engine.variant}"
+    known = {check: value for (name, own, check), value in page.known.items() if (name, own) == (scene.name, method)}
+    promise = page.orders.get((scene.name, method)) or engine.order(mechanism_of(scene))
+    return Case(scene, engine, promise, tuple(known.items()))
+
+
+def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
+    """Scene -> the kinds of softness that these cases ask the judge for."""
+    by_scene: dict[Scene, list[Engine]] = {}
+    for case in chosen:
+        by_scene.setdefault(case.scene, []).append(case.engine)
+    return {scene: kinds(scene, engines) for scene, engines in by_scene.items()}
+
+
+def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Softness | None:
+    """The softness of a case whose cost no other softness tells of, so that the judge has to run with it; else None.
+
+    Through singular positions nothing is in proportion to softness.
+    """
+    softness = case.engine.softness(mechanism_of(case.scene), rows[-1].step)
+    wanted = isinstance(case.promise, Promise) and Outcome(rows[-1].outcome).comparable
+    return softness if wanted and not math.isfinite(judge.give("angle", softness)) else None
+
+
+def checks(
+    case: Case,
+    rows: Sequence[Measurement],
+    judge: Prediction | None = None,
+    as_soft: Mapping[str, float] | None = None,
+) -> tuple[Check, ...]:
+    """Theory at the finest step and the order over all, of a case's rows from coarse to fine; none if unsupported.
+
+    `judge`: the scene's prediction, `as_soft`: its errors with `own_softness`; worked out here unless they are given.
+    """
+    if judge is None:
+        judge = prediction(case.scene, kinds(case.scene, [case.engine]))
+    finest = rows[-1]
+    softness = case.engine.softness(mechanism_of(case.scene), finest.step)
+    own = own_softness(case, rows, judge)
+    if own is not None and as_soft is None:
+        as_soft = errors_as_soft(case.scene, own)
+    found = theory(judge, case.promise, softness, finest, rows[:-1], as_soft)
+    return (*found, *order(case.promise, rows)) if found else ()

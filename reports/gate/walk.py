@@ -10,12 +10,22 @@ from typing import Any
 
 from engines import Softness
 from reference.scene import Scene
-from reports.gate.baseline import Baseline, Old, identity
-from reports.gate.change import DEAR, change, cost, drift, growth, known_by_now, moved
+from reports.gate.change import (
+    DEAR,
+    Baseline,
+    Old,
+    change,
+    cost,
+    drift,
+    growth,
+    identity,
+    known_by_now,
+    moved,
+    nudged_cells,
+)
 from reports.gate.judge import errors_as_soft
-from reports.gate.nudged import nudged_cells
-from reports.gate.prediction import Kind, Prediction, prediction
-from reports.gate.verdicts import Case, checks, own_softness, predictions
+from reports.gate.prediction import Prediction, SoftKind, prediction
+from reports.gate.theory import Case, checks, own_softness, predictions
 from reports.model.cells import Cell, mechanism_of
 from reports.model.checks import CHANGE, Check, complaints, nearest
 from reports.model.measure import Measurement
@@ -29,7 +39,7 @@ JUDGE_LIMIT = 600.0
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CaseVerdict:
     """What a case's rows were checked against: theory and order, the baseline's numbers, and cells it has not.
 
     `before`: what the baseline knows of each row, None where it lacks it.
@@ -76,7 +86,7 @@ class Foretold:
     """What the judge is asked: a scene, and the kinds of softness."""
 
     scene: Scene
-    soft: frozenset[Kind]
+    soft: frozenset[SoftKind]
 
     @property
     def kin(self) -> Scene:
@@ -151,7 +161,7 @@ def _as_soft(asked: Iterable[Soft], workers: int) -> Mapping[Soft, Mapping[str, 
 
 def walk(
     chosen: Iterable[Case], baseline: Baseline, workers: int | None = None, dearest: float | None = None
-) -> dict[Case, Verdict]:
+) -> dict[Case, CaseVerdict]:
     """Run what these cases need, in as many processes as there are processors, and check it.
 
     `dearest`: how many times the baseline's CPU time a case may take; then runs are timed as those of a report are.
@@ -178,7 +188,7 @@ def walk(
         if (softness := own_softness(case, own, judging.found[case.scene])) is not None
     }
     soft = _as_soft(own_soft.values(), workers)
-    out: dict[Case, Verdict] = {}
+    out: dict[Case, CaseVerdict] = {}
     for case, own in cells.items():
         measured = finished[case]
         before = tuple(old.get(identity(row)) for row in measured)
@@ -191,7 +201,7 @@ def walk(
                 changed += drift(row, then)
         changed += vanished(case, before)
         told = checks(case, measured, judging.found[case.scene], soft.get(own_soft[case]) if case in own_soft else None)
-        verdict = Verdict(case, measured, told, tuple(changed), before)
+        verdict = CaseVerdict(case, measured, told, tuple(changed), before)
         if dearest is not None and not math.isnan(verdict.cost):
             costly = Check(CHANGE, "CPU time", verdict.cost, dearest, sentence=" times the baseline's")
             verdict = replace(verdict, change=(*verdict.change, costly))
@@ -223,14 +233,14 @@ def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...
     )
 
 
-def grown(verdicts: Iterable[Verdict], baseline: Baseline) -> tuple[Check, ...]:
+def grown(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> tuple[Check, ...]:
     """With other versions: whether a method's errors grew over all its scenes; see `reports.gate.change.growth`."""
     if baseline.same_versions:
         return ()
     return growth(pair for verdict in verdicts for pair in verdict.pairs)
 
 
-def remarks(verdict: Verdict) -> tuple[str, ...]:
+def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
     """Sentences that change no verdict: what is known by now, and a cost that no machine or load explains."""
     known = (told for row, old in verdict.pairs for told in known_by_now(row, old))
     dear = (f"{verdict.cost:.3g} times the CPU time of the baseline",) if verdict.cost > DEAR else ()

@@ -241,6 +241,7 @@ def classify(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, cou
     if row.gap > TORN * length:
         # Adapters begin their own findings with "ours:"; what counts here is whether the engine itself said anything.
         quiet = "" if any(not w.startswith("ours:") for w in trajectory.warnings) else ", without a warning"
+        quiet += " of the engine's own" if quiet and trajectory.warnings else ""  # ours stands beside it in the row
         return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
     if row.drive_gap > SATURATED:
         return Outcome.TORN, f"the drive fell behind by {row.drive_gap:.2g} rad"

@@ -69,7 +69,7 @@ def room(name: str, before: float, amplified: float = 1.0) -> tuple[float, float
     `Quantity.rounding`, which is what 1e5 steps may lose. By the triangle inequality the error moves by no more than
     that, however small it is: this floor is never zero. `amplified`: how many times the usual rounding the method
     carries, as the weights of a combination of runs do (`engines.Promise.amplified`). What a motion itself amplifies is
-    not in it, and has to be measured (`reports.gate.nudged`). Raises KeyError for another name.
+    not in it, and has to be measured (`reports.gate.change`). Raises KeyError for another name.
     """
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 

@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from reference.scene import Scene
-from reports.gate.declared import declared_error, soft_tasks
+from reports.gate.prediction import declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.convergence import sweeps
 from reports.model.measure import Measurement

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from itertools import chain, pairwise
 from statistics import median
 
-from reports.gate.baseline import Identity, Old, identity
-from reports.gate.change import WORSE, drift, growth
+from reports.gate.change import WORSE, Identity, Old, drift, growth, identity
 from reports.model.checks import Check
 from reports.model.convergence import Sweep, sweeps
 from reports.model.measure import Measurement
