@@ -26,7 +26,6 @@ from reports.model.ending import BadInput
 if TYPE_CHECKING:
     from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
-    from reports.model.tasks import Answer
     from reports.run.store import Store
     from reports.search.chunk import Asked, Chunk
     from reports.search.subjects import Subject
@@ -58,7 +57,7 @@ def search(
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
     from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.terminal import Terminal, opened
-    from reports.search.chunk import as_words, asked, chunks
+    from reports.search.chunk import as_words, asked, chunks, stored
     from reports.search.subjects import ORACLES
 
     if seconds is not None and not 0 < seconds < float("inf"):
@@ -119,17 +118,6 @@ def of_release(release: str, engine: str | None, variant: str | None) -> Subject
     return Alone(release)
 
 
-def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
-    """The answers to these pieces, and to those of their cases that had to be asked one by one."""
-    from reports.search.chunk import lost
-
-    whole = store.answers(pieces)
-    answers = {piece: whole[piece] for piece in pieces if piece in whole}
-    singles = lost(answers)
-    single = store.answers(singles)
-    return answers | {piece: single[piece] for piece in singles if piece in single}
-
-
 def run_pieces(
     terminal: Terminal, store: Store, pieces: Sequence[Chunk], seconds: float | None, crew: Workforce
 ) -> None:
@@ -139,7 +127,7 @@ def run_pieces(
     """
     from reports.cli.terminal import progress
     from reports.run.running import missing, run_into
-    from reports.search.chunk import lost
+    from reports.search.chunk import lost, stored
 
     begin = monotonic()
     waiting = list(missing(pieces, store, LIMIT))

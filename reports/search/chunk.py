@@ -18,6 +18,7 @@ import numpy as np
 from engines import Engine
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
+from reports.run.store import Store
 from reports.search.subjects import Adapted, Subject, Told
 
 SIZE = 10  # cases in a piece: a second or some
@@ -122,6 +123,15 @@ def lost(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
     """The cases, one by one, of pieces whose process ended or whose time was used up."""
     ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
     return [single for chunk in ended for single in chunk.single]
+
+
+def stored(store: Store, pieces: Sequence[Chunk]) -> dict[Chunk, Answer]:
+    """The answers to these pieces, and to those of their cases that had to be asked one by one."""
+    whole = store.answers(pieces)
+    answers = {piece: whole[piece] for piece in pieces if piece in whole}
+    singles = lost(answers)
+    single = store.answers(singles)
+    return answers | {piece: single[piece] for piece in singles if piece in single}
 
 
 def as_words(chunk: Chunk) -> str:

@@ -4,6 +4,9 @@ MJX runs the same compiled model, so how far a row gives way is what MuJoCo says
 instant is one that MuJoCo steps to: what is asked is not how MJX steps, and a second program would have to be compiled.
 """
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
 from __future__ import annotations
 
 from dataclasses import replace
@@ -16,9 +19,6 @@ from reference.mechanism import Mechanism
 from reports.search import instant_mujoco
 from reports.search.instant_mujoco import ROUNDED, STEP, STEPS, Instant, refuse_without_a_law
 from reports.search.law import NotAsked
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
 
 WITHOUT = "without velocity terms"  # the check that says what MJX computes instead
 LAW = 1e-8  # where MJX's solver ends by itself, whatever the tolerance: 1.7e-9 at most, of 60 mechanisms

@@ -2,8 +2,11 @@
 
 The judge has the mechanism's own rows J and their change, and of MuJoCo only what it says of its constraints: how stiff
 a row is (`efc_KBIP`), how far it gives way (`efc_R`), and the armature of driven coordinates
-(`reports.search.instant_mujoco`). MuJoCo's own Jacobian is held against ours on the way.
+(`declared`). Each of its rows has to be one of the mechanism's, seen in the coordinates of its tree.
 """
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
 
 from __future__ import annotations
 
@@ -21,10 +24,7 @@ from engines.mujoco.model import Model
 from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
 from reports.search.law import Constrained, Fault, NotAsked, constrained, difference, driving_force, force_difference
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
+from reports.search.raw_law import jacobian
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def declared(
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
     # What the coordinates of the tree can't move at all is held by them.
     loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length
-    lines = _jacobian(compiled, data)
+    lines = jacobian(mujoco, compiled, data)
     seen, beside = model.address, [column for column in range(compiled.nv) if column not in model.address]
     waiting = [number for number, line in enumerate(lines) if np.linalg.norm(line) > SAME_ROW]  # one lies across
     begin = 0
@@ -114,19 +114,6 @@ def directions(model: Model, data: Any) -> Array:
     out = np.zeros((3 * len(model.mechanism.bodies), model.compiled.nv))
     out[:, model.address] = twists.reshape(count, -1).T
     return out
-
-
-def _jacobian(compiled: Any, data: Any) -> Array:
-    """MuJoCo's rows (rows, nv)."""
-    if not mujoco.mj_isSparse(compiled):
-        return data.efc_J.reshape(data.nefc, compiled.nv)
-    dense = np.zeros((data.nefc, compiled.nv))
-    mujoco.mju_sparse2dense(dense, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
-    return dense
-
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
 
 
 STEP = 0.01  # of the mechanism's own time scale

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,12 +16,13 @@ from engines.registry import ENGINES, OTHERS
 from reports.model.tasks import Answer
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.store import Store
-from reports.search.chunk import HEADER, Asked, asked, from_words, lost, refused, summary
+from reports.search.chunk import HEADER, Asked, asked, from_words, refused, stored, summary
 from reports.search.mechanisms import SHAPES
 from reports.search.recipe import LEAST_RANK
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
+from reports.write.templates import environment
 
 LAWS = ("acceleration", "velocity")
 LEAST, MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
@@ -109,11 +109,7 @@ def read(store: Store) -> tuple[list[Asked], list[tuple[Shrink, Answer]]]:
     words = store.remembered()
     subjects = known_subjects(words)
     pieces = [piece for piece in (from_words(word, subjects) for word in words) if piece is not None]
-    whole = store.answers(pieces)
-    answers = {piece: whole[piece] for piece in pieces if piece in whole}
-    singles = lost(answers)
-    single = store.answers(singles)
-    told = list(asked(answers | {piece: single[piece] for piece in singles if piece in single}))
+    told = list(asked(stored(store, pieces)))
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
     small = store.answers(tasks)
     return told, [(task, small[task]) for task in tasks if task in small]
@@ -136,15 +132,7 @@ def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot
         "lines": summary(told),
         "findings": [_finding(task, answer) for task, answer in _one_of_each(findings)],
     }
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,
-    )
-    out["search.md"] = environment.get_template("page.md").render(page=page, foot=foot)
+    out["search.md"] = environment(Path(__file__).parent).get_template("own/page.md").render(page=page, foot=foot)
     return out
 
 

@@ -4,6 +4,9 @@ The judge describes the bodies of a model by pins, slots and drives, and takes f
 constraint gives way (`efc_R`).
 """
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
 from __future__ import annotations
 
 import math
@@ -21,10 +24,6 @@ from reports.search.law import constrained
 from reports.search.parts import ladder
 from reports.search.raw import Equality, Model, RawBody, coordinates, wrapped, xml
 from reports.search.recipe import LEAST_RANK, NO_MOTION
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 
 Array = NDArray[np.float64]
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reference.plane import rotated
 from reference.rolling.roll import Roll
 from reports.site.lesson import Point, Take
 
@@ -145,9 +146,7 @@ def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
 
 def point_path(pose: Array, point: Point) -> Array:
     """Where a point of a body is (times, 2) [m], for its poses (times, 3)."""
-    cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-    x, y = point
-    return pose[:, :2] + np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
+    return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 
 
 def box(mechanism: Mechanism, take: Take, pose: Array) -> tuple[float, float, float, float]:

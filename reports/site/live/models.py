@@ -1,5 +1,8 @@
 """What engines in the page are given: MuJoCo's model as text with our changes, pymunk's space as a list of numbers."""
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -21,10 +24,6 @@ from engines.pymunk.joints.skate import AimedGroove, Zeroed
 from engines.pymunk.model import Model
 from reference.joints import Skate
 from reference.mechanism import Mechanism
-
-# pyright: reportAttributeAccessIssue=false
-# (MuJoCo's bindings are compiled and carry no types.)
-
 
 PARTS = ("", "opt", "stat")
 OWN = ("opt.timestep",)  # set by the page
