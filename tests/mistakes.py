@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from engines import Engine
 from engines.altered import Altered
 from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
-from reference.joints import Drive, Joint, Roll, Skate, Slot
+from reference.joints import Drive, Gear, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
 from reports.gate.judge import projected
@@ -213,6 +213,41 @@ class Made:
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
         return self.mistake.made(mechanism, self.relative)
+
+
+# By kind of force element, the number that a planted fault changes: of a force it is its lever arm.
+FORCES = {"spring": "stiffness", "torsion-spring": "stiffness", "damper": "damping", "torsion-damper": "damping"}
+FORCES |= {"force": "second_point", "torque": "torque"}
+# Of joints that hold velocities: a kind of Mistake, and its detail. Of others it is the point on the second body.
+HOLDING = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "")}
+
+
+@dataclass(frozen=True)
+class Planted:
+    """The change by a fault of the code for one kind of part: that number of every inertia or force element off by a
+    part, a number of the last joint of this kind, or the sign of every gear's row."""
+
+    kind: str
+    relative: float
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        if self.kind == "inertia":
+            return replace(mechanism, bodies=tuple(self._larger(body, "inertia") for body in mechanism.bodies))
+        if self.kind in FORCES:
+            forces = tuple(self._larger(force, FORCES[self.kind]) for force in mechanism.forces)
+            return replace(mechanism, forces=forces)
+        if self.kind == "gear":
+            turned = (replace(each, ratio=-each.ratio) if isinstance(each, Gear) else each for each in mechanism.joints)
+            return Misbuilt(mechanism.bodies, tuple(turned), mechanism.gravity, mechanism.forces, right=mechanism)
+        own = [joint for joint in mechanism.joints if type(joint).__name__.lower() == self.kind]
+        what, detail = HOLDING.get(self.kind, ("point", "second_point x"))
+        return Mistake(what, own[-1].name, detail).made(mechanism, self.relative) if own else mechanism
+
+    def _larger(self, part: Any, name: str) -> Any:
+        value, factor = getattr(part, name, None), 1 + self.relative
+        if value is None:
+            return part
+        return replace(part, **{name: _times(value, factor) if isinstance(value, tuple) else value * factor})
 
 
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:

@@ -3,6 +3,10 @@
 The judge has the mechanism's own rows J and their change, and of MuJoCo only what it says of its constraints: how stiff
 a row is (`efc_KBIP`), how far it gives way (`efc_R`), and the armature of driven coordinates
 (`declared`). Each of its rows has to be one of the mechanism's, seen in the coordinates of its tree.
+
+MJX runs the same compiled model, so how far a row gives way is what MuJoCo says of it; the law is asked for with the
+velocity terms of rows and without. The later instant is one that MuJoCo steps to: what is asked is not how MJX steps,
+and a second program would have to be compiled.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -18,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Softness
+from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
@@ -249,3 +254,41 @@ def _motion(model: Model, data: Any, accelerations: Array) -> tuple[Array, Array
     own = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
     (pose,), (twist,), (change,) = model.tree.motion(*own)
     return pose, twist, change
+
+
+WITHOUT = "without velocity terms"  # the check that says what MJX computes instead
+MJX_LAW = 1e-8  # where MJX's solver ends by itself, whatever the tolerance: 1.7e-9 at most, of 60 mechanisms
+
+
+def mjx_bound(engine: Mjx) -> float:
+    """The error, relative to the largest acceleration, above which something is wrong."""
+    return max(MJX_LAW, bound(engine.settings))
+
+
+def mjx_errors(engine: Mjx, mechanism: Mechanism) -> dict[str, float]:
+    """By what accelerations miss the law, relative to the largest, and the law without the velocity terms of rows.
+
+    Raises NotAsked where no law is declared, Fault for a row that is lacking, and Unsupported.
+    """
+    dt = STEP * mechanism.time_scale
+    # What a solver leaves within the tolerance that is declared is no fault, so none is left.
+    tolerance = min(engine.settings.tolerance, ROUNDED**2)
+    engine = replace(engine, settings=replace(engine.settings, tolerance=tolerance))
+    model, held = engine.model(mechanism, dt)
+    refuse_without_a_law(engine.settings, mechanism, dt)
+    if model.halves:
+        raise NotAsked("a body that is cut into halves is another mechanism at one instant")
+    run = engine.settings.build(mechanism, dt)
+    told = run(1, STEPS)
+    if not np.isfinite(told.pose).all():
+        raise NotAsked("MuJoCo itself lost the motion")
+    if any("the solver missed" in warning for warning in told.warnings):
+        raise NotAsked("with these settings MuJoCo says itself that its solver ends too early")
+    softness = engine.softness(mechanism, dt)
+    out = {"acceleration": 0.0, WITHOUT: 0.0}
+    for data in (model.start(), run.data):
+        mujoco.mj_forward(model.compiled, data)
+        here, found = Instant.of(mechanism, model, data, softness), engine.accelerations(model, held, data)
+        misses = {"acceleration": here.missed(found), WITHOUT: here.missed(found, here.law(velocity_term=False))}
+        out = {name: max(out[name], value) for name, value in misses.items()}
+    return out

@@ -18,7 +18,6 @@ from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
 from reports.search import (
     instant_box2d,
-    instant_mjx,
     instant_mujoco,
     instant_pymunk,
     mechanisms,
@@ -192,7 +191,7 @@ def _instant(engine: MuJoCo | Pymunk | Mjx | Box2D, mechanism: Mechanism) -> dic
         case MuJoCo():
             bound, found = instant_mujoco.bound(engine), instant_mujoco.errors(engine, mechanism)
         case Mjx():
-            bound, found = instant_mjx.bound(engine), instant_mjx.errors(engine, mechanism)
+            bound, found = instant_mujoco.mjx_bound(engine), instant_mujoco.mjx_errors(engine, mechanism)
         case Box2D():
             bound, found = instant_box2d.bound(engine), instant_box2d.errors(engine, mechanism)
         case Pymunk():
