@@ -215,6 +215,24 @@ class Made:
         return self.mistake.made(mechanism, self.relative)
 
 
+@dataclass(frozen=True)
+class Off:
+    """The change by which one number of every part, of "bodies" or "forces", is off by a part of itself."""
+
+    parts: str
+    name: str
+    relative: float
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        return replace(mechanism, **{self.parts: tuple(map(self._larger, getattr(mechanism, self.parts)))})
+
+    def _larger(self, part: Any) -> Any:
+        value, factor = getattr(part, self.name, None), 1 + self.relative
+        if value is None:
+            return part
+        return replace(part, **{self.name: _times(value, factor) if isinstance(value, tuple) else value * factor})
+
+
 # By kind of force element, the number that a planted fault changes: of a force it is its lever arm.
 FORCES = {"spring": "stiffness", "torsion-spring": "stiffness", "damper": "damping", "torsion-damper": "damping"}
 FORCES |= {"force": "second_point", "torque": "torque"}
@@ -224,30 +242,23 @@ HOLDING = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "
 
 @dataclass(frozen=True)
 class Planted:
-    """The change by a fault of the code for one kind of part: that number of every inertia or force element off by a
-    part, a number of the last joint of this kind, or the sign of every gear's row."""
+    """The change by a fault of the code for one kind of part: a number of every inertia or force element, one of the
+    last joint of this kind, or the sign of every gear's row."""
 
     kind: str
     relative: float
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
         if self.kind == "inertia":
-            return replace(mechanism, bodies=tuple(self._larger(body, "inertia") for body in mechanism.bodies))
+            return Off("bodies", "inertia", self.relative)(mechanism)
         if self.kind in FORCES:
-            forces = tuple(self._larger(force, FORCES[self.kind]) for force in mechanism.forces)
-            return replace(mechanism, forces=forces)
+            return Off("forces", FORCES[self.kind], self.relative)(mechanism)
         if self.kind == "gear":
             turned = (replace(each, ratio=-each.ratio) if isinstance(each, Gear) else each for each in mechanism.joints)
             return Misbuilt(mechanism.bodies, tuple(turned), mechanism.gravity, mechanism.forces, right=mechanism)
         own = [joint for joint in mechanism.joints if type(joint).__name__.lower() == self.kind]
         what, detail = HOLDING.get(self.kind, ("point", "second_point x"))
         return Mistake(what, own[-1].name, detail).made(mechanism, self.relative) if own else mechanism
-
-    def _larger(self, part: Any, name: str) -> Any:
-        value, factor = getattr(part, name, None), 1 + self.relative
-        if value is None:
-            return part
-        return replace(part, **{name: _times(value, factor) if isinstance(value, tuple) else value * factor})
 
 
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:

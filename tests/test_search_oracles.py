@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from engines import Promise, Run
+from engines.altered import Altered
 from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.joints import rod_gear_weld
@@ -29,6 +30,7 @@ from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
 from reports.search.subjects import OURS, Adapted, Alone, Told
+from tests.mistakes import Off
 from tests.wrong_adapters import Spoiled
 
 SEED = 1
@@ -66,27 +68,31 @@ def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
 # ------------------------------------------------------------------------------------- mistakes put into adapters
 
 
+HEAVIER_TO_TURN = Off("bodies", "inertia", 1e-4)
+
+
 @dataclass(frozen=True)
-class HeavierToTurn(MuJoCo):
-    """An inertia off by 1e-4."""
+class Otherwise(MuJoCo):
+    """Builds its model of a mechanism that is changed, and reads it out as if it were right."""
+
+    change: Callable[[Mechanism], Mechanism] = HEAVIER_TO_TURN
 
     def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
-        return super().build(_turning_harder(mechanism), dt)
+        run = super().build(self.change(mechanism), dt)
+        return replace(run, model=replace(run.model, mechanism=mechanism))
 
 
 @dataclass(frozen=True)
-class HeavierToTurnThere(Pymunk):
+class OtherwiseThere(Pymunk):
     """The same in pymunk."""
 
+    change: Callable[[Mechanism], Mechanism] = HEAVIER_TO_TURN
+
     def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
-        return super().swept_model(_turning_harder(mechanism), dt, sweeping)
+        return super().swept_model(self.change(mechanism), dt, sweeping)
 
 
-def _turning_harder(mechanism: Mechanism) -> Mechanism:
-    return replace(mechanism, bodies=tuple(replace(body, inertia=1.0001 * body.inertia) for body in mechanism.bodies))
-
-
-@pytest.mark.parametrize("engine", [HeavierToTurn("default"), HeavierToTurnThere("leapfrog", leapfrog=True)])
+@pytest.mark.parametrize("engine", [Otherwise("default"), OtherwiseThere("leapfrog", leapfrog=True)])
 def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any) -> None:
     assert faults(engine, ("pin",), 6) & {"acceleration", "velocity"}
 
@@ -231,7 +237,7 @@ def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_
         one for one, soft in zip(told(TUNED, kinds, len(cases), "motions"), gives_way(DEFAULT), strict=True) if soft
     ]
     assert any(one.errors for one in loops)
-    harder = HeavierToTurn("tuned", **{f.name: getattr(TUNED, f.name) for f in fields(TUNED) if f.name != "variant"})
+    harder = Otherwise("tuned", **{f.name: getattr(TUNED, f.name) for f in fields(TUNED) if f.name != "variant"})
     assert faults(harder, kinds, len(cases), "motions")
 
 
@@ -351,42 +357,7 @@ def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.M
 
 @pytest.mark.parametrize("kind", ["rod", "gear", "weld", "spring", "force"])
 def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(kind: str) -> None:
-    assert "velocity" in faults(HeavierToTurnThere("leapfrog", leapfrog=True), ("pin", kind), 12)
-
-
-@dataclass(frozen=True)
-class Otherwise(MuJoCo):
-    """Builds force elements with one number changed."""
-
-    changed: tuple[str, ...] = ()
-    factor: float = 1.0001
-
-    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
-        run = super().build(_with_forces(mechanism, self.changed, self.factor), dt)
-        return replace(run, model=replace(run.model, mechanism=mechanism))
-
-
-@dataclass(frozen=True)
-class OtherwiseThere(Pymunk):
-    """The same in pymunk."""
-
-    changed: tuple[str, ...] = ()
-    factor: float = 1.0001
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
-        return super().swept_model(_with_forces(mechanism, self.changed, self.factor), dt, sweeping)
-
-
-def _with_forces(mechanism: Mechanism, names: tuple[str, ...], factor: float) -> Mechanism:
-    def changed(force: Any) -> Any:
-        for name in names:
-            if hasattr(force, name):
-                value = getattr(force, name)
-                several = isinstance(value, tuple)
-                return replace(force, **{name: tuple(factor * v for v in value) if several else factor * value})
-        return force
-
-    return replace(mechanism, forces=tuple(map(changed, mechanism.forces)))
+    assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True), ("pin", kind), 12)
 
 
 @pytest.mark.parametrize(
@@ -404,20 +375,17 @@ def _with_forces(mechanism: Mechanism, names: tuple[str, ...], factor: float) ->
     ],
 )
 def test_a_force_element_off_by_one_in_ten_thousand_is_found(name: str, kind: str) -> None:
-    assert "acceleration" in faults(Otherwise("tuned", changed=(name,)), ("pin", kind), 12)
+    off = Off("forces", name, 1e-4)
+    assert "acceleration" in faults(Otherwise("tuned", change=off), ("pin", kind), 12)
     if "damp" not in kind:  # which pymunk takes among its sweeps, so that no law of a step is asked for
-        assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True, changed=(name,)), ("pin", kind), 12)
+        assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True, change=off), ("pin", kind), 12)
 
 
 def test_a_spring_that_pushes_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
     """An engine that declares nothing at an instant is held to the judge's motion."""
-
-    @dataclass(frozen=True)
-    class Pushing(Lagrange):
-        def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-            return super().build(_with_forces(mechanism, ("stiffness",), 1.01), dt)
-
-    assert faults(Pushing("rk4", "projection"), ("pin", "spring"), 4, "motions") & {"motion", "reactions"}
+    assert faults(
+        Altered(Lagrange("rk4", "projection"), Off("forces", "stiffness", 0.01)), ("pin", "spring"), 4, "motions"
+    ) & {"motion", "reactions"}
     assert faults(Lagrange("rk4", "projection"), ("pin", "spring"), 4, "motions") == set()
 
 
