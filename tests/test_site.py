@@ -22,14 +22,13 @@ from reference.four_bar import FreeFourBar
 from reports.model.ending import FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
-from reports.site.build import MARKER, build, tasks
+from reports.site.build import MARKER, build, reference_pages, tasks
 from reports.site.embed import data, picture, shown
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.lesson import Source, Take
 from reports.site.lessons import LESSONS
 from reports.site.markdown import Formulas, html, section
 from reports.site.packages import NotFetched, Package, fetched
-from reports.site.reference_pages import reference_pages
 from reports.site.rows import explored
 
 ROOT = Path(__file__).parents[1]

@@ -22,8 +22,8 @@ from reference.four_bar import DrivenFourBar
 from reference.scene import Scene
 from reports.model.tasks import answered
 from reports.site.build import build
+from reports.site.drawn import measure_of
 from reports.site.folder import compressed_size, server, write_site
-from reports.site.joints import measure_of
 from reports.site.lesson import Source
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import BIASES, IMPEDANCES, INTEGRATORS, SWEEPS, TIME_CONSTANTS, TOLERANCES, Live

@@ -25,8 +25,8 @@ from reference.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.slider_crank.scenes import DrivenSliderCrank
+from reports.site.drawn import demanded, loose, measure_of, opened, place_of
 from reports.site.embed import forces
-from reports.site.joints import demanded, loose, measure_of, opened, place_of
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data

@@ -16,7 +16,7 @@ from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, trajectory_of
 from reports.site import drawn
-from reports.site.joints import between, demanded, joints_of, loose, measure_of, opened, place_of
+from reports.site.drawn import between, demanded, joints_of, loose, measure_of, opened, place_of
 from reports.site.lesson import Take
 
 Array = NDArray[np.float64]

@@ -22,7 +22,7 @@ from engines import Unsupported
 from reference.mechanism import Mechanism
 from reports.model.tasks import Answer, Motion
 from reports.site import drawn
-from reports.site.joints import joints_of, loose, measure_of
+from reports.site.drawn import joints_of, loose, measure_of
 from reports.site.lesson import Lesson, Source, Take
 from reports.site.live import sliders
 from reports.site.live.models import plan_of, text_of
