@@ -31,7 +31,7 @@ from reports.run.installed import built, cache_folder, distributions_in, environ
 from reports.versions.catalogue import RELEASES, changes_between
 from reports.versions.column import TreesRow, VersionRequest, column, modules_in
 from reports.versions.comparison import compared, steps
-from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
+from reports.versions.table import Entry, Table, as_csv, as_published, catalogued, entries, merged, read
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
 
@@ -272,6 +272,12 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
     path.write_text("scene\nx\n")
     with pytest.raises(ValueError, match="it is no table of versions"):
         read(path)
+
+
+def test_lines_of_releases_that_are_not_compared_any_more_go():
+    own = (entry("3.1.0", 1e-3), entry("4.0.1", 1e-3), entry("1.0", 1e-3, engine="toy"))
+    left = catalogued(Table(own, {("mujoco", "3.1.0"): "it is old"}))
+    assert (left.entries, left.marks) == (own[1:], {})
 
 
 def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
