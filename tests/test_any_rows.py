@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.check.pictures import Pose, Shown
+from reports.check.pictures import PictureData, Pose
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import Softened, all_tasks
 from reports.model.catalogue import PAGES
@@ -269,7 +269,7 @@ def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(temp
 # Of a user's model of which no setting that was tried is exact enough, and one gave up.
 STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
 ERRORS = {"angle": [0.0, 1e-3]}
-SHOWN = Shown([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
+SHOWN = PictureData([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
 WALKED = {
     "duration": 2.0,
     "error": 0.5,
