@@ -19,7 +19,7 @@ from reports.pages.rolling import charts as rolling_charts
 from reports.pages.scaling.chart import _spread, scaling_chart
 from reports.plots import families
 from reports.plots import work_precision as charts
-from reports.plots.families import role
+from reports.plots.looks import role
 from reports.plots.theme import DARK, LIGHT, SERIES
 from tests.drawn import annotation
 from tests.rows import falling, row_of

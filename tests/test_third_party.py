@@ -139,7 +139,7 @@ def test_their_engine_and_one_in_a_file_are_held_to_their_own_promises(programs,
 # Of every family: its colour in light pictures, and its mark.
 LOOKS = """
 from engines.registry import ENGINES
-from reports.plots.families import colour, mark
+from reports.plots.looks import colour, mark
 from reports.plots.theme import LIGHT
 
 for family in dict.fromkeys(engine.family for engine in ENGINES):

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 from engines import Engine, registry
 from reference.scene import Scene
 from reports.model.convergence import judged
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page, StabilityMap
+from reports.model.page import Material, Page
 from reports.model.usual_steps import USUAL_STEPS
+from reports.pages.atlas.subjects import SUBJECTS
 from reports.pages.findings.findings import findings, pictures
 from reports.pages.symptoms import SYMPTOMS
 from reports.pages.told_scene import told_scene
-from reports.plots import stability as maps
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
 from reports.write import unmeasured
@@ -57,7 +56,6 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
             "steps",
             svg(charts.error_against_step(rows, page.featured, page.quantity), f"{page.title}: error against step"),
         )
-    told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
     scenes = [
@@ -69,7 +67,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
         "pictures": unmeasured.Known(pictures),
         "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
-        "maps": [told for told in told_maps if told],
+        "maps": [subject for subject in SUBJECTS if subject.page == page.name],
         "outcomes": [outcome for outcome in Outcome if outcome in met],
         "foot": foot(command, (*page.engines, *registry.INSTALLED)),
         **page.words(material),
@@ -78,14 +76,6 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     if page.scenes:
         texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
-
-
-def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> dict[str, str] | None:
-    rows = [(value, material.rows[cell]) for value, cell in picture.cells if cell in material.rows]
-    if not rows:
-        return None
-    keep(picture.name, svg(maps.stability_map(rows, picture.parameter), picture.title))
-    return {"title": picture.title, "remark": picture.remark, "picture": f"{page.name}_{picture.name}.svg"}
 
 
 def foot(command: str, engines: Iterable[Engine] = ()) -> str:

@@ -49,8 +49,8 @@ SYMPTOMS: tuple[Symptom, ...] = (
     Symptom(
         "A heavy body on a light chain: the chain stretches.",
         "A map of mass ratios and steps says what still works.",
-        "pendulum",
-        "A light chain with a heavy tip",
+        "atlas",
+        "A pendulum of three links with a heavy tip",
     ),
     Symptom(
         "How do I drive a crank at a given speed?",

@@ -40,13 +40,15 @@ def _at(step: float, rows: Iterable[Measurement], quantity: str) -> float:
     return next((error for other, error in points(rows, quantity) if is_step(other, step)), math.nan)
 
 
-PERSON = ("person_one_foot", "pymunk all of the gap", "map")
+def person(count: int) -> tuple[str, str, str]:
+    """Scene, method and purpose of the person whose joints are swept so often in a step."""
+    return "person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure"
 
 
 def iterations(rows: Rows) -> Finding:
     """Ten iterations and twenty, on a person that falls, with all of each gap closed in a step."""
-    coarse, fine = (rows.at(step, *PERSON, iterations=10) for step in (1e-2, MILLISECOND))
-    right = rows.at(MILLISECOND, *PERSON, iterations=20)
+    coarse, fine = (rows.at(step, *person(10)) for step in (1e-2, MILLISECOND))
+    right = rows.at(MILLISECOND, *person(20))
     return Finding(
         "iterations",
         "With too few iterations a smaller step makes pymunk worse",
@@ -56,14 +58,14 @@ def iterations(rows: Rows) -> Finding:
         "unequal masses need more iterations before they need smaller steps.",
         "person",
         fine.angle > 2 * coarse.angle and right.angle < fine.angle / 20,
-        tuple(Line(f"{count} iterations", rows.of(*PERSON, iterations=count)) for count in (5, 10, 20)),
+        tuple(Line(f"{count} iterations", rows.of(*person(count))) for count in (5, 10, 20)),
         "angle",
     )
 
 
 def forces(rows: Rows) -> Finding:
     """The same motion with 20 and with 100 iterations, but not the same reactions."""
-    less, more = (rows.at(MILLISECOND, *PERSON, iterations=count) for count in (20, 100))
+    less, more = (rows.at(MILLISECOND, *person(count)) for count in (20, 100))
     return Finding(
         "forces",
         "The right motion does not mean the right forces",
@@ -73,7 +75,7 @@ def forces(rows: Rows) -> Finding:
         "changes with the iterations and with the step.",
         "person",
         abs(less.angle - more.angle) < 0.02 * more.angle and less.reaction > 5 * more.reaction,
-        tuple(Line(f"{count} iterations", rows.of(*PERSON, iterations=count)) for count in (20, 100)),
+        tuple(Line(f"{count} iterations", rows.of(*person(count))) for count in (20, 100)),
         "reaction",
     )
 

@@ -18,7 +18,7 @@ Points = list[tuple[float, float]]  # (step [s], error), from coarse to fine
 
 
 class Rows:
-    """What was measured in the scenes of the pages; scenes with other numbers, as maps have them, are left out."""
+    """What was measured in the scenes of the pages; scenes with other numbers are left out."""
 
     def __init__(self, pages: Mapping[Page, Material]) -> None:
         scenes = {scene.name: scene for page in pages for scene in page.scenes}
@@ -34,19 +34,18 @@ class Rows:
         """How long a scene is [s]; NaN where there is none of this name."""
         return self._scenes[scene].duration if scene in self._scenes else math.nan
 
-    def of(self, scene: str, method: str, purpose: str = "sweep", **settings: Any) -> list[Measurement]:
-        """A method's rows from coarse to fine; `settings` are those fields of the engine that maps vary."""
+    def of(self, scene: str, method: str, purpose: str = "sweep") -> list[Measurement]:
+        """A method's rows from coarse to fine."""
         found = [
             row
             for cell, row in self._rows.items()
             if (cell.scene.name, cell.purpose, row.method) == (scene, purpose, method)
-            and all(getattr(cell.engine, name, None) == value for name, value in settings.items())
         ]
         return sorted(found, key=lambda row: -row.step)
 
-    def at(self, step: float, scene: str, method: str, purpose: str = "sweep", **settings: Any) -> Any:
+    def at(self, step: float, scene: str, method: str, purpose: str = "sweep") -> Any:
         """The row at this step [s]; UNMEASURED without one, or with one that can't be compared."""
-        rows = (row for row in self.of(scene, method, purpose, **settings) if is_step(row.step, step))
+        rows = (row for row in self.of(scene, method, purpose) if is_step(row.step, step))
         return next((row for row in rows if Outcome(row.outcome).comparable), UNMEASURED)
 
     def sweep(self, scene: str, method: str, quantity: str = "angle") -> Any:

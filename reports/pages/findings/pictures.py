@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from reports.model.measure import Measurement
 from reports.model.quantities import quantity
 from reports.pages.findings.lookup import points
-from reports.plots.families import colour
+from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 # Inches, 360 pixels of a browser: a telephone shows it unscaled, so that the letters keep their size.

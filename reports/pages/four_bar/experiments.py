@@ -1,4 +1,4 @@
-"""Where methods fail on the four-bar: experiments with a statement of what should happen, and stability maps."""
+"""Where methods fail on the four-bar: experiments with a statement of what should happen."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.four_bar.scenes import DrivenFourBar, SpinningFourBar
 from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.model.page import Failure, Material, Observation
 from reports.pages.four_bar.printed_rates import PrintedRates
 from reports.write.tables import number
 
@@ -153,32 +153,6 @@ FAILURES: tuple[Failure, ...] = (
             'become worse{% filter if_measured %}: {{ at("mujoco default", 1e-3).angle | number }} rad there, '
             '{{ at("mujoco default", 1e-4).angle | number }} rad at a tenth of that step{% endfilter %}. The smaller '
             "error was luck; the plateau is the model."
-        ),
-    ),
-)
-
-RATIOS = (1e-4, 1e-2, 1.0, 1e2, 1e4)
-MAP_STEPS = (1, 3, 10, 30, 100)
-
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="stability",
-        title="How heavy may the coupler be, at which step?",
-        parameter="mass of the coupler per metre, relative to the other bars'",
-        cells=tuple(
-            (ratio, Cell(FreeFourBar(density=(1.0, ratio, 1.0)), engine, every, "map"))
-            for engine in PUBLIC
-            for ratio in RATIOS
-            for every in MAP_STEPS
-        ),
-        remark=(
-            "Sweeps over the joints have most trouble with a bar that is much lighter than its neighbours: each joint "
-            "undoes what the last one did. If the whole gap is closed in every step, this error grows from step to "
-            "step, at the smallest step too. As shipped pymunk closes little of the gap in a step, and gets through "
-            "everywhere once the step is small enough. MuJoCo as shipped tears at the lightest and the heaviest "
-            "coupler, whatever the step: its loop's spring is too soft for them. MuJoCo tuned has reduced coordinates, "
-            "a stiff spring and one exact solution a step. It gets through except in one case at the largest step."
         ),
     ),
 )

@@ -14,7 +14,7 @@ from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.pages.four_bar.expectations import KNOWN
-from reports.pages.four_bar.experiments import FAILURES, MAPS
+from reports.pages.four_bar.experiments import FAILURES
 from reports.plots import drawings
 from reports.plots.theme import svg
 from reports.write.lookups import told
@@ -69,7 +69,6 @@ PAGE = Page(
     advised="free_four_bar",
     engines=ENGINES,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,

@@ -11,7 +11,7 @@ from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.n_four_bar.expectations import KNOWN
-from reports.pages.n_four_bar.experiments import FAILURES, MAPS, SOFT
+from reports.pages.n_four_bar.experiments import FAILURES, SOFT
 from reports.plots.stroboscope import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.lookups import told
@@ -64,7 +64,6 @@ PAGE = Page(
     scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,

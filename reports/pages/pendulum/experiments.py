@@ -1,4 +1,4 @@
-"""Where methods fail on open chains, and on a ring that one joint closes; stability maps."""
+"""Where methods fail on open chains, and on a ring that one joint closes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, StabilityMap
+from reports.model.page import Failure, Material
 from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -78,7 +78,6 @@ RING = (
     mujoco.EXTENDED,
     pymunk.TUNED,
 )
-TIPS = (1.0, 1e1, 1e2, 1e3, 1e4)
 HEAVY = (*ALL, sweeps(10), sweeps(1000), SWEPT, SOLVED)
 
 
@@ -219,40 +218,6 @@ FAILURES: tuple[Failure, ...] = (
             "near what it was. MuJoCo's Euler in the tree starts anew at 0.1 s, and at 0.05 s it ends with wrong "
             "numbers. RK4 starts anew at both, and exact multipliers under Euler end in infinity. At these two steps "
             "no method is right; at 0.02 s all of them can be compared again."
-        ),
-    ),
-)
-
-CHAINS = (2, 5, 10, 20, 50)
-SWEEPS = (2, 5, 10, 30)
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="tips",
-        title="How heavy may the tip be, at which step?",
-        parameter="tip's mass over a link's",
-        cells=tuple(
-            (ratio, Cell(tip(ratio), engine, every, "map", samples=20))
-            for engine in (*PUBLIC, mujoco.EXTENDED, SOLVED)
-            for ratio in TIPS
-            for every in (1, 5, 50)
-        ),
-        remark="The steps are 50, 10 and 1 ms. A heavy tip is hard for sweeps and for large steps of a tree alike.",
-    ),
-    StabilityMap(
-        name="sweeps",
-        title="How many sweeps for how many links, when all of the gap is closed?",
-        parameter="links",
-        cells=tuple(
-            (float(links), Cell(LinkPendulum(links=links, duration=1.0, horizon=1.0), sweeps(count), every, "map", 20))
-            for count in SWEEPS
-            for links in CHAINS
-            for every in (5, 50)
-        ),
-        remark=(
-            "If the sweeps are too few, the next step corrects what they left, and corrects too much, until the "
-            "numbers grow without limit. A smaller step does not help. As shipped pymunk closes a gap so slowly that "
-            "this does not happen; its joints are soft instead."
         ),
     ),
 )

@@ -11,7 +11,7 @@ from engines.registry import VARIANTS
 from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
 from reports.model.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
-from reports.pages.pendulum.experiments import FAILURES, MAPS, SOLVED
+from reports.pages.pendulum.experiments import FAILURES, SOLVED
 from reports.plots.stroboscope import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.lookups import told
@@ -51,7 +51,6 @@ PAGE = Page(
     advised="pendulum_2",
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,
-    maps=MAPS,
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
     words=words,

@@ -9,7 +9,7 @@ from engines.registry import VARIANTS
 from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.page import Material, Page
 from reports.pages.person.expectations import KNOWN, ORDERS
-from reports.pages.person.experiments import FAILURES, MAPS
+from reports.pages.person.experiments import FAILURES
 from reports.plots.stroboscope import Points, Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.lookups import told
@@ -51,7 +51,6 @@ PAGE = Page(
     advised="person_two_feet",
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     orders=ORDERS,

@@ -23,7 +23,7 @@ from reports.model.page import Material, Page
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling.expectations import KNOWN, ORDERS
-from reports.pages.rolling.experiments import FAILURES, MAPS, polygon_cells, softness_cells
+from reports.pages.rolling.experiments import FAILURES, polygon_cells, softness_cells
 from reports.plots.theme import svg
 from reports.write.lookups import nearest_step, told
 from reports.write.unmeasured import UNMEASURED, Known
@@ -94,7 +94,6 @@ PAGE = Page(
     scenes=SCENES,
     engines=ENGINES_HERE,
     failures=FAILURES,
-    maps=MAPS,
     compared=compared,
     figures=figures,
     words=words,

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from reports.model.scaling_fit import Series, cost_exponent
-from reports.plots.families import look
+from reports.plots.looks import look
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)

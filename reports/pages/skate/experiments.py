@@ -1,4 +1,4 @@
-"""Where constructions of a skate fail: experiments with a statement of what should happen, and stability maps."""
+"""Where constructions of a skate fail: experiments with a statement of what should happen."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from engines import Engine
-from engines.registry import VARIANTS
 from reference.scene import Scene
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reports.model.cells import Cell
-from reports.model.page import Failure, StabilityMap
+from reports.model.page import Failure
 from reports.model.tasks import Motion
 from reports.pages.skate.counting import counting
 from reports.pages.skate.methods import ORDINARY, method
@@ -177,30 +176,6 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "The skates constrain its velocity and not its place. So every slip that a method leaves adds up, and no "
             "engine can notice it."
-        ),
-    ),
-)
-
-# Offsets of the centre of mass ahead of the skate [m]: far behind, behind, nearly on it, ahead, far ahead.
-OFFSETS = (-10.0, -0.5, -1e-3, 1e-3, 0.5, 10.0, 1e3)
-# (samples, steps a sample): steps of 0.3, 0.1, 0.03, 0.01 and 0.001 s over 3 s.
-MAP_STEPS = ((10, 1), (30, 1), (100, 1), (300, 1), (300, 10))
-MAPPED = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned", "extended"))
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="offsets",
-        title="How far may the centre of mass be from the skate, at which step?",
-        parameter="offset of the centre of mass [m]",
-        cells=tuple(
-            (offset, Cell(ChaplyginSleigh(offset=offset), engine, every, "map", samples))
-            for engine in MAPPED
-            for offset in OFFSETS
-            for samples, every in MAP_STEPS
-        ),
-        remark=(
-            "A positive offset is ahead of the skate. For a method that holds the row the offset matters little. The "
-            "naive zeroing (`pymunk default`) is right only where the centre of mass is on the skate."
         ),
     ),
 )

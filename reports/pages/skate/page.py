@@ -24,7 +24,7 @@ from reports.model.page import FEATURED, Material, Page
 from reports.model.tasks import Motion
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN, ORDERS
-from reports.pages.skate.experiments import FAILURES, MAPS
+from reports.pages.skate.experiments import FAILURES
 from reports.pages.skate.methods import CONSTRUCTIONS, known
 from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Panel, Path, paths
@@ -212,7 +212,6 @@ PAGE = Page(
     scenes=SCENES,
     engines=(*VARIANTS, *CONSTRUCTIONS),
     failures=FAILURES,
-    maps=MAPS,
     compared=compared,
     quantity="position",
     featured=featured,

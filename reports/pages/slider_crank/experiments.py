@@ -16,7 +16,7 @@ from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCent
 from reference.slider_crank.slotted_lever import SlottedLever
 from reference.validation import InvalidMechanism
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.model.page import Failure, Material, Observation
 from reports.pages.slider_crank.leaving import Leaving
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -148,34 +148,5 @@ FAILURES: tuple[Failure, ...] = (
         expected="With an offset of rod minus crank or more the crank can't turn fully.",
         observations=refusals,
         remark="No engine is asked: there is no motion that it could be held against.",
-    ),
-)
-
-REACHES = (0.0, 0.5, 0.9, 0.99, 0.999)
-
-
-def near(reach: float) -> DrivenSliderCrank:
-    """Driven, the slot at this part of the largest offset."""
-    plain = DrivenSliderCrank()
-    return replace(plain, offset=reach * (plain.rod - plain.crank), angle=math.pi / 2)
-
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="reach",
-        title="How near to the largest offset, at which step?",
-        parameter="offset, relative to rod minus crank",
-        cells=tuple(
-            (reach, Cell(near(reach), engine, every, "map"))
-            for engine in (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
-            for reach in REACHES
-            for every in (1, 3, 10, 30)
-        ),
-        remark=(
-            "At the largest offset the rod stands upright once a turn, and the two assemblies meet. Near it the slider "
-            "is fast, and the forces are large for a moment. MuJoCo's soft loop as shipped lets the rod through to the "
-            "other assembly, at every step. So does pymunk's as shipped, at all steps except the smallest. pymunk and "
-            "MuJoCo, tuned and extended, get through everywhere."
-        ),
     ),
 )

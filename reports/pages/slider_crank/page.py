@@ -10,7 +10,7 @@ from engines.registry import VARIANTS
 from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.model.page import Material, Page
 from reports.pages.slider_crank.expectations import KNOWN
-from reports.pages.slider_crank.experiments import FAILURES, MAPS
+from reports.pages.slider_crank.experiments import FAILURES
 from reports.plots.stroboscope import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.lookups import told
@@ -48,7 +48,6 @@ PAGE = Page(
     advised="free_slider_crank",
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,
