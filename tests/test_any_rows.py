@@ -26,30 +26,26 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task, answered
-from reports.pages.engines.capabilities import ASKED, Capabilities
-from reports.pages.engines.open_work import OpenWork
-from reports.pages.engines.velocity_term import VelocityTerm
-from reports.pages.errata import errata_engines as referees
-from reports.pages.faults.equalities import Equalities
-from reports.pages.faults.groove import Grooves, Offsets
-from reports.pages.faults.scripts import Script
+from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
+from reports.pages.errata import experiments as referees
+from reports.pages.faults.experiments import Equalities, Grooves, Offsets
+from reports.pages.faults.page import Script
 from reports.pages.findings.findings import findings
 from reports.pages.observing import observe
-from reports.pages.pendulum.neighbours import Neighbours
+from reports.pages.pendulum.experiments import Neighbours
 from reports.pages.published import acrobot, newton
 from reports.pages.rendering import render_index, render_page, render_readme
-from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
 from reports.pages.scaling import page as scaling
+from reports.pages.skate import methods as turning_round
 from reports.pages.skate import page as skate
-from reports.pages.skate import turning_round
-from reports.pages.skate.slipping import slipping
+from reports.pages.skate.methods import slipping
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
-from reports.pages.wheels.folding import Folding
-from reports.pages.your_model.answers import Walk
+from reports.pages.wheels.experiments import Folding
+from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
 from reports.write.templates import environment
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
@@ -193,8 +189,8 @@ def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones
         few, soft = chance.sample(corners, count), chance.sample(constants, count)
         failed = [(value, replace(row, angle=math.nan)) for value, row in few]
         failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
-        assert theme.svg(rolling_charts.draw_plateaus(few, soft), "few")
-        assert theme.svg(rolling_charts.draw_plateaus(failed, failed_soft), "failed")
+        assert theme.svg(rolling.draw_plateaus(few, soft), "few")
+        assert theme.svg(rolling.draw_plateaus(failed, failed_soft), "failed")
         some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
         for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
             assert scaling.figures(Material(own))

@@ -24,7 +24,7 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.model.timing import repeated_stepping
-from reports.pages.centrodes.centrode_check import returned
+from reports.pages.centrodes.page import returned
 from reports.pages.scaling.page import cost_table, crossing
 from reports.pages.skate.page import constructions, nearest_step
 from tests.rows import falling, row_of, table

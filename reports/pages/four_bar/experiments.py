@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -12,8 +14,44 @@ from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
-from reports.pages.four_bar.printed_rates import PrintedRates
+from reports.model.tasks import Task, Values
 from reports.write.tables import number
+
+SAMPLES = 50  # a revolution
+EVALUATION = 10e-6  # s
+
+
+@dataclass(frozen=True)
+class PrintedRates(Task):
+    """(18.70) and (18.71) under RK45 at a relative tolerance, the absolute one a thousandth of it."""
+
+    revolutions: int
+    tolerance: float
+
+    @property
+    def cost(self) -> float:
+        # About a hundred evaluations a revolution at 1e-3; a method of order 5 takes steps as the fifth root.
+        return self.revolutions * 100 * (1e-3 / self.tolerance) ** 0.2 * EVALUATION
+
+    @property
+    def label(self) -> str:
+        return f"printed rates over {self.revolutions} revolutions at {self.tolerance:g}"
+
+    def run(self) -> Values:
+        """`error`: the largest of beta [rad]; `evaluations` of the rates; `stopped`: why, if before the end."""
+        scene = DrivenFourBar()
+        t = np.linspace(0, self.revolutions * scene.duration, SAMPLES * self.revolutions + 1)
+        beta, _ = scene.four_bar.angles(scene.start + scene.rate * t)
+        found = scene.four_bar.integrate_rates(
+            t, scene.rate, scene.start, rtol=self.tolerance, atol=self.tolerance * 1e-3
+        )
+        alive = np.isfinite(found.beta)
+        return {
+            "error": np.max(np.abs(found.beta - beta)[alive]),
+            "evaluations": np.asarray(float(found.evaluations)),
+            "stopped": found.stopped or "",
+        }
+
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))

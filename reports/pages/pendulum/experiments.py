@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,52 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material
-from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence
+from reports.model.page import Failure, Material, Observation
+from reports.model.tasks import Task, Values
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
+
+
+@dataclass(frozen=True)
+class Neighbours(Task):
+    """A chain that starts at one angle and rate for all links, looked at at times [s]."""
+
+    scene: LinkPendulum
+    times: tuple[float, ...]
+
+    @property
+    def cost(self) -> float:
+        return 0.3 * max(self.times)  # measured on two links: three neighbours and the motion itself, for 12 s
+
+    @property
+    def label(self) -> str:
+        return f"neighbouring starts of {self.scene.name}"
+
+    def run(self) -> Values:
+        """`growth` (times,): how many times larger a small difference of the start has become."""
+        scene = self.scene
+        start, rate = np.full(scene.links, scene.angle), np.full(scene.links, scene.rate)
+        return {"growth": scene.chain.divergence(start, rate, np.array(self.times))}
+
+
+BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
+
+
+PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
+
+
+def divergence(material: Material) -> list[Observation]:
+    """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
+    if (answer := material.answers.get(PARTING)) is None:
+        return []
+    method = "the reference, by neighbouring starts"
+    if not answer.finished:
+        return [Observation(method, "", answer.told)]
+    return [
+        Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
+        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
+    ]
+
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)

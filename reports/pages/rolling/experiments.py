@@ -17,8 +17,16 @@ from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.rolling.methods import CONSTRAINTS, CONTACTS, cells
-from reports.pages.rolling.parting import CHATTERING, PARTINGS, after_parting, chatter, partings
+from reports.pages.rolling.methods import (
+    CHATTERING,
+    CONSTRAINTS,
+    CONTACTS,
+    PARTINGS,
+    after_parting,
+    cells,
+    chatter,
+    partings,
+)
 from reports.write.unmeasured import UNMEASURED
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
