@@ -31,10 +31,10 @@ from reports.pages.errata import experiments as referees
 from reports.pages.faults.experiments import Equalities, Grooves, Offsets
 from reports.pages.faults.page import Script
 from reports.pages.findings.findings import findings
-from reports.pages.observing import observe
+from reports.pages.index import render_index, render_readme
 from reports.pages.pendulum.experiments import Neighbours
 from reports.pages.published import acrobot, newton
-from reports.pages.rendering import render_index, render_page, render_readme
+from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
@@ -47,6 +47,7 @@ from reports.pages.wheels import page as wheels
 from reports.pages.wheels.experiments import Folding
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
+from reports.write.experiments import observe
 from reports.write.templates import environment
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, page_rows

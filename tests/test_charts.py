@@ -17,7 +17,7 @@ from reports.model.quantities import quantity
 from reports.model.scaling_fit import Point, Series, cost_exponent
 from reports.pages.rolling import page as rolling_charts
 from reports.pages.scaling.page import _spread, scaling_chart
-from reports.plots import families
+from reports.plots import looks as families
 from reports.plots import work_precision as charts
 from reports.plots.looks import role
 from reports.plots.theme import DARK, LIGHT, SERIES

@@ -15,14 +15,13 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings.finding import MILLISECOND, TENTH
+from reports.pages.findings.finding import HEIGHT, LOOKS, MILLISECOND, TENTH, WIDTH, Line, draw
 from reports.pages.findings.findings import FINDINGS, findings, pictures
-from reports.pages.findings.lookup import Rows
-from reports.pages.findings.pictures import HEIGHT, LOOKS, WIDTH, Line, draw
-from reports.pages.symptoms import SYMPTOMS
+from reports.pages.index import SYMPTOMS
 from reports.plots.theme import DARK
-from reports.write.links import anchor, headings, link
+from reports.write.rows import Rows, own_rows
 from reports.write.tables import number
+from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import MARK
 from tests.committed_rows import RESULTS, page_rows
 from tests.rows import falling, row_of
@@ -137,8 +136,8 @@ def test_its_numbers_are_those_of_the_rows_that_it_names(name, numbers):
     ],
 )
 def test_the_limit_that_it_tells_is_near_the_finest_error(name, scene, method, quantity):
-    rows = Rows(changed(lambda cell, row: row))
-    limit, finest = rows.sweep(scene, method, quantity).plateau, rows.of(scene, method)[-1]
+    rows = own_rows(changed(lambda cell, row: row)).of(scene, method)
+    limit, finest = rows.sweep(quantity).plateau, rows[-1]
     assert number(limit) in told()[name].text
     # All of these end flat: half a decade changes them by less than a twentieth.
     assert getattr(finest, quantity) == pytest.approx(limit, rel=0.05)
@@ -205,7 +204,7 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
 )
 def test_a_finding_that_its_rows_contradict_is_not_told(name, wrong):
     (find,) = (find for find in FINDINGS if find.__name__ == name)
-    assert not find(Rows(changed(wrong))).told
+    assert not find(own_rows(changed(wrong))).told
 
 
 ABOUT = {
@@ -268,18 +267,18 @@ def test_each_picture_has_every_line_with_its_label_and_units_on_both_axes():
 
 def test_lines_differ_without_colours():
     assert len({(look["linestyle"], look["marker"]) for look in LOOKS}) == len(LOOKS)
-    steps = [Line(name, falling(f"pymunk {name}", (1e-2, 1e-3))) for name in "abcd"]
+    steps = [Line(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3)))) for name in "abcd"]
     (axes,) = draw(steps, "angle").axes
     assert [np.asarray(line.get_xdata()).tolist() for line in axes.lines] == [[100.0, 10.0]] * 4
     assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[1e-2, 1e-3]] * 4
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, Line("e", [])], "angle")
+        draw([*steps, Line("e", Rows())], "angle")
 
 
 def test_a_failed_run_stands_in_a_picture_and_an_unknown_error_does_not():
     rows = [row_of("pymunk a", step=1e-2, angle=3.0, outcome=Outcome.SATURATED), row_of("pymunk a", angle=float("nan"))]
-    (axes,) = draw([Line("a", rows)], "angle").axes
+    (axes,) = draw([Line("a", Rows(rows))], "angle").axes
     assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[3.0]]
 
 

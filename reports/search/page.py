@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from engines.registry import ENGINES, OTHERS
 from reports.model.tasks import Answer
 from reports.plots.theme import svg
@@ -21,6 +19,7 @@ from reports.search.renumbered import SHAPES
 from reports.search.shrunk import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.search.summary import HEADER, refused, summary
+from reports.write.templates import environment
 
 
 def known_subjects(words: Sequence[str]) -> list[Subject]:
@@ -62,15 +61,8 @@ def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot
         "lines": summary(told),
         "findings": [_finding(task, answer) for task, answer in _one_of_each(findings)],
     }
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,
-    )
-    out["search.md"] = environment.get_template("page.md").render(page=page, foot=foot)
+    template = environment(Path(__file__).parent).get_template("own/page.md")
+    out["search.md"] = template.render(page=page, foot=foot)
     return out
 
 

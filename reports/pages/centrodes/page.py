@@ -25,7 +25,7 @@ from reference.validation import InvalidMechanism
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
-from reports.plots.drawings import draw_ground, draw_pose
+from reports.plots.mechanisms import draw_ground, draw_pose
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.tables import markdown, number
 

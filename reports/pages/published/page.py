@@ -30,9 +30,9 @@ from reports.pages.published.acrobot import PUBLISHED, START, Acrobot
 from reports.pages.published.acrobot import STEPS as ACROBOT_STEPS
 from reports.pages.published.expectations import KNOWN
 from reports.pages.published.newton import BOUNDS, STEPS, Newton
-from reports.plots.stroboscope import Strip, stroboscope
+from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 
 # Angles of one body against another, as the test set has them, by the names of the bodies.
 ANGLES = ("K1", "K2 - K1", "K3", "K4 - K5", "K5", "K6 - K7", "K7")
@@ -185,7 +185,7 @@ def words(material: Material) -> Mapping[str, Any]:
         {"method": method(engine), "problems": cells} for engine, *cells in zip(VARIANTS, *problems, strict=True)
     ]
     return {
-        **told(material, SCENES),
+        **lookups(material, SCENES),
         "compared": compared(SCENES[0]),
         "by_method": by_method,
         "tolerances": TOLERANCES,

@@ -36,8 +36,8 @@ from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling.expectations import KNOWN, ORDERS
 from reports.pages.rolling.experiments import FAILURES, polygon_cells, softness_cells
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
-from reports.write.lookups import nearest_step, told
-from reports.write.unmeasured import UNMEASURED, Known
+from reports.write.rows import Rows, lookups
+from reports.write.unmeasured import Known
 
 COEFFICIENTS = (0.2, 0.5, 1.0)
 
@@ -216,17 +216,16 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; `at` takes a method in one word, and a step."""
-    rows = material.sweep(SCENES)
+    rows = Rows(material.sweep(SCENES))
 
     def at(scene: str, method: str, step: float) -> Any:
         """The row of a method ("mujoco tuned") at about a step [s]."""
-        own = (row for row in rows if row.scene == scene and row.method == method)
-        return nearest_step(own, step) or UNMEASURED
+        return rows.of(scene, method).near(step)
 
     polygons = Known(
         {(corners, cell.every): material.rows[cell] for corners, cell in polygon_cells() if cell in material.rows}
     )
-    return {**told(material, SCENES), "at": at, "polygons": polygons, "hill": HILL}
+    return {**lookups(material, SCENES), "at": at, "polygons": polygons, "hill": HILL}
 
 
 PAGE = Page(

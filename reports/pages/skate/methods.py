@@ -17,7 +17,7 @@ from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Material, Observation
-from reports.pages.observing import observe
+from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 

@@ -20,7 +20,7 @@ from reference.skate.parking import Move, commutator, commutator_displacement, p
 from reference.skate.slopes import SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.convergence import best_of, by_method, groups, sweeps
+from reports.model.convergence import by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import FEATURED, Material, Page
@@ -33,8 +33,7 @@ from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
 from reports.write.holders import holders
-from reports.write.lookups import nearest_step
-from reports.write.unmeasured import UNMEASURED
+from reports.write.rows import Rows
 
 BLADE = 0.35  # m
 GAP = (0.0, 1.0, 0.0)  # the pose that is asked for: straight sideways of the start
@@ -195,8 +194,8 @@ def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = 
         if all(row.outcome == Outcome.UNSUPPORTED for row in members):
             told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
             continue
-        row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
-        if row is None:
+        row = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED).near(COMPARED)
+        if not row:
             continue
         numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
         if not Outcome(row.outcome).comparable:
@@ -240,18 +239,16 @@ def words(material: Material) -> Mapping[str, Any]:
     row at about that step; `least(engine, variant)`, the row with the least position error; `finest(method)`, the row
     at the smallest step that has a position error.
     """
-    rows = material.sweep((SLEIGH,))
+    rows = Rows(material.sweep((SLEIGH,)))
 
     def at(name: str, step: float = COMPARED) -> Any:
-        own = (row for row in rows if row.method == name and np.isfinite(row.position))
-        return nearest_step(own, step) or UNMEASURED
+        return rows.of(method=name).known("position").near(step)
 
     def least(engine: str, variant: str) -> Any:
-        return best_of(rows, engine, variant, "position") or UNMEASURED
+        return rows.of(method=f"{engine} {variant}").best("position")
 
     def finest(name: str) -> Any:
-        own = (row for row in rows if row.method == name and np.isfinite(row.position))
-        return min(own, key=lambda row: row.step, default=UNMEASURED)
+        return rows.of(method=name).known("position").finest()
 
     commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")

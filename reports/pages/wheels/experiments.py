@@ -19,7 +19,7 @@ from reference.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion, Task, Values
-from reports.pages.observing import observe
+from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
