@@ -26,7 +26,7 @@ from engines import Unsupported
 from engines.mujoco.reading import READER
 from reference.validation import InvalidMechanism
 from reports.check.judging import refuse_disagreement
-from reports.pages.your_model.others import TABLE
+from reports.pages.your_model.page import TABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = Path(pymunk.__file__).parent / "examples"

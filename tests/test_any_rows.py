@@ -26,31 +26,28 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task, answered
-from reports.pages.engines.capabilities import ASKED, Capabilities
-from reports.pages.engines.open_work import OpenWork
-from reports.pages.engines.velocity_term import VelocityTerm
-from reports.pages.errata import errata_engines as referees
-from reports.pages.faults.equalities import Equalities
-from reports.pages.faults.groove import Grooves, Offsets
-from reports.pages.faults.scripts import Script
+from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
+from reports.pages.errata import experiments as referees
+from reports.pages.faults.experiments import Equalities, Grooves, Offsets
+from reports.pages.faults.page import Script
 from reports.pages.findings.findings import findings
-from reports.pages.observing import observe
-from reports.pages.pendulum.neighbours import Neighbours
+from reports.pages.index import render_index, render_readme
+from reports.pages.pendulum.experiments import Neighbours
 from reports.pages.published import acrobot, newton
-from reports.pages.rendering import render_index, render_page, render_readme
-from reports.pages.rolling import charts as rolling_charts
+from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
 from reports.pages.scaling import page as scaling
+from reports.pages.skate import methods as turning_round
 from reports.pages.skate import page as skate
-from reports.pages.skate import turning_round
-from reports.pages.skate.slipping import slipping
+from reports.pages.skate.methods import slipping
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
-from reports.pages.wheels.folding import Folding
-from reports.pages.your_model.answers import Walk
+from reports.pages.wheels.experiments import Folding
+from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
+from reports.write.experiments import observe
 from reports.write.templates import environment
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests.committed_rows import RESULTS, page_rows
@@ -193,8 +190,8 @@ def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones
         few, soft = chance.sample(corners, count), chance.sample(constants, count)
         failed = [(value, replace(row, angle=math.nan)) for value, row in few]
         failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
-        assert theme.svg(rolling_charts.draw_plateaus(few, soft), "few")
-        assert theme.svg(rolling_charts.draw_plateaus(failed, failed_soft), "failed")
+        assert theme.svg(rolling.draw_plateaus(few, soft), "few")
+        assert theme.svg(rolling.draw_plateaus(failed, failed_soft), "failed")
         some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
         for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
             assert scaling.figures(Material(own))
@@ -385,7 +382,7 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
 
 
 def test_an_experiment_of_which_no_task_was_run_says_so():
-    page = replace(skate.PAGE, figures=lambda material: {}, maps=())
+    page = replace(skate.PAGE, figures=lambda material: {})
     for answers, waiting in (({}, True), ({task: still(task) for task in all_tasks(page)}, False)):
         text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
         section = text.split("### The sleigh run backwards")[1].split("###")[0]

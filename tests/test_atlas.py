@@ -23,9 +23,8 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer
 from reports.pages.atlas import page
-from reports.pages.atlas.chart import atlas_map, edges
-from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps
-from reports.pages.atlas.reading import line_of
+from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps, line_of
+from reports.pages.atlas.page import atlas_map, edges
 from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
 from reports.pages.atlas.table import (
     BY_LETTER,
@@ -42,7 +41,7 @@ from reports.pages.atlas.table import (
     read_costs,
 )
 from reports.pages.rendering import render_page
-from reports.plots.stability import outcome_colour
+from reports.plots.looks import HATCHES, outcome_colour
 from reports.plots.theme import LIGHT
 from reports.run.store import Store
 from tests.test_command_line import call, one_line
@@ -330,3 +329,17 @@ def test_unknown_maps_are_refused_in_a_line(words, monkeypatch, tmp_path, capsys
     monkeypatch.chdir(tmp_path)
     assert call("atlas", *words) == REFUSED
     assert "length" in one_line(capsys.readouterr().err)
+
+
+def test_no_two_failures_look_and_read_alike():
+    failed = [outcome for outcome in Outcome if not outcome.comparable]
+    assert len({outcome.letter for outcome in failed}) == len(failed)
+    assert not {outcome_colour(o, LIGHT) for o in failed} & {outcome_colour(Outcome.FINISHED, LIGHT)}
+    assert len(set(HATCHES.values())) == len(HATCHES)
+    assert {o: outcome_colour(o, LIGHT) for o in Outcome} == {
+        **dict.fromkeys((Outcome.FINISHED, Outcome.CONVERGED), LIGHT.good),
+        **dict.fromkeys((Outcome.PLATEAU, Outcome.UNRESOLVED, Outcome.SATURATED, Outcome.BRANCH_FLIP), LIGHT.middling),
+        **dict.fromkeys((Outcome.TORN, Outcome.DIVERGED, Outcome.RESET), LIGHT.bad),
+        **dict.fromkeys((Outcome.UNSUPPORTED, Outcome.REFUSED), LIGHT.grid),
+        **dict.fromkeys((Outcome.ABORTED, Outcome.TIMED_OUT, Outcome.FAILED, Outcome.LOST), LIGHT.worse),
+    }

@@ -33,7 +33,7 @@ from reports.pages.person import page as person
 from reports.pages.rendering import render_page
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
-from reports.plots.stroboscope import Strip, outline, stroboscope
+from reports.plots.mechanisms import Strip, outline, stroboscope
 from reports.plots.theme import svg
 from tests import test_any_rows as rendering
 from tests.present import present

@@ -15,11 +15,11 @@ from engines import registry
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.model.scaling_fit import Point, Series, cost_exponent
-from reports.pages.rolling import charts as rolling_charts
-from reports.pages.scaling.chart import _spread, scaling_chart
-from reports.plots import families
+from reports.pages.rolling import page as rolling_charts
+from reports.pages.scaling.page import _spread, scaling_chart
+from reports.plots import looks as families
 from reports.plots import work_precision as charts
-from reports.plots.families import role
+from reports.plots.looks import role
 from reports.plots.theme import DARK, LIGHT, SERIES
 from tests.drawn import annotation
 from tests.rows import falling, row_of

@@ -120,7 +120,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
     from reports.model import catalogue
     from reports.model.cells import Cell
-    from reports.pages import rendering
+    from reports.pages import index, rendering
     from tests.test_reports import PAGE
     from tests.toys import Disc, Toy
 
@@ -131,7 +131,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     monkeypatch.setattr(
         rendering, "render_all", lambda material, command, further, made: {"index.md": f"made by {command}"}
     )
-    monkeypatch.setattr(rendering, "render_readme", lambda text, material: f"{text}, with a table")
+    monkeypatch.setattr(index, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
         from reports.model.measure import measure
 

@@ -11,8 +11,8 @@ from engines import registry
 from reports.model.cells import Cell
 from reports.model.page import Material
 from reports.pages.engines import page, tables
-from reports.pages.engines.capabilities import ASKED, Capabilities
 from reports.pages.engines.cells import CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG
+from reports.pages.engines.experiments import ASKED, Capabilities
 
 FIRST, SECOND = 0.1, 0.02  # rad: above and below these the two families are told apart
 

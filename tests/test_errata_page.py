@@ -17,8 +17,8 @@ from reference.joints import Pin
 from reports import __main__ as command_line
 from reports.model.page import Material
 from reports.model.tasks import answered
-from reports.pages.errata import errata_engines as referees
-from reports.pages.errata.errata_engines import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
+from reports.pages.errata import experiments as referees
+from reports.pages.errata.experiments import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
 from reports.pages.errata.page import PAGE, SNIPPETS, digits, table
 from reports.pages.rendering import render_page
 from reports.write.templates import TEMPLATES

@@ -20,11 +20,10 @@ from reports.cli.selection import page_tasks
 from reports.gate.prediction import all_tasks
 from reports.model.page import Material
 from reports.model.tasks import answered
-from reports.pages.faults import groove, scripts
-from reports.pages.faults.equalities import KINDS, Bead, Equalities
-from reports.pages.faults.groove import CASES, Grooves, across, beside
+from reports.pages.faults import experiments, scripts
+from reports.pages.faults.experiments import CASES, KINDS, Bead, Equalities, Grooves, across, beside
 from reports.pages.faults.page import BEADS, EQUALITIES, GROOVES, OFFSETS, PAGE, SCRIPTS
-from reports.pages.faults.versions import RELEASES, found_with, recorded
+from reports.pages.faults.scripts import RELEASES, found_with, recorded
 from reports.pages.rendering import render_page
 
 # A velocity or an acceleration by two routes of some twenty operations, with masses and arms over two decades.
@@ -90,13 +89,15 @@ def test_a_groove_drives_the_wrong_velocity_to_zero(case: str) -> None:
     assert float(np.asarray(answer["missed"], dtype=float)) < ROUNDING
     # Right in one case of four only, and there to rounding.
     off = np.asarray(answer["off"], dtype=float)
-    assert np.all(off < 1e-14) if case == "ground, centre" else np.all(off > groove.WRONG)
+    assert np.all(off < 1e-14) if case == "ground, centre" else np.all(off > experiments.WRONG)
 
 
 def test_an_ideal_groove_keeps_the_velocity_across_it_at_zero() -> None:
     setup = beside(0.7)
-    assert abs(across(setup, setup.predicted(groove.right))) < 1e-15
-    assert across(setup, setup.predicted(groove.wrong)) == pytest.approx(across(setup, setup.measured()), abs=1e-15)
+    assert abs(across(setup, setup.predicted(experiments.right))) < 1e-15
+    assert across(setup, setup.predicted(experiments.wrong)) == pytest.approx(
+        across(setup, setup.measured()), abs=1e-15
+    )
 
 
 def test_a_groove_is_right_where_the_arm_lies_along_or_across_it() -> None:

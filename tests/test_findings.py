@@ -15,14 +15,13 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings.finding import MILLISECOND, TENTH
+from reports.pages.findings.finding import HEIGHT, LOOKS, MILLISECOND, TENTH, WIDTH, Line, draw
 from reports.pages.findings.findings import FINDINGS, findings, pictures
-from reports.pages.findings.lookup import Rows
-from reports.pages.findings.pictures import HEIGHT, LOOKS, WIDTH, Line, draw
-from reports.pages.symptoms import SYMPTOMS
+from reports.pages.index import SYMPTOMS
 from reports.plots.theme import DARK
-from reports.write.links import anchor, headings, link
+from reports.write.rows import Rows, own_rows
 from reports.write.tables import number
+from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import MARK
 from tests.committed_rows import RESULTS, page_rows
 from tests.rows import falling, row_of
@@ -52,7 +51,7 @@ def test_the_committed_rows_bear_all_ten_out():
     assert len({found.title for found in told().values()}) == 10
 
 
-def stored(scene, engine, variant, every, field, purpose="sweep", which=lambda line: True):
+def stored(scene, engine, variant, every, field, purpose="sweep"):
     """One number of errors.csv, as it stands there."""
     with (RESULTS / "errors.csv").open(encoding="utf-8", newline="") as file:
         wanted = (scene, engine, variant, str(every), purpose)
@@ -60,16 +59,8 @@ def stored(scene, engine, variant, every, field, purpose="sweep", which=lambda l
             line
             for line in csv.DictReader(file)
             if (line["scene"], line["engine"], line["variant"], line["every"], line["purpose"]) == wanted
-            and which(line)
         )
     return float(line[field])
-
-
-def iterations(count):
-    """Whether a line of errors.csv is of an engine with so many iterations."""
-    with (RESULTS / "descriptions.csv").open(encoding="utf-8", newline="") as file:
-        digests = {d["digest"] for d in csv.DictReader(file) if f"iterations={count}," in d["description"]}
-    return lambda line: line["settings"] in digests
 
 
 def free(engine, variant, field):
@@ -77,7 +68,11 @@ def free(engine, variant, field):
 
 
 def person(count, every, field):
-    return stored("person_one_foot", "pymunk", "all of the gap", every, field, "map", iterations(count))
+    """A number of the person whose joints are swept so often."""
+    (page,) = (page for page in TAUGHT if page.name == "person")
+    method = ("person_one_foot", f"pymunk {count} sweeps, all of the gap", "failure", every)
+    (row,) = (r for r in page_rows(page).values() if (r.scene, r.method, r.purpose, r.every) == method)
+    return getattr(row, field)
 
 
 @pytest.mark.parametrize(
@@ -141,19 +136,18 @@ def test_its_numbers_are_those_of_the_rows_that_it_names(name, numbers):
     ],
 )
 def test_the_limit_that_it_tells_is_near_the_finest_error(name, scene, method, quantity):
-    rows = Rows(changed(lambda cell, row: row))
-    limit, finest = rows.sweep(scene, method, quantity).plateau, rows.of(scene, method)[-1]
+    rows = own_rows(changed(lambda cell, row: row)).of(scene, method)
+    limit, finest = rows.sweep(quantity).plateau, rows[-1]
     assert number(limit) in told()[name].text
     # All of these end flat: half a decade changes them by less than a twentieth.
     assert getattr(finest, quantity) == pytest.approx(limit, rel=0.05)
 
 
-def times(factor, *fields, scene, method, purpose="sweep", steps=lambda step: True, **settings):
+def times(factor, *fields, scene, method, purpose="sweep", steps=lambda step: True):
     """Rows of one method with some errors multiplied."""
 
     def change(cell, row):
-        own = (row.scene, row.method, row.purpose) == (scene, method, purpose)
-        if own and steps(row.step) and all(getattr(cell.engine, n) == value for n, value in settings.items()):
+        if (row.scene, row.method, row.purpose) == (scene, method, purpose) and steps(row.step):
             return replace(row, **{field: factor * getattr(row, field) for field in fields})
         return row
 
@@ -170,7 +164,10 @@ def at(wanted):
 
 
 FREE = {"scene": "free_four_bar"}
-PERSON = {"scene": "person_one_foot", "method": "pymunk all of the gap", "purpose": "map"}
+PERSON = {
+    count: {"scene": "person_one_foot", "method": f"pymunk {count} sweeps, all of the gap", "purpose": "failure"}
+    for count in (10, 20)
+}
 CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
 
 
@@ -191,10 +188,10 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
         ("reading", times(10.0, "angle", **FREE, method="pymunk leapfrog")),
         ("energy", times(0.1, "energy", scene="pendulum_1", method="pymunk default")),
         ("energy", times(1e10, "energy", scene="pendulum_1", method="mujoco tuned")),
-        ("iterations", times(0.1, "angle", **PERSON, iterations=10, steps=at(MILLISECOND))),
-        ("iterations", times(10.0, "angle", **PERSON, iterations=20)),
-        ("forces", times(1.1, "angle", **PERSON, iterations=20)),
-        ("forces", times(0.2, "reaction", **PERSON, iterations=20)),
+        ("iterations", times(0.1, "angle", **PERSON[10], steps=at(MILLISECOND))),
+        ("iterations", times(10.0, "angle", **PERSON[20])),
+        ("forces", times(1.1, "angle", **PERSON[20])),
+        ("forces", times(0.2, "reaction", **PERSON[20])),
         ("skate", times(1e-2, "position", scene="sleigh", method="pymunk default", steps=at(1e-4))),
         ("skate", times(10.0, "position", scene="sleigh", method="pymunk tuned")),
         ("crank", times(0.1, "angle", **CRANK, method="mujoco default, overwritten crank", steps=at(TENTH))),
@@ -207,7 +204,7 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
 )
 def test_a_finding_that_its_rows_contradict_is_not_told(name, wrong):
     (find,) = (find for find in FINDINGS if find.__name__ == name)
-    assert not find(Rows(changed(wrong))).told
+    assert not find(own_rows(changed(wrong))).told
 
 
 ABOUT = {
@@ -241,17 +238,6 @@ def test_without_timings_no_cost_is_told():
     assert "tuned" not in [found.name for found in untimed]
 
 
-def test_rows_of_maps_with_other_numbers_do_not_stand_for_the_scenes_own():
-    rows = Rows(changed(lambda cell, row: row))
-    assert rows.of("free_four_bar", "pymunk default", "map") == []
-    assert any(
-        (cell.scene.name, cell.purpose, row.method) == ("free_four_bar", "map", "pymunk default")
-        for page in TAUGHT
-        for cell, row in page_rows(page).items()
-    )
-    assert len(rows.of("person_one_foot", "pymunk all of the gap", "map", iterations=10)) == 5
-
-
 def test_each_picture_is_legible_on_a_telephone_and_in_the_dark():
     files = pictures(told().values())
     assert sorted(files) == sorted(found.picture for found in told().values())
@@ -281,18 +267,18 @@ def test_each_picture_has_every_line_with_its_label_and_units_on_both_axes():
 
 def test_lines_differ_without_colours():
     assert len({(look["linestyle"], look["marker"]) for look in LOOKS}) == len(LOOKS)
-    steps = [Line(name, falling(f"pymunk {name}", (1e-2, 1e-3))) for name in "abcd"]
+    steps = [Line(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3)))) for name in "abcd"]
     (axes,) = draw(steps, "angle").axes
     assert [np.asarray(line.get_xdata()).tolist() for line in axes.lines] == [[100.0, 10.0]] * 4
     assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[1e-2, 1e-3]] * 4
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, Line("e", [])], "angle")
+        draw([*steps, Line("e", Rows())], "angle")
 
 
 def test_a_failed_run_stands_in_a_picture_and_an_unknown_error_does_not():
     rows = [row_of("pymunk a", step=1e-2, angle=3.0, outcome=Outcome.SATURATED), row_of("pymunk a", angle=float("nan"))]
-    (axes,) = draw([Line("a", rows)], "angle").axes
+    (axes,) = draw([Line("a", Rows(rows))], "angle").axes
     assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[3.0]]
 
 

@@ -24,9 +24,10 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.model.timing import repeated_stepping
-from reports.pages.centrodes.centrode_check import returned
+from reports.pages.centrodes.page import returned
 from reports.pages.scaling.page import cost_table, crossing
-from reports.pages.skate.page import constructions, nearest_step
+from reports.pages.skate.page import constructions
+from reports.write.rows import Rows
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 
@@ -244,9 +245,9 @@ def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
 
 def test_the_row_of_a_step_is_the_nearest_by_ratio():
     rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
-    near = {step: nearest_step(rows, step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
-    assert [row and row.step for row in near.values()] == [1e-3, 1e-2, None, None]
-    assert nearest_step([], 1e-3) is None
+    near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
+    assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
+    assert not Rows([]).near(1e-3)
 
 
 def test_constructions_are_told_at_the_compared_step_best_first():

@@ -18,7 +18,7 @@ from reports.cli.selection import choose_cells, page_cells, shown_cells
 from reports.model.page import Material
 from reports.pages.guides.page import EVERY, FOUR_BAR, PAGES, SCENES, VARIANTS
 from reports.pages.rendering import render_page
-from reports.write.lookups import told
+from reports.write.rows import lookups
 from tests.committed_rows import page_rows
 
 GLOSSARY, REACTIONS, INTEGRATORS, CLUSTER = PAGES
@@ -76,7 +76,7 @@ def test_the_rows_of_guides_are_at_a_millisecond():
 
 def known(page) -> dict:
     """What asks for single rows of a guide, from the committed ones."""
-    return told(Material(page_rows(page)), (FOUR_BAR,))
+    return lookups(Material(page_rows(page)), (FOUR_BAR,))
 
 
 def test_without_forces_that_depend_on_velocity_implicitfast_does_what_euler_does():

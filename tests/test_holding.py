@@ -18,7 +18,7 @@ from reference.rolling.scenes import RollingEllipse
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reference.wheels.car_and_trailer import CarAndTrailer
-from reports.model.holding import held_by
+from reports.write.holders import held_by
 from tests.mechanisms import four_bar
 from tests.toys import Toy
 

@@ -14,7 +14,7 @@ from engines.conformance import cases
 from engines.lagrange import TRUTH
 from engines.mjx import DEFAULT, NO_VELOCITY_TERM, TUNED, VARIANTS
 from reports.model.catalogue import SCENES
-from reports.pages.engines.velocity_term import VelocityTerm, reactions_with, started_anew
+from reports.pages.engines.experiments import VelocityTerm, reactions_with, started_anew
 from tests.all_elements import ALONE
 from tests.present import present
 

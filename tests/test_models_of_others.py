@@ -12,7 +12,7 @@ from engines import Unsupported
 from engines.mujoco import read
 from reference.validation import InvalidMechanism
 from reports.check.judging import refuse_disagreement
-from reports.pages.your_model.others import rows
+from reports.pages.your_model.page import rows
 from tests.models_of_others import models, spaces, unpacked
 
 pytestmark = pytest.mark.slow

@@ -12,8 +12,8 @@ from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
-from reports.write.overview import overviews
-from reports.write.parts import marks, with_part
+from reports.write.page_tables import overviews
+from reports.write.templates import marks, with_part
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 

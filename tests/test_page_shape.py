@@ -1,4 +1,4 @@
-"""The shape of each mechanism's page: five minutes long, all numbers beside it, code that runs as it is printed."""
+"""The shape of each mechanism's page: its data page beside it, code that runs as it is printed."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import pytest
 
 from reports.model.catalogue import PAGES
 from reports.model.page import Page
-from reports.write.links import anchor, headings
 from reports.write.programs import PAGES as FOLDER
 from reports.write.programs import program, programs_of
 from reports.write.tables import number
+from reports.write.templates import anchor, headings
 from tests import test_any_rows as rendering
 from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole
@@ -23,9 +23,6 @@ from tests.test_any_rows import FROM_ROWS, cheap, written
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
-LIMIT = 25_000  # bytes of Markdown: about five minutes
-# What methods that are no engines did is not in the committed rows: this much is left for the line of each experiment.
-OBSERVED = 500
 MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PROGRAM = re.compile(r"^### ([^\n]*)\n\n```python\n(.*?)^```\n\nExact: ([^:]*): ([^\n]*)\.$", re.DOTALL | re.MULTILINE)
@@ -51,12 +48,6 @@ def anchors(file: str) -> frozenset[str]:
     # The index is of all pages.
     text = (RESULTS / file).read_text(encoding="utf-8") if page is None else texts(page)[file]
     return frozenset(anchor(title) for title in headings(text))
-
-
-@named
-def test_a_page_is_read_in_five_minutes(page, undrawn):
-    observed = sum(bool(failure.observations) and not failure.cells for failure in page.failures)
-    assert len(texts(page)[f"{page.name}.md"].encode()) + OBSERVED * observed <= LIMIT
 
 
 @named

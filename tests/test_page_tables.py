@@ -16,10 +16,10 @@ from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Answer, Task, answered
 from reports.write.experiments import compared_only, happened, told_experiment
 from reports.write.holders import holders
-from reports.write.links import anchor
 from reports.write.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
 from reports.write.programs import advised_settings, compact
 from reports.write.tables import markdown, outcome_grid
+from reports.write.templates import anchor
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 

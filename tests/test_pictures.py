@@ -17,12 +17,12 @@ from reference.mechanism import Body, Mechanism
 from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.slider_crank.scenes import DrivenSliderCrank
-from reports.pages.centrodes.drawings import draw_centrodes, draw_rate
-from reports.pages.rolling import charts as rolling_charts
+from reports.pages.centrodes.page import draw_centrodes, draw_rate
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.plots import drawings
+from reports.pages.rolling import page as rolling_charts
+from reports.plots import mechanisms as drawings
+from reports.plots.mechanisms import PALEST, Strip, outline, path, stroboscope
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
-from reports.plots.stroboscope import PALEST, Strip, outline, path, stroboscope
 from reports.plots.theme import LIGHT
 from tests.drawn import annotation, handles
 from tests.mechanisms import four_bar, pendulum

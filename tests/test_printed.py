@@ -12,7 +12,7 @@ from rich.console import Console
 
 from engines.lagrange import loading
 from reports.cli.terminal import print_table
-from reports.pages.rendering import foot
+from reports.pages.index import foot
 from reports.write import provenance
 from reports.write.provenance import machine, still_installed, versions
 from tests.toys import Toy

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from reports.model.ending import STATUSES
-from reports.write.parts import marks, with_part
+from reports.write.templates import marks, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -17,9 +17,9 @@ from reports.model.tasks import Answer, Motion, Task, answered
 from reports.pages.four_bar import experiments as four_bar
 from reports.pages.pendulum import experiments as pendulum
 from reports.pages.rolling import experiments as rolling
-from reports.pages.rolling import parting
+from reports.pages.rolling import methods as parting
 from reports.pages.rolling.methods import CONTACTS
-from reports.pages.skate import slipping
+from reports.pages.skate import methods as slipping
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
 from reports.write.experiments import told_remark

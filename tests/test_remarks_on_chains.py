@@ -6,7 +6,8 @@ from itertools import pairwise
 
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, StabilityMap
+from reports.model.page import Failure
+from reports.pages.atlas.page import lines as atlas_lines
 from reports.pages.four_bar import experiments as four_bar_failures
 from reports.pages.n_four_bar import experiments as n_four_bar_failures
 from reports.pages.pendulum import experiments as pendulum_failures
@@ -161,39 +162,32 @@ def test_two_sweeps_are_enough_at_a_millisecond_and_tear_the_loop_at_a_tenth_of_
     assert outcomes(two)[-1] == Outcome.TORN
 
 
-def mapped(maps: tuple[StabilityMap, ...], name: str) -> dict[tuple[str, float], list[Outcome]]:
-    """Outcomes of a map by method and parameter, largest step first."""
-    (chosen,) = [each for each in maps if each.name == name]
-    rows = committed_rows(cell for _, cell in chosen.cells)
-    found: dict[tuple[str, float], list[Outcome]] = {}
-    for value, cell in sorted(chosen.cells, key=lambda pair: -rows[pair[1]].step):
-        found.setdefault((rows[cell].method, value), []).append(Outcome(rows[cell].outcome))
+def mapped(subject: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
+    """Outcomes of a map of the atlas by method and value, largest step first."""
+    found: dict[str, dict[float, tuple[Outcome, ...]]] = {}
+    for line in atlas_lines():
+        if line.subject == subject:
+            found.setdefault(line.method, {})[line.value] = line.told
     return found
 
 
 def test_what_the_map_of_couplers_says() -> None:
-    found = mapped(four_bar_failures.MAPS, "stability")
-    light, heavy = min(four_bar_failures.RATIOS), max(four_bar_failures.RATIOS)
-    for ratio in (light, heavy):
-        assert set(found["mujoco default", ratio]) == {Outcome.TORN}
-    assert all(found["pymunk default", ratio][-1].comparable for ratio in four_bar_failures.RATIOS)
-    failed = [o for ratio in four_bar_failures.RATIOS for o in found["mujoco tuned", ratio] if not o.comparable]
-    assert len(failed) == 1
-    assert not found["mujoco tuned", light][0].comparable
-    assert not found["pymunk tuned", light][-1].comparable  # at the smallest step too
+    found = mapped("coupler")
+    for value in (min(found["mujoco default"]), max(found["mujoco default"])):
+        assert set(found["mujoco default"][value]) == {Outcome.TORN}
+    assert all(told[-1].comparable for told in found["mujoco tuned"].values())
 
 
 def test_what_the_map_of_slots_near_their_reach_says() -> None:
-    found = mapped(slider_crank_failures.MAPS, "reach")
-    nearest = max(slider_crank_failures.REACHES)
-    assert set(found["mujoco default", nearest]) == {Outcome.BRANCH_FLIP}
-    *coarse, finest = found["pymunk default", nearest]
-    assert set(coarse) == {Outcome.BRANCH_FLIP}
-    assert finest.comparable
-    for name in ("pymunk tuned", "mujoco tuned"):
-        assert all(o.comparable for reach in slider_crank_failures.REACHES for o in found[name, reach])
-    # Methods with a claim fall short of it at the longer steps, and say so.
-    for name in ("pymunk extended", "mujoco extended"):
-        own = [found[name, reach] for reach in slider_crank_failures.REACHES]
-        assert {o for each in own for o in each} == {Outcome.FINISHED, Outcome.UNRESOLVED}
-        assert all(each[-1] == Outcome.FINISHED for each in own)
+    found = mapped("offset")
+    for method in ("pymunk default", "mujoco default"):
+        assert found[method][min(found[method])][-1] == Outcome.BRANCH_FLIP
+    assert all(told[-1].comparable for told in found["pymunk tuned"].values())
+
+
+def test_what_the_map_of_sleighs_says() -> None:
+    found = mapped("sleigh")
+    naive = found.pop("pymunk default")
+    assert naive[min(naive)][-1].comparable
+    assert not naive[max(naive)][-1].comparable
+    assert all(told[-1].comparable for own in found.values() for told in own.values())

@@ -12,13 +12,12 @@ from reports.model.cells import Cell
 from reports.model.convergence import Verdict
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation
-from reports.pages.rendering import render_all, render_index, render_page, render_readme
-from reports.pages.told_scene import parameters
-from reports.write.lookups import told
-from reports.write.parts import marks
-from reports.write.tables import number
+from reports.pages.index import render_index, render_readme
+from reports.pages.rendering import render_all, render_page
+from reports.write.rows import lookups
+from reports.write.templates import marks
 from reports.write.unmeasured import UNMEASURED
-from tests.rows import falling, row_of, table
+from tests.rows import falling, row_of
 from tests.test_overview import PAGE, OtherDisc
 from tests.toys import Disc, Toy
 
@@ -47,7 +46,7 @@ def test_a_pages_material_gives_the_rows_of_the_sweep_and_no_experiments_among_t
 
 
 def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
-    words = told(Material(CELLS), (DISC, OTHER))
+    words = lookups(Material(CELLS), (DISC, OTHER))
     best = words["best"]("disc", "mujoco", "default")
     assert (best.scene, best.variant, best.angle) == ("disc", "default", pytest.approx(1.1e-6))
     assert words["best"]("other_disc", "mujoco", "tuned").angle == pytest.approx(1.3e-8)
@@ -61,39 +60,23 @@ def test_sentences_take_the_rows_of_the_scene_and_method_that_they_name():
     assert words["sweep"]("disc", "mujoco", "tuned", "gap").quantity.name == "gap"
     assert words["sweep"]("disc", "pymunk", "tuned") is UNMEASURED
     assert words["ended"]("disc", "mujoco", "tuned") == ["finished"]
-    only = told(Material(CELLS), (OTHER,))
+    only = lookups(Material(CELLS), (OTHER,))
     assert only["best"]("disc", "mujoco", "default") is UNMEASURED
 
 
 def test_a_page_of_two_scenes_has_in_each_scenes_tables_its_own_rows_alone():
     text = render_page(PAGE, Material(CELLS), "the command")["base_data.md"]
     assert not {"saturated", "torn"} & set(re.findall(r"\w+", text))
-    titles = ("Work and precision", "Order and plateau", "Reactions", "What was modelled", "All errors")
+    titles = ("Work and precision", "Order and plateau", "Reactions", "What was modelled")
     parts = {title: text.split(f"## {title}")[1].split("\n## ")[0].split("\n---")[0] for title in titles}
     for part in parts.values():
         first, second = part.split("other_disc")
         assert first.count("mujoco") == second.count("mujoco") > 0
-    disc, other = parts["All errors"].split("other_disc")
-    for piece, factor in ((disc, 1.0), (other, 0.1)):
-        lines = [line.split(" | ") for line in piece.splitlines() if line.startswith("| mujoco")]
-        assert [(line[0], line[5]) for line in lines] == [
-            (f"| mujoco {variant}", number(angle * factor / every**2))
-            for variant, angle in (("default", 1.1e-2), ("tuned", 1.3e-3))
-            for every in (1, 10, 100)
-        ]
     # The cost is the error's number here: 11 ms and 1.3 ms in the first scene, a tenth in the second.
     work = parts["Work and precision"]
     found = [line.strip("| ").split(" | ") for line in work.splitlines() if line.startswith("| mujoco")]
     assert [line[3] for line in found] == ["11", "1.3", "1.1", "0.13"]
-    assert "**other_disc**, invented too. Another scene." in text
-
-
-def test_a_scenes_parameters_are_its_fields():
-    assert table(parameters(Disc(rate=1.23456789, duration=0.3)))[1:] == [
-        ["rate", "1.23457"],
-        ["duration", "0.3"],
-        ["horizon", "0.2"],
-    ]
+    assert "- **other_disc**, invented too. Another scene." in text
 
 
 def test_methods_that_are_not_featured_stand_on_the_data_page_alone():
@@ -125,8 +108,7 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
     for quantity, outcome in (("position", "plateau"), ("angle", "converged")):
         page = replace(PAGE, scenes=(DISC,), quantity=quantity)
         text = render_page(page, Material(rows), "the command")["base_data.md"]
-        errors_told = text.split("## All errors")[1]
-        assert f"| mujoco default | - | {outcome} | 1.0e-4" in errors_told
+        assert set(re.findall(r"^- \*\*(plateau|converged)\*\*: ", text, re.MULTILINE)) == {outcome}
 
 
 def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():

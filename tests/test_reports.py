@@ -30,7 +30,7 @@ from reports.model.cells import QUICK, Cell, sweep_cells
 from reports.model.convergence import judged
 from reports.model.measure import TIMINGS, measure
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material, Observation, Page, StabilityMap
+from reports.model.page import Failure, Material, Observation, Page
 from reports.pages.rendering import render_all
 from reports.plots import work_precision as charts
 from reports.plots.theme import DARK, LIGHT, SERIES, svg
@@ -43,7 +43,7 @@ undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
 FAST_FAILURES = tuple(FailingToy(v) for v in FAILURES if v not in ("abort", "exit", "hang", "raise"))
-MAP = tuple((f, Cell(Disc(), Toy("default", factor=f), every, "map")) for f in (0.1, 1.0) for every in QUICK)
+LARGE = tuple(Cell(Disc(), Toy("default", factor=0.1), every, "large") for every in QUICK)
 PAGE = Page(
     name="base",  # the template that the real pages extend
     title="Discs | and bars",
@@ -57,8 +57,8 @@ PAGE = Page(
             tuple(Cell(Disc(), toy, 1, "failure") for toy in FAST_FAILURES),
             lambda material: [Observation("by hand", "none", "0.02 rad")],
         ),
+        Failure("Many of them", "They should turn.", LARGE),
     ),
-    maps=(StabilityMap("map", "Step against factor", "factor", MAP),),
 )
 
 
@@ -74,9 +74,9 @@ def files(material):
     return render_all({PAGE: material}, "the command")
 
 
-def test_the_page_tells_parameters_errors_failures_models_and_how_it_was_made(files):
+def test_the_page_tells_failures_models_and_how_it_was_made(files):
     page = files["base.md"] + files["base_data.md"]
-    for word in ("# Discs", "duration", "it has no pins", "**torn**", "by hand", "0.02 rad", "the command", "numpy"):
+    for word in ("# Discs", "it has no pins", "**torn**", "by hand", "0.02 rad", "the command", "numpy"):
         assert word in page
     assert "mass is -1; it must be greater than zero" in page
     assert "plateau **" in page
@@ -85,7 +85,7 @@ def test_the_page_tells_parameters_errors_failures_models_and_how_it_was_made(fi
 def test_every_picture_of_a_page_is_among_the_files_and_the_other_way_round(files):
     shown = set(re.findall(r"\]\((\w+\.svg)\)", files["base.md"]))
     assert shown == {name for name in files if name.endswith(".svg")}
-    assert {"base_work.svg", "base_steps.svg", "base_map.svg"} == shown
+    assert {"base_work.svg", "base_steps.svg"} == shown
 
 
 def test_every_table_has_as_many_cells_in_each_line_as_in_its_head(files):
@@ -211,12 +211,12 @@ def test_steps_must_divide_the_sampling():
             steps_per_sample(scene, step)
 
 
-def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_maps_too():
+def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_large_ones_too():
     page = replace(PAGE, name="discs")
     quick = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES), (page,), full=False)
     full = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES, Toy(factor=0.1)), (page,), full=True)
     assert {cell.purpose for cell in quick} == {"sweep", "failure"}
-    assert {cell.purpose for cell in full} == {"sweep", "usual", "failure", "map"}
+    assert {cell.purpose for cell in full} == {"sweep", "usual", "failure", "large"}
     assert {cell.every for cell in choose_cells((Disc(),), ENGINES, (page,), False, every=[4])} == {4}
 
 

@@ -25,7 +25,7 @@ from reports.pages.centrodes import page as centrodes_page
 from reports.pages.rendering import render_page
 from reports.pages.rolling import page as rolling_page
 from reports.pages.rolling.experiments import FAILURES
-from reports.pages.rolling.parting import absent_contact, parting
+from reports.pages.rolling.methods import absent_contact, parting
 from tests import test_any_rows as rendering
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module

@@ -21,9 +21,8 @@ from reports.model.page import Material
 from reports.model.scaling_fit import series_of
 from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
-from reports.pages.scaling.chart import scaling_chart
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
-from reports.pages.scaling.reference_method import BandedChain
+from reports.pages.scaling.experiments import BandedChain
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, scaling_chart
 from reports.pages.skate import page as skate
 
 

@@ -19,7 +19,7 @@ from ezdxf.filemanagement import readfile
 
 from reference.centrodes import from_poses
 from reports import __main__ as command_line
-from reports.pages.centrodes.centrode_check import returned
+from reports.pages.centrodes.page import returned
 from reports.write.templates import TEMPLATES
 
 HEADER = "t,x,y,angle"

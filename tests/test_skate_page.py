@@ -21,13 +21,11 @@ from reports.model.cells import Cell
 from reports.model.measure import measure
 from reports.model.page import Material
 from reports.model.tasks import Motion, answered
+from reports.pages.skate import methods
 from reports.pages.skate import page as skate
-from reports.pages.skate import pictures as skate_pictures
-from reports.pages.skate import slipping, turning_round
-from reports.pages.skate.counting import counting
+from reports.pages.skate.experiments import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
-from reports.pages.wheels import pictures as wheels_pictures
 from reports.plots.plane_panels import Blades, Panel, paths
 from reports.plots.plane_panels import Path as Line
 from reports.plots.theme import svg
@@ -111,24 +109,24 @@ def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apar
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
     # The square of 0.04 over the largest rate 1.6 is what the linear motion leaves out.
-    assert turning_round.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
-    assert turning_round.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
-    assert math.isnan(turning_round.growth_of(t, np.full_like(t, 1e-3)))
+    assert methods.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
+    assert methods.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
+    assert math.isnan(methods.growth_of(t, np.full_like(t, 1e-3)))
 
 
 def test_the_lateral_force_passes_a_limit_when_the_reference_says():
-    scene, limit = turning_round.BACKWARDS, list(slipping.LIMITED)[1]
-    when = slipping.first_beyond(scene, limit)
+    scene, limit = methods.BACKWARDS, list(methods.LIMITED)[1]
+    when = methods.first_beyond(scene, limit)
     assert when is not None
     before, after = np.abs(scene.lateral_force([when - 2e-3, when]))
     assert before < limit <= after
-    assert slipping.first_beyond(scene, 1.01 * slipping.PEAK) is None
+    assert methods.first_beyond(scene, 1.01 * methods.PEAK) is None
 
 
 def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_before():
-    cells = [cell for own in slipping.LIMITED.values() for cell in own]
-    told = {(o.method, o.setting): o.outcome for o in slipping.slipping(kept(map(Motion, cells)))}
-    for limit in slipping.LIMITED:
+    cells = [cell for own in methods.LIMITED.values() for cell in own]
+    told = {(o.method, o.setting): o.outcome for o in methods.slipping(kept(map(Motion, cells)))}
+    for limit in methods.LIMITED:
         exact = told["exact lateral force", f"{limit:g} N"]
         for method in ("pymunk groove with max_force", "mujoco tendon with friction loss"):
             outcome = told[method, f"{limit:g} N"]
@@ -181,15 +179,15 @@ def test_a_scene_travels_to_another_process_after_it_was_used(scene):
 
 def test_pictures_of_the_reference_are_drawn_and_the_same_each_time():
     for picture in (
-        skate_pictures.parking,
-        skate_pictures.slope,
-        wheels_pictures.tows,
-        wheels_pictures.casters,
-        wheels_pictures.reversing,
+        skate.parking,
+        skate.slope,
+        wheels.tows,
+        wheels.casters,
+        wheels.reversing,
     ):
         text = svg(picture(), "a picture")
         assert text.startswith("<?xml")
-    assert svg(skate_pictures.slope(), "a picture") == svg(skate_pictures.slope(), "a picture")
+    assert svg(skate.slope(), "a picture") == svg(skate.slope(), "a picture")
 
 
 def test_a_wrong_motion_does_not_stretch_a_picture_and_a_broken_one_is_no_error():

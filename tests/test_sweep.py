@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from reports.model.cells import FULL, Cell
-from reports.model.convergence import Verdict, best_of, by_method, fit, groups, judged, sweeps
+from reports.model.convergence import Verdict, by_method, fit, groups, judged, sweeps
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
-from tests.present import present
+from reports.write.rows import Rows
+from reports.write.unmeasured import UNMEASURED
 from tests.rows import falling, row, row_of
 from tests.toys import Disc, FailingToy, Toy
 
@@ -243,7 +244,7 @@ def test_the_best_row_has_the_least_error_of_those_that_can_be_compared():
         row_of("a y", angle=1e-12),
         row_of("b x", angle=1e-12),
     ]
-    assert present(best_of(rows, "a", "x")).step == 1e-2
-    assert present(best_of(rows, "a", "x", "position")).step == 1e-1
-    assert best_of(rows, "c", "x") is None
-    assert best_of(rows[3:5], "a", "x") is None
+    assert Rows(rows).of(method="a x").best().step == 1e-2
+    assert Rows(rows).of(method="a x").best("position").step == 1e-1
+    assert Rows(rows).of(method="c x").best() is UNMEASURED
+    assert Rows(rows[3:5]).best() is UNMEASURED

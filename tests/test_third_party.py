@@ -95,7 +95,7 @@ def test_a_scene_without_a_page_has_a_generic_one(pages):
     data = text_of(pages["spare_wheel_data.md"])
     for heading in ("## Work and precision", "## Order and plateau", "## Reactions", "## What was modelled"):
         assert heading in data
-    assert "| mass | 3 |" in data
+    assert "mass=3" in text_of(pages["descriptions.csv"])
     for method in METHODS:
         assert f"| {method} |" in data
 
@@ -139,7 +139,7 @@ def test_their_engine_and_one_in_a_file_are_held_to_their_own_promises(programs,
 # Of every family: its colour in light pictures, and its mark.
 LOOKS = """
 from engines.registry import ENGINES
-from reports.plots.families import colour, mark
+from reports.plots.looks import colour, mark
 from reports.plots.theme import LIGHT
 
 for family in dict.fromkeys(engine.family for engine in ENGINES):

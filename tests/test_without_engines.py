@@ -23,7 +23,8 @@ entry_points._ours = lambda group: [point for point in ours(group) if not any(wo
 from engines.registry import ENGINES
 from reports.model.catalogue import PAGES, TROUBLES
 from reports.model.page import Material
-from reports.pages.rendering import render_index, render_page
+from reports.pages.index import render_index
+from reports.pages.rendering import render_page
 
 assert ENGINES and not {engine.name for engine in ENGINES} & set(sys.argv[1:])
 assert TROUBLES == (), TROUBLES

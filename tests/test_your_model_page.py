@@ -10,8 +10,8 @@ import pytest
 from reports.model.page import Material
 from reports.model.tasks import Answer, answered
 from reports.pages.rendering import render_page
-from reports.pages.your_model import others
-from reports.pages.your_model.answers import CART, FOUR_BAR, SWING, WALKS
+from reports.pages.your_model import page as others
+from reports.pages.your_model.experiments import CART, FOUR_BAR, SWING, WALKS
 from reports.pages.your_model.page import PAGE
 
 

@@ -155,7 +155,7 @@ from pathlib import Path
 
 from engines.registry import VARIANTS
 from reports.model.page import Page
-from reports.write.lookups import told
+from reports.write.rows import lookups
 from their_suite.flywheel import FLYWHEEL
 
 PAGE = Page(
@@ -165,7 +165,7 @@ PAGE = Page(
     scenes=(FLYWHEEL,),
     engines=VARIANTS,
     template=Path(__file__).with_name("page.md"),
-    words=lambda material: told(material, (FLYWHEEL,)),
+    words=lambda material: lookups(material, (FLYWHEEL,)),
 )
 """
 

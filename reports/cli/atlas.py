@@ -135,7 +135,7 @@ def told(
     columns: Mapping[tuple[Subject, float], Column], answers: Mapping[Column, Mapping[Any, Answer]]
 ) -> tuple[list[Line], list[Cost]]:
     """The lines of the atlas's file, and what each subject took in each method."""
-    from reports.pages.atlas.reading import line_of
+    from reports.pages.atlas.column import line_of
     from reports.pages.atlas.table import Cost
 
     lines: list[Line] = []
@@ -153,7 +153,7 @@ def rates(store: Store, cluster: Workforce | None) -> tuple[float, float]:
     """(chunks of nothing that go through a cluster in a second, NaN without one; answers stored in a second)."""
     from reports.model.outcomes import Outcome
     from reports.model.tasks import Answer, answered
-    from reports.pages.atlas.reading import SAMPLE, Nothing
+    from reports.pages.atlas.column import SAMPLE, Nothing
 
     chunks = float("nan")
     tasks = [Nothing(number) for number in range(SAMPLE)]

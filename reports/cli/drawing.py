@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from reports.cli.kept_pages import digest, keep, kept
 from reports.cli.known import Known, registered, with_remembered
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import all_tasks
@@ -79,25 +78,6 @@ def drawn(
         for (name, _), result, _ in supervise(work, asked, LIMIT, worker_count(timed=False)):
             if not isinstance(result, Loss):
                 found[name] = result
-    return found
-
-
-def made_of(
-    material: Mapping[Page, Material], words: Iterable[str], command: str, order: Path, folder: Path
-) -> dict[str, Mapping[str, str]]:
-    """The files of all pages by their names: as they are kept in a folder, or drawn, and then kept there.
-
-    Raises what `render_page` raises.
-    """
-    words = tuple(words)
-    digests = {page: digest(page, given, command, words) for page, given in material.items()}
-    found = {page.name: files for page, told in digests.items() if (files := kept(folder, page.name, told)) is not None}
-    left = {page: given for page, given in material.items() if page.name not in found}
-    by_workers = drawn(left, words, command, order) if sum(len(given.rows) for given in left.values()) > MANY else {}
-    for page, given in left.items():
-        made = by_workers[page.name] if page.name in by_workers else render_page(page, given, command)
-        keep(folder, page.name, digests[page], made)
-        found[page.name] = made
     return found
 
 

@@ -38,7 +38,7 @@ def errata(
         "\nThe derivative is that of a position (11: of a velocity; 19: the loop's closure), by Cauchy's integral."
     )
     if engines:
-        from reports.pages.errata.errata_engines import TASKS, rulings
+        from reports.pages.errata.experiments import TASKS, rulings
         from reports.run.pool import run_items
         from reports.write.tables import number as short
 

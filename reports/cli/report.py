@@ -16,7 +16,6 @@ from reports.model.ending import BadInput
 from reports.run.files import write_whole
 
 CHECKOUT = Path(__file__).parents[2]
-KEPT = "pages"  # the folder of files that need not be drawn again (`reports.cli.kept_pages`)
 SEARCHED = ("search.md", "search_errors.svg")
 LARGE = 2**20  # bytes of a store: smaller ones have too few rows for workers (`reports.cli.drawing`)
 
@@ -39,15 +38,16 @@ def report(
         line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
-    if (results / STORE).stat().st_size > LARGE and not (results / KEPT).exists():
+    if (results / STORE).stat().st_size > LARGE:
         from reports.run.worker_process import start_early
 
         # Beside what is imported here; by the time that workers are wanted, they can be there.
         start_early("reports.cli.drawing")
-    from reports.cli.drawing import MANY, known_to, made_of, material_of
+    from reports.cli.drawing import MANY, drawn, known_to, material_of
     from reports.cli.selection import page_cells, page_tasks
     from reports.model.catalogue import PAGES
-    from reports.pages.rendering import render_all, render_readme
+    from reports.pages.index import render_readme
+    from reports.pages.rendering import render_all
     from reports.run.running import missing
     from reports.run.store import Store
     from reports.write import kept_numbers
@@ -81,7 +81,7 @@ def report(
         command = "make publish" if publish else "crosscheck report"
         many = sum(len(given.rows) for given in material.values()) > MANY
         words = () if publish else store.remembered()
-    made = made_of(material, words, command, published(), results / KEPT) if many else {}
+    made = drawn(material, words, command, published()) if many else {}
     files = render_all(material, command, searched, made)
     timings = published() / "timings.csv"
     if publish and timings.is_file() and "timings.csv" in files:
@@ -124,7 +124,7 @@ def search_files(results: Path) -> dict[str, str]:
     place = results / SEARCH / STORE
     if not place.exists():
         return {}
-    from reports.pages.rendering import foot
+    from reports.pages.index import foot
     from reports.run.store import Store
     from reports.search.page import files, read
 

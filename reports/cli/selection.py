@@ -104,8 +104,8 @@ def choose_cells(
     every: Sequence[int] = (),
     steps: Sequence[float] = (),
 ) -> tuple[Cell, ...]:
-    """The cells of a run: the grid, with the failures of the pages that teach these scenes; their maps and the steps
-    that people use if full.
+    """The cells of a run: the grid, with the failures of the pages that teach these scenes; the steps that people
+    use too if full.
 
     A quick run leaves out what would take long (`_quick`). `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
@@ -128,7 +128,7 @@ def choose_cells(
             cells += [
                 cell
                 for cell in page.extra_cells()
-                if any(cell.engine == engine for engine in engines) and (full or cell.purpose not in ("map", "large"))
+                if any(cell.engine == engine for engine in engines) and (full or cell.purpose != "large")
             ]
     chosen_once = dict.fromkeys(cells)
     return tuple(chosen_once) if full else _quick(tuple(chosen_once))

@@ -67,7 +67,7 @@ def _told(curves: Centrodes, found: Shapes) -> list[str]:
     import numpy as np
 
     from reference.validation import InvalidMechanism
-    from reports.pages.centrodes.centrode_check import returned
+    from reports.pages.centrodes.page import returned
 
     size = float(np.ptp(np.vstack([found.space, found.body]), axis=0).max())
     lines = [

@@ -9,7 +9,6 @@ order of sweeps in pymunk, which are other methods with other errors.
 
 from __future__ import annotations
 
-import csv
 import math
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -27,7 +26,7 @@ from reports.model.checks import CHANGE, Check
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, room
-from reports.write.csv_files import DIGESTS, not_as_written
+from reports.write.csv_files import DIGESTS, not_as_written, read_lines
 from reports.write.provenance import still_installed
 
 # scene, method, samples, steps a sample: the same cell in every run, whatever its settings are by now.
@@ -107,8 +106,7 @@ def _seconds_beside(path: Path) -> dict[Identity, float]:
     """CPU seconds a simulated second, from the timings.csv beside an errors.csv, as far as it can be read."""
     found: dict[Identity, float] = {}
     try:
-        lines = path.with_name(BESIDE).read_text(encoding="utf-8").splitlines()
-        for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+        for row in read_lines(path.with_name(BESIDE).read_text(encoding="utf-8"))[1]:
             if row["purpose"] == "sweep":
                 found[_identity(row)] = float(row["cpu"])
     except (OSError, ValueError, TypeError, KeyError):
@@ -123,7 +121,7 @@ def read_baseline(path: Path) -> Baseline:
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise BadBaseline(f"baseline {path}: {reason}; give the errors.csv of a run") from None
-    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    _, rows = read_lines(text)
     errors = tuple(q.name for q in QUANTITIES)
     needed = {*IDENTITY, "purpose", "outcome", "reaction_rows", *errors}
     missing = sorted(needed - set(rows[0] if rows else ()))

@@ -241,15 +241,3 @@ def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measure
                 row = replace(row, outcome=Outcome.PLATEAU if near else Outcome.FINISHED)
         out.append(row)
     return out
-
-
-def best_of(rows: Iterable[Measurement], engine: str, variant: str, quantity: str = "angle") -> Measurement | None:
-    """The row with the least error of one method that can be compared; None without one."""
-    usable = [
-        row
-        for row in rows
-        if (row.engine, row.variant) == (engine, variant)
-        and Outcome(row.outcome).comparable
-        and math.isfinite(getattr(row, quantity))
-    ]
-    return min(usable, key=lambda row: getattr(row, quantity), default=None)

@@ -55,17 +55,6 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class StabilityMap:
-    """Steps against a parameter: `cells` are (value of the parameter, cell), cells with the purpose "map"."""
-
-    name: str  # of the picture's file, with the page's name before it
-    title: str
-    parameter: str
-    cells: tuple[tuple[float, Cell], ...]
-    remark: str = ""
-
-
-@dataclass(frozen=True)
 class Material:
     """What there is to write a page from: the stored rows of its cells, and the stored answers to its tasks."""
 
@@ -154,7 +143,6 @@ class Page:
     borrowed: tuple[Cell, ...] = ()
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
-    maps: tuple[StabilityMap, ...] = ()
     compared: Callable[[Scene, Engine], bool] = everything
     quantity: str = "angle"
     advised: str = ""
@@ -170,7 +158,7 @@ class Page:
         return scene.name in {each.name for each in self.scenes}
 
     def is_run_with(self, scene: Scene) -> bool:
-        """Whether the cells of failures and maps are run with the scene."""
+        """Whether the cells of failures are run with the scene."""
         return scene.name in {each.name for each in (*self.scenes, *self.companions)}
 
     @property
@@ -193,8 +181,5 @@ class Page:
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
-        """The cells of failures and maps, beyond the sweep."""
-        return (
-            *(cell for failure in self.failures for cell in failure.cells),
-            *(cell for picture in self.maps for _, cell in picture.cells),
-        )
+        """The cells of failures, beyond the sweep."""
+        return tuple(cell for failure in self.failures for cell in failure.cells)

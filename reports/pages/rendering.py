@@ -2,34 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
 from engines import Engine, registry
 from reference.scene import Scene
-from reports.model.convergence import judged
+from reports.gate.prediction import declared_error, soft_tasks
+from reports.model.cells import Cell
+from reports.model.convergence import judged, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page, StabilityMap
-from reports.model.usual_steps import USUAL_STEPS
+from reports.model.page import Material, Page
+from reports.pages.atlas.subjects import SUBJECTS
 from reports.pages.findings.findings import findings, pictures
-from reports.pages.symptoms import SYMPTOMS
-from reports.pages.told_scene import told_scene
-from reports.plots import stability as maps
+from reports.pages.index import engines_of, foot, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
-from reports.write import unmeasured
+from reports.write import page_tables, tables, unmeasured
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders
-from reports.write.links import link
-from reports.write.overview import overviews
-from reports.write.parts import with_part
+from reports.write.programs import advised_settings, programs_of
 from reports.write.provenance import machine, row_versions, today, versions
-from reports.write.templates import environment, inert_page, template_of
+from reports.write.templates import inert_page, template_of
 
-FEW = 100  # steps: a scene of fewer is no example of a step
+
+def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
+    """The scene's words and tables from the judged rows of its sweep; tables are empty without rows.
+
+    `table` is the page's, of the methods that it features; the others are the data page's, of all methods.
+    """
+    engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
+
+    def declared(method: str, step: float) -> float:
+        if method not in engines:
+            return math.nan
+        return declared_error(material.answers, scene, engines[method], page.quantity, step)
+
+    held = holders(Cell(scene, engine, 1) for engine in engines.values())
+    unsupported = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
+    coarsest = min((row.every for row in unsupported), default=0)
+    featured = [row for row in rows if page.featured(row)]
+    advice = page_tables.advice(rows, page.quantity, tuple(engines))
+    return {
+        "name": scene.name,
+        "source": scene.source,
+        "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
+        "missing": not rows,
+        "held": held,
+        "declares": any(task in material.answers for task in soft_tasks(scene, tuple(engines.values()))),
+        "step": page_tables.compared_step(rows),
+        "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
+        "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
+        "settings": advised_settings(
+            scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
+        ),
+        "beside": page_tables.beside_table(material.beside([scene]), page.quantity),
+        "work": tables.work_table(rows, page.quantity, held=held) if rows else "",
+        "orders": tables.order_table(sweeps(rows), held=held) if rows else "",
+        "reactions": tables.reaction_table(rows, held) if rows else "",
+        "sizes": tables.size_table(rows),
+        "unsupported": [(row.method, row.sentence) for row in unsupported if row.every == coarsest],
+    }
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
@@ -57,7 +93,6 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
             "steps",
             svg(charts.error_against_step(rows, page.featured, page.quantity), f"{page.title}: error against step"),
         )
-    told_maps = [_told_map(page, picture, material, keep) for picture in page.maps]
     for name, text in page.figures(material).items():
         keep(name, text)
     scenes = [
@@ -69,7 +104,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
         "pictures": unmeasured.Known(pictures),
         "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
-        "maps": [told for told in told_maps if told],
+        "maps": [subject for subject in SUBJECTS if subject.page == page.name],
         "outcomes": [outcome for outcome in Outcome if outcome in met],
         "foot": foot(command, (*page.engines, *registry.INSTALLED)),
         **page.words(material),
@@ -78,69 +113,6 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     if page.scenes:
         texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
-
-
-def _told_map(page: Page, picture: StabilityMap, material: Material, keep: Any) -> dict[str, str] | None:
-    rows = [(value, material.rows[cell]) for value, cell in picture.cells if cell in material.rows]
-    if not rows:
-        return None
-    keep(picture.name, svg(maps.stability_map(rows, picture.parameter), picture.title))
-    return {"title": picture.title, "remark": picture.remark, "picture": f"{page.name}_{picture.name}.svg"}
-
-
-def foot(command: str, engines: Iterable[Engine] = ()) -> str:
-    """What the page was made with, its engines that are not registered included."""
-    return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
-
-
-def engines_of(pages: Iterable[Page]) -> list[Engine]:
-    """Every engine that these pages compare."""
-    return list(dict.fromkeys(engine for page in pages for engine in page.engines))
-
-
-def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
-    entries = [(page, _overview_rows(page, material, page.scenes)) for page, material in pages.items()]
-    told = findings(pages)
-    known = {page.name for page in pages}
-    text = (
-        environment()
-        .get_template("index.md")
-        .render(
-            pages=list(pages),
-            titles={page.name: page.title for page in pages},
-            findings=[found for found in told if found.page in known],
-            symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
-            overviews=overviews(entries),
-            steps=list(USUAL_STEPS),
-            outcomes=list(Outcome),
-            files=files,
-            foot=foot(command, engines_of(pages)),
-        )
-    )
-    return inert_page(unmeasured.without_marks(text))
-
-
-def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> list[Measurement]:
-    return judged([*material.sweep(scenes), *material.usual(scenes)], page.quantity)
-
-
-def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
-
-    Nothing in it depends on timings. A scene that is over within a hundred of the steps is left to the index: at such a
-    step nobody would run it. Raises ValueError where the marks of a part are missing.
-    """
-    step = USUAL_STEPS["1 ms"]
-    firsts = [
-        (page, _overview_rows(page, material, page.scenes[:1]))
-        for page, material in pages.items()
-        if page.scenes and page.scenes[0].duration > FEW * step
-    ]
-    shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
-    told = overviews(firsts, {"1 ms": step}, "reports/results/")
-    text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
-    return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
 
 
 def render_all(

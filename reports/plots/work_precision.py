@@ -1,6 +1,6 @@
 """Rows to charts: work and precision, error against step. Pure functions that give a figure.
 
-What a method looks like is in `reports.plots.families`.
+What a method looks like is in `reports.plots.looks`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from reports.model.convergence import groups
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
-from reports.plots.families import look
+from reports.plots.looks import look
 from reports.plots.theme import LIGHT, PowersOfTen, Theme, new_figure, settings, style_axes
 
 COLUMNS = 2

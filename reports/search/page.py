@@ -132,7 +132,8 @@ def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot
         "lines": summary(told),
         "findings": [_finding(task, answer) for task, answer in _one_of_each(findings)],
     }
-    out["search.md"] = environment(Path(__file__).parent).get_template("own/page.md").render(page=page, foot=foot)
+    template = environment(Path(__file__).parent).get_template("own/page.md")
+    out["search.md"] = template.render(page=page, foot=foot)
     return out
 
 

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterable
 from typing import Any
 
+from reports.write.csv_files import read_lines
+
 MEASURES = ("angle", "position")
 SERIES = (("pymunk", "default", 1), ("pymunk", "tuned", 3), ("mujoco", "default", 2), ("mujoco", "tuned", 4))
-
-
-def read(text: str) -> list[dict[str, str]]:
-    """The rows of a CSV text by column; lines that begin with # are its header's remarks."""
-    lines = [line for line in text.splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(io.StringIO("\n".join(lines))))
 
 
 def stored_rows(errors: str, scenes: Iterable[str]) -> list[dict[str, Any]]:
@@ -23,7 +17,7 @@ def stored_rows(errors: str, scenes: Iterable[str]) -> list[dict[str, Any]]:
 
     `points`: (step [s], largest error) by what is measured, "angle" [rad] and "position" [m].
     """
-    rows = [row for row in read(errors) if row["purpose"] == "sweep" and row["outcome"] == "finished"]
+    rows = [row for row in read_lines(errors)[1] if row["purpose"] == "sweep" and row["outcome"] == "finished"]
     found = []
     for scene in scenes:
         for engine, variant, mark in SERIES:
@@ -47,10 +41,10 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
     `cpu` is CPU time per simulated second [s], from timings.csv; settings are told in words, from descriptions.csv.
     """
     key = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
-    spent = {tuple(row[name] for name in key): row for row in read(timings)} if timings else {}
-    words = {row["digest"]: row["description"] for row in read(descriptions)} if descriptions else {}
+    spent = {tuple(row[name] for name in key): row for row in read_lines(timings)[1]} if timings else {}
+    words = {row["digest"]: row["description"] for row in read_lines(descriptions)[1]} if descriptions else {}
     rows = []
-    for row in read(errors) if errors else []:
+    for row in read_lines(errors)[1] if errors else []:
         if row["purpose"] != "sweep":
             continue
         cost = spent.get(tuple(row[name] for name in key), {}).get("cpu", "nan")

@@ -52,6 +52,13 @@ def no_formula(word: str) -> str:
     return f"'{word}" if word.startswith(("=", "+", "-", "@", "\t", "\r")) else word
 
 
+def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
+    """(the remarks on top, without their sign; the rows by column) of such a file's text."""
+    lines = text.splitlines()
+    remarks = [line.removeprefix("# ") for line in lines if line.startswith("#")]
+    return remarks, list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
 # A scene with its numbers and an engine with its settings are long, and stand in many rows: these give their digests.
 DESCRIPTIONS = ("parameters", "settings")
 

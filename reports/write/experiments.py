@@ -1,22 +1,24 @@
-"""Experiments in which methods fail: a line each for the page, and all of their numbers for the data page."""
+"""Experiments in which methods fail: a line each for the page, all numbers for the data page; and lines on motions."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from reference.trajectory import Trajectory
 from reports.model.cells import Cell
+from reports.model.errors import usable_samples
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation
 from reports.model.quantities import QUANTITIES, quantity
+from reports.model.tasks import Motion, trajectory_of
 from reports.write import tables
-from reports.write.lookups import nearest_step
+from reports.write.rows import Rows
 from reports.write.templates import template
-from reports.write.unmeasured import UNMEASURED
 
 
 @dataclass(frozen=True)
@@ -56,13 +58,12 @@ def told_experiment(failure: Failure, material: Material, held: Mapping[str, str
 def told_remark(failure: Failure, rows: Sequence[Measurement], material: Material) -> str:
     """What the outcomes teach, with its numbers from the rows of the experiment."""
 
+    asked = Rows(rows)
+
     def at(method: str, step: float) -> Any:
-        return nearest_step((row for row in rows if row.method == method), step) or UNMEASURED
+        return asked.of(method=method, purpose="").near(step)
 
-    def count(*outcomes: str) -> Any:
-        return sum(not outcomes or row.outcome in outcomes for row in rows) if rows else UNMEASURED
-
-    return template(failure.remark).render(at=at, count=count, **failure.words(material))
+    return template(failure.remark).render(at=at, count=asked.count, **failure.words(material))
 
 
 def compared_only(cell: Cell, row: Measurement) -> Measurement:
@@ -105,3 +106,23 @@ def _others(rows: Iterable[Measurement]) -> list[tuple[str, int]]:
 
 def _article(word: str) -> str:
     return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
+
+
+def observe(material: Material, cell: Cell, setting: str, say: Callable[[Trajectory], str]) -> tuple[Observation, ...]:
+    """The line of one engine, with what `say` reads from its motion; none where it was not run or has no such joint.
+
+    Whatever else became of the run stands in its line: one engine's fault must not cost the page. `say` reads any
+    finite motion; where it raises, the mistake is ours and passes.
+    """
+    answer = material.answers.get(Motion(cell))
+    if answer is None or answer.outcome == Outcome.UNSUPPORTED:
+        return ()
+    told = _read(trajectory_of(answer), say) if answer.finished else answer.told
+    return (Observation(f"{cell.engine.name} {cell.engine.variant}", setting, told),)
+
+
+def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:
+    count = usable_samples(run)
+    if count < len(run.t):
+        return f"**{Outcome.DIVERGED}**: not finite from {run.t[count]:.4g} s"
+    return say(run)

@@ -1,14 +1,41 @@
-"""Who holds the joints, by method: the column that tables of methods have."""
+"""Who holds a mechanism's joints in a method, in a few words: a reader must not take our rows for an engine's own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cache
 
-from engines import Engine
+from engines import Engine, Holder
+from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell, mechanism_of
-from reports.model.holding import held_by
+
+NOTHING_HELD = "no joints"
+
+
+def held_by(engine: Engine, mechanism: Mechanism) -> str:
+    """'engine', 'ours', or 'engine; skate: ours' where joints are held by different ones.
+
+    Joints are named by kind; where those of one kind differ, by their own names.
+    """
+    found: dict[Holder, list[str]] = {}
+    kinds: dict[str, set[Holder]] = {}
+    holders: list[Holder] = [engine.holder(joint, mechanism) for joint in mechanism.joints]
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
+        kinds.setdefault(_kind(joint), set()).add(holder)
+        found.setdefault(holder, [])
+    if len(found) <= 1:
+        return next(iter(found), NOTHING_HELD)
+    for joint, holder in zip(mechanism.joints, holders, strict=True):
+        name = _kind(joint) if len(kinds[_kind(joint)]) == 1 else joint.name
+        if name not in found[holder]:
+            found[holder].append(name)
+    others = [f"{' and '.join(names)}: {holder}" for holder, names in sorted(found.items()) if holder != "engine"]
+    return "; ".join(["engine", *others] if "engine" in found else others)
+
+
+def _kind(joint: object) -> str:
+    return type(joint).__name__.lower()
 
 
 @cache

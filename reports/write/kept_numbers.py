@@ -3,7 +3,6 @@ changed and nothing else. Pages are rendered from numbers as they are printed he
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,7 +11,7 @@ from reports.model.cells import Cell, mechanism_of
 from reports.model.ending import BadInput
 from reports.model.measure import Measurement
 from reports.model.quantities import DIGITS, OF, QUANTITIES, agrees
-from reports.write.csv_files import IDENTITY, told
+from reports.write.csv_files import IDENTITY, read_lines, told
 from reports.write.provenance import machine
 
 ERRORS = (*(quantity.name for quantity in QUANTITIES), *OF)
@@ -41,9 +40,9 @@ def read(folder: Path) -> Published:
     for name in ("errors.csv", "timings.csv"):
         if not (folder / name).is_file():
             continue
-        lines = (folder / name).read_text(encoding="utf-8").splitlines()
-        comments += [line.removeprefix("# ") for line in lines if line.startswith("#")]
-        for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+        remarks, lines = read_lines((folder / name).read_text(encoding="utf-8"))
+        comments += remarks
+        for row in lines:
             try:
                 found.setdefault(tuple(row[each] for each in IDENTITY), {}).update(row)
             except KeyError as column:

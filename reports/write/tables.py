@@ -51,16 +51,11 @@ def _line(cells: Iterable[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def error_table(rows: Iterable[Measurement], held: Held = None) -> str:
-    """Every quantity's largest error of every cell of one scene, by method and step."""
-    return markdown(ERROR_HEADER, error_rows(rows), left=2, held=held)
-
-
 ERROR_HEADER = ("method", "outcome", "step [s]", *(f"{q.label} [{q.unit}]" for q in QUANTITIES), "CPU [ms/s]")
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The body of an error table, under ERROR_HEADER."""
+    """Every quantity's largest error of every cell of one scene, by method and step, under ERROR_HEADER."""
     return [
         [row.method, row.outcome, number(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]

@@ -1,9 +1,9 @@
-"""The templates of pages and remarks, and what all of them may use."""
+"""The templates of pages and remarks and what all of them may use, links to headings, and parts of documents."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,43 @@ from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, St
 
 from reports.model.page import Page
 from reports.write import unmeasured
-from reports.write.links import anchor
+
+HEADING = re.compile(r"^#{1,6} (.+)$", re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+
+
+def anchor(heading: str) -> str:
+    """What a link to a heading ends with: lower case, without punctuation, hyphens for blanks."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def headings(text: str) -> tuple[str, ...]:
+    """The headings of a Markdown text; a comment in a block of code is none."""
+    return tuple(HEADING.findall(FENCED.sub("", text)))
+
+
+def link(page: str, heading: str, files: Mapping[str, str]) -> str:
+    """The address of a heading in a page's file, or in another whose name begins with the page's; else of the page."""
+    for name in sorted(files, key=lambda name: (name != f"{page}.md", name)):
+        if name.startswith(page) and name.endswith(".md") and heading in headings(files[name]):
+            return f"{name}#{anchor(heading)}"
+    return f"{page}.md"
+
+
+def marks(name: str) -> tuple[str, str]:
+    """The comments that begin and end a part."""
+    return f"<!-- {name}: written by `crosscheck report` -->", f"<!-- end of {name} -->"
+
+
+def with_part(document: str, name: str, text: str) -> str:
+    """A document with a text as its part of this name; raises ValueError where one of the part's marks is missing."""
+    first, last = marks(name)
+    before, begin, rest = document.partition(first)
+    _, end, after = rest.partition(last)
+    if not begin or not end:
+        raise ValueError(f"the document lacks the marks {first!r} and {last!r}")
+    return f"{before}{begin}\n{text}\n{end}{after}"
+
 
 TEMPLATES = Path(__file__).parents[1] / "pages"
 

@@ -1,10 +1,10 @@
-"""A column of the atlas: one scene at one value of its parameter, in one engine, at every step."""
+"""A column of the atlas, one scene at one value of its parameter, in some engines at every step; and its line."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -17,9 +17,13 @@ from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
 from reports.model.measure import TORN, Measurement, measure
-from reports.model.tasks import Task, Values
+from reports.model.outcomes import Outcome
+from reports.model.tasks import Answer, Task, Values
+from reports.pages.atlas.subjects import Subject
+from reports.pages.atlas.table import LIKE_THE_LAST, Line, power
 
 LOOKS = 20  # instants of the truth at which the forces are taken
+SAMPLE = 300  # chunks and answers of nothing, by which the rates of a client are measured
 NOT_RUN = ""  # instead of an outcome: the point lies between two of one outcome, and is drawn like them
 
 
@@ -144,3 +148,57 @@ def left_by_sweeps(mechanism: Mechanism, engine: Any) -> float:
         return math.nan
     count: Any = sweeps(mechanism)
     return float(contraction(mechanism) ** count)
+
+
+@dataclass(frozen=True)
+class Nothing(Task):
+    """Takes no time but that of its way to a worker and back; so long by its own word that it is a chunk alone."""
+
+    number: int
+
+    @property
+    def cost(self) -> float:
+        return 10.0
+
+    @property
+    def label(self) -> str:
+        return "nothing"
+
+    def run(self) -> Values:
+        return {"number": np.array(float(self.number))}
+
+
+def line_of(
+    subject: Subject, value: float, column: Column, engine: Engine, answers: Mapping[Any, Answer]
+) -> tuple[Line, float]:
+    """(an engine's line, CPU seconds of its cells), from a column's own answer or from those of its cells."""
+    outcomes, errors, seconds = [], [], 0.0
+    gives = left = math.nan
+    index, count = column.engines.index(engine), len(column.steps)
+    if column in answers:
+        answer = answers[column]
+        outcomes = str(answer.values["outcomes"]).split(",")[index * count : (index + 1) * count]
+        errors, seconds = list(answer.array("errors")[index]), float(answer.array("seconds")[index])
+        gives, left = float(answer.array("gives")[index]), float(answer.array("left")[index])
+    else:
+        for single in column.singles[index * count : (index + 1) * count]:
+            answer = answers.get(single, Answer(Outcome.LOST))
+            outcomes.append(str(answer.values["outcomes"]) if answer.finished else str(answer.outcome))
+            errors.append(float(answer.array("errors")[0, 0]) if answer.finished else math.nan)
+            seconds += float(answer.array("seconds")[0]) if answer.finished else 0.0
+            left = float(answer.array("left")[0]) if answer.finished else left
+    told = [Outcome(word) if word else None for word in outcomes]
+    counts = tuple(samples * every for samples, every in column.steps)
+    line = Line(
+        subject.name,
+        engine.name,
+        engine.variant,
+        value,
+        column.scene.duration / counts[0],
+        counts,
+        "".join(outcome.letter if outcome else LIKE_THE_LAST for outcome in told),
+        tuple(power(error) if one and one.comparable else math.nan for one, error in zip(told, errors, strict=True)),
+        gives,
+        left,
+    )
+    return line, seconds

@@ -11,6 +11,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from reports.model.outcomes import Outcome
+from reports.write.csv_files import read_lines
 
 CELLS, COSTS = "atlas.csv", "atlas_timings.csv"
 LIKE_THE_LAST = "="  # instead of a letter: it was not run, and lies between two that ended alike
@@ -122,7 +123,7 @@ def read(path: Path) -> tuple[Line, ...]:
     found: list[Line] = []
     before: tuple[int, ...] = ()
     try:
-        for row in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
+        for row in read_lines(path.read_text(encoding="utf-8"))[1]:
             before = tuple(map(int, row["counts"].split())) or before
             errors = tuple(math.nan if each == "-" else float(each) for each in row["errors"].split())
             line = Line(
@@ -162,9 +163,8 @@ def read_costs(path: Path) -> Costs | None:
     if not path.is_file():
         return None
     try:
-        texts = path.read_text(encoding="utf-8").splitlines()
-        once = dict(text[2:].split(": ", 1) for text in texts if text.startswith("# "))
-        rows = csv.DictReader(text for text in texts if not text.startswith("#"))
+        remarks, rows = read_lines(path.read_text(encoding="utf-8"))
+        once = dict(remark.split(": ", 1) for remark in remarks)
         lines = tuple(Cost(row["subject"], row["method"], int(row["cells"]), float(row["seconds"])) for row in rows)
         return Costs(**{name: json.loads(value) for name, value in once.items()}, lines=lines)
     except (KeyError, TypeError, ValueError):

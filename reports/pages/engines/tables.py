@@ -10,7 +10,6 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer
-from reports.pages.engines.capabilities import ASKED, Capabilities
 from reports.pages.engines.cells import (
     CLOSED_AT,
     CLOSING,
@@ -23,6 +22,7 @@ from reports.pages.engines.cells import (
     MOVES,
     SHARES,
 )
+from reports.pages.engines.experiments import ASKED, Capabilities
 from reports.write.provenance import told_versions
 from reports.write.tables import NOTHING, markdown, milliseconds, number
 

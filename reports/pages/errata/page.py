@@ -11,7 +11,7 @@ import numpy as np
 from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
 from reference.errata.rolling import rolling_acceleration
 from reports.model.page import Material, Page
-from reports.pages.errata.errata_engines import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
+from reports.pages.errata.experiments import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
 from reports.write.tables import markdown, number
 
 NAME = "errata"

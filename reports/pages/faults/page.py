@@ -11,10 +11,19 @@ from matplotlib.figure import Figure
 from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.slider_crank.scenes import DrivenSliderCrank
 from reports.model.page import Material, Page
-from reports.pages.faults.equalities import KINDS, Bead, Equalities
-from reports.pages.faults.groove import CASES, WRONG, Grooves, Offsets, across, beside, wrong
-from reports.pages.faults.scripts import MJX, Script, script
-from reports.pages.faults.versions import MUJOCO, PYMUNK, recorded
+from reports.pages.faults.experiments import (
+    CASES,
+    KINDS,
+    WRONG,
+    Bead,
+    Equalities,
+    Grooves,
+    Offsets,
+    across,
+    beside,
+    wrong,
+)
+from reports.pages.faults.scripts import MJX, MUJOCO, PYMUNK, Script, recorded, script
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.tables import markdown, number
 

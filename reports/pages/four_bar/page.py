@@ -14,10 +14,10 @@ from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.pages.four_bar.expectations import KNOWN
-from reports.pages.four_bar.experiments import FAILURES, MAPS
-from reports.plots import drawings
+from reports.pages.four_bar.experiments import FAILURES
+from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 
 NAME = "four_bar"
 SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
@@ -54,7 +54,7 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     return {
-        **told(material, SCENES),
+        **lookups(material, SCENES),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
@@ -69,7 +69,6 @@ PAGE = Page(
     advised="free_four_bar",
     engines=ENGINES,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,

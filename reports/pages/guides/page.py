@@ -13,7 +13,7 @@ from reference.scene import Scene
 from reference.skate import ChaplyginSleigh
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
-from reports.write.lookups import told
+from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 
 FOLDER = Path(__file__).parent
@@ -28,7 +28,7 @@ INTEGRATORS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk.
 
 def table(material: Material, scene: Scene, engines: Iterable[Engine], quantity: str) -> str:
     """Order, plateau, errors and cost of each method that has a row at a millisecond; empty if none has."""
-    known = told(material, (scene,))
+    known = lookups(material, (scene,))
     body = []
     for engine in engines:
         asked = (scene.name, engine.name, engine.variant)
@@ -43,7 +43,7 @@ def table(material: Material, scene: Scene, engines: Iterable[Engine], quantity:
 def words(engines: Iterable[Engine], scenes: Iterable[Scene], quantity: str, material: Material) -> Mapping[str, Any]:
     """The tables by scene, and what asks for single rows."""
     tables = {scene.name: table(material, scene, engines, quantity) for scene in scenes}
-    return {**told(material, scenes), "tables": {name: text for name, text in tables.items() if text}}
+    return {**lookups(material, scenes), "tables": {name: text for name, text in tables.items() if text}}
 
 
 def guide(

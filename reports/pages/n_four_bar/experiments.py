@@ -10,7 +10,7 @@ from engines.lagrange import Lagrange
 from reference.n_four_bar import NFourBar
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.model.page import Failure, Material, Observation
 from reports.write.tables import number
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
@@ -92,22 +92,5 @@ FAILURES: tuple[Failure, ...] = (
             "falls on it. An integrator with error control would make ever smaller steps there, because of the forces. "
             "So the truth is not taken from such an integrator, but from the equation of the symmetric motion."
         ),
-    ),
-)
-
-LOOPS = (1, 2, 5, 10, 20)
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="loops",
-        title="How many loops, at which step, through one singular position?",
-        parameter="loops",
-        cells=tuple(
-            (float(loops), Cell(NFourBar(loops=loops, duration=1.2, horizon=1.2), engine, every, "map", samples=24))
-            for engine in (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
-            for loops in LOOPS
-            for every in (5, 15, 50)
-        ),
-        remark="With a single loop the line is a parallelogram's change point. Each further loop adds a freedom there.",
     ),
 )

@@ -11,10 +11,10 @@ from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.n_four_bar.expectations import KNOWN
-from reports.pages.n_four_bar.experiments import FAILURES, MAPS, SOFT
-from reports.plots.stroboscope import Strip, stroboscope
+from reports.pages.n_four_bar.experiments import FAILURES, SOFT
+from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 from reports.write.unmeasured import UNMEASURED
 
 NAME = "n_four_bar"
@@ -37,10 +37,10 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows, the exact instants of each scene, `failed`: how a method without a best row ended, and `soft`: errors of
     soft loops, UNMEASURED unless all that was run of them left the branch, as the sentence says.
     """
-    lookups = told(material, SCENES)
+    asked = lookups(material, SCENES)
 
     def failed(scene: str, engine: str, variant: str) -> Any:
-        outcomes = lookups["ended"](scene, engine, variant)
+        outcomes = asked["ended"](scene, engine, variant)
         if not outcomes:
             return UNMEASURED
         wrong = all(Outcome(outcome).wrong for outcome in outcomes)
@@ -54,7 +54,7 @@ def words(material: Material) -> Mapping[str, Any]:
         scene.name: {"period": scene.period, "singular": [float(t) for t in scene.singular_times(scene.period)]}
         for scene in (NFourBar(), TenFourBars(), FortyFourBars())
     }
-    return {**lookups, "failed": failed, "soft": soft, "exact": exact}
+    return {**asked, "failed": failed, "soft": soft, "exact": exact}
 
 
 PAGE = Page(
@@ -64,7 +64,6 @@ PAGE = Page(
     scenes=SCENES,
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,

@@ -1,9 +1,9 @@
-"""Where methods fail on open chains, and on a ring that one joint closes; stability maps."""
+"""Where methods fail on open chains, and on a ring that one joint closes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,52 @@ from reference.pendulum.scenes import HundredLinks, LinkPendulum
 from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, StabilityMap
-from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence
+from reports.model.page import Failure, Material, Observation
+from reports.model.tasks import Task, Values
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
+
+
+@dataclass(frozen=True)
+class Neighbours(Task):
+    """A chain that starts at one angle and rate for all links, looked at at times [s]."""
+
+    scene: LinkPendulum
+    times: tuple[float, ...]
+
+    @property
+    def cost(self) -> float:
+        return 0.3 * max(self.times)  # measured on two links: three neighbours and the motion itself, for 12 s
+
+    @property
+    def label(self) -> str:
+        return f"neighbouring starts of {self.scene.name}"
+
+    def run(self) -> Values:
+        """`growth` (times,): how many times larger a small difference of the start has become."""
+        scene = self.scene
+        start, rate = np.full(scene.links, scene.angle), np.full(scene.links, scene.rate)
+        return {"growth": scene.chain.divergence(start, rate, np.array(self.times))}
+
+
+BEYOND = LinkPendulum(duration=12.0, horizon=12.0)
+
+
+PARTING = Neighbours(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEYOND.duration))
+
+
+def divergence(material: Material) -> list[Observation]:
+    """How much a difference of the start has grown, measured on neighbours of the double pendulum."""
+    if (answer := material.answers.get(PARTING)) is None:
+        return []
+    method = "the reference, by neighbouring starts"
+    if not answer.finished:
+        return [Observation(method, "", answer.told)]
+    return [
+        Observation(method, f"{t:.3g} s", f"{number(growth)} times the difference at 0 s")
+        for t, growth in zip(PARTING.times, answer.array("growth"), strict=True)
+    ]
+
 
 PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
@@ -78,7 +120,6 @@ RING = (
     mujoco.EXTENDED,
     pymunk.TUNED,
 )
-TIPS = (1.0, 1e1, 1e2, 1e3, 1e4)
 HEAVY = (*ALL, sweeps(10), sweeps(1000), SWEPT, SOLVED)
 
 
@@ -219,40 +260,6 @@ FAILURES: tuple[Failure, ...] = (
             "near what it was. MuJoCo's Euler in the tree starts anew at 0.1 s, and at 0.05 s it ends with wrong "
             "numbers. RK4 starts anew at both, and exact multipliers under Euler end in infinity. At these two steps "
             "no method is right; at 0.02 s all of them can be compared again."
-        ),
-    ),
-)
-
-CHAINS = (2, 5, 10, 20, 50)
-SWEEPS = (2, 5, 10, 30)
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="tips",
-        title="How heavy may the tip be, at which step?",
-        parameter="tip's mass over a link's",
-        cells=tuple(
-            (ratio, Cell(tip(ratio), engine, every, "map", samples=20))
-            for engine in (*PUBLIC, mujoco.EXTENDED, SOLVED)
-            for ratio in TIPS
-            for every in (1, 5, 50)
-        ),
-        remark="The steps are 50, 10 and 1 ms. A heavy tip is hard for sweeps and for large steps of a tree alike.",
-    ),
-    StabilityMap(
-        name="sweeps",
-        title="How many sweeps for how many links, when all of the gap is closed?",
-        parameter="links",
-        cells=tuple(
-            (float(links), Cell(LinkPendulum(links=links, duration=1.0, horizon=1.0), sweeps(count), every, "map", 20))
-            for count in SWEEPS
-            for links in CHAINS
-            for every in (5, 50)
-        ),
-        remark=(
-            "If the sweeps are too few, the next step corrects what they left, and corrects too much, until the "
-            "numbers grow without limit. A smaller step does not help. As shipped pymunk closes a gap so slowly that "
-            "this does not happen; its joints are soft instead."
         ),
     ),
 )

@@ -11,10 +11,10 @@ from engines.registry import VARIANTS
 from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
 from reports.model.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
-from reports.pages.pendulum.experiments import FAILURES, MAPS, SOLVED
-from reports.plots.stroboscope import Strip, stroboscope
+from reports.pages.pendulum.experiments import FAILURES, SOLVED
+from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 
 NAME = "pendulum"
 SCENES = (BarPendulum(), LinkPendulum(), TenLinks(), HundredLinks(), PointPendulum())
@@ -40,7 +40,7 @@ def figures(material: Material) -> dict[str, str]:
 def words(material: Material) -> Mapping[str, Any]:
     """Rows by method, and how often the point pendulum swings to and fro."""
     point = PointPendulum()
-    return {**told(material, SCENES), "periods": round(point.duration / point.pendulum.period)}
+    return {**lookups(material, SCENES), "periods": round(point.duration / point.pendulum.period)}
 
 
 PAGE = Page(
@@ -51,7 +51,6 @@ PAGE = Page(
     advised="pendulum_2",
     engines=(*VARIANTS, *FREE),
     failures=FAILURES,
-    maps=MAPS,
     featured=lambda row: row.variant in SHOWN,
     figures=figures,
     words=words,

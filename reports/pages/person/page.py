@@ -9,10 +9,10 @@ from engines.registry import VARIANTS
 from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.page import Material, Page
 from reports.pages.person.expectations import KNOWN, ORDERS
-from reports.pages.person.experiments import FAILURES, MAPS
-from reports.plots.stroboscope import Points, Strip, stroboscope
+from reports.pages.person.experiments import FAILURES
+from reports.plots.mechanisms import Points, Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 
 NAME = "person"
 ONE_FOOT = ("person_swaying", "person_one_foot")
@@ -40,7 +40,7 @@ def words(material: Material) -> Mapping[str, Any]:
     """Rows, and freedoms by rank."""
     freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in SCENES}
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
-    return {**told(material, SCENES), "freedoms": freedoms, "knee": knee}
+    return {**lookups(material, SCENES), "freedoms": freedoms, "knee": knee}
 
 
 PAGE = Page(
@@ -51,7 +51,6 @@ PAGE = Page(
     advised="person_two_feet",
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     orders=ORDERS,

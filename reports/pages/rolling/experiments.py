@@ -1,4 +1,4 @@
-"""Where methods fail at rolling: experiments with a statement of what should happen, and a stability map."""
+"""Where methods fail at rolling: experiments with a statement of what should happen."""
 
 from __future__ import annotations
 
@@ -15,17 +15,23 @@ from engines.pymunk import methods as pymunk_methods
 from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
 from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reports.model.cells import Cell
-from reports.model.page import Failure, Material, Observation, StabilityMap
+from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.rolling.methods import CONSTRAINTS, CONTACTS, cells
-from reports.pages.rolling.parting import CHATTERING, PARTINGS, after_parting, chatter, partings
+from reports.pages.rolling.methods import (
+    CHATTERING,
+    CONSTRAINTS,
+    CONTACTS,
+    PARTINGS,
+    after_parting,
+    cells,
+    chatter,
+    partings,
+)
 from reports.write.unmeasured import UNMEASURED
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
 SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
 SOFT_STEPS = {100: 1e-4, 10: 1e-3}
-CLEARANCES = (0.5, 0.1, 1e-2, 1e-3, 1e-4)
-MAP_STEPS = (1, 10, 100)
 
 
 def polygon_cells() -> tuple[tuple[int, Cell], ...]:
@@ -225,23 +231,5 @@ FAILURES: tuple[Failure, ...] = (
             "used here."
         ),
         words=least_opening,
-    ),
-)
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="stability",
-        title="How nearly conformal, at which step?",
-        parameter="clearance of the hole, relative to its radius",
-        cells=tuple(
-            (clearance, Cell(DiscInHole(clearance=clearance), engine, every, "map"))
-            for engine in CONSTRAINTS
-            for clearance in CLEARANCES
-            for every in MAP_STEPS
-        ),
-        remark=(
-            "Along a diagonal the contact turns equally far in a step. Rows written into MuJoCo by our code follow "
-            "that rule: where they fail, a smaller step helps."
-        ),
     ),
 )

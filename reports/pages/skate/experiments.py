@@ -1,4 +1,4 @@
-"""Where constructions of a skate fail: experiments with a statement of what should happen, and stability maps."""
+"""Where constructions of a skate fail: experiments with a statement of what should happen."""
 
 from __future__ import annotations
 
@@ -7,17 +7,65 @@ from collections.abc import Iterable
 import numpy as np
 
 from engines import Engine
-from engines.registry import VARIANTS
+from reference.joints import Pin, Skate
+from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
+from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.skate.slopes import HeldBySkates, SkateOnSlope
 from reports.model.cells import Cell
-from reports.model.page import Failure, StabilityMap
+from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.skate.counting import counting
-from reports.pages.skate.methods import ORDINARY, method
-from reports.pages.skate.slipping import LIMITED, PEAK, delays, slipping
-from reports.pages.skate.turning_round import GROWING, TURNING_ROUND, backwards
+from reports.pages.skate.methods import (
+    GROWING,
+    LIMITED,
+    ORDINARY,
+    PEAK,
+    TURNING_ROUND,
+    backwards,
+    delays,
+    method,
+    slipping,
+)
+
+
+def _body(*joints: Pin | Skate) -> Mechanism:
+    return Mechanism((Body("body", 2.0, 0.3, (0.0, 0.0, 0.0)),), joints)
+
+
+def _skate(name: str, point: tuple[float, float], angle: float = 0.0) -> Skate:
+    return Skate(name, None, "body", point, angle)
+
+
+COUNTED: tuple[tuple[str, Mechanism], ...] = (
+    ("free body", _body()),
+    ("pinned body (18.62)", _body(Pin("pin", None, "body", (-0.5, 0.0), (-0.5, 0.0)))),
+    ("one skate (18.64)", _body(_skate("one", (-0.5, 0.0)))),
+    ("two skates on one axle", _body(_skate("left", (-0.5, 0.2)), _skate("right", (-0.5, -0.2)))),
+    ("two skates in one line", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0)))),
+    ("two skates, one steered", _body(_skate("rear", (-0.5, 0.0)), _skate("front", (0.5, 0.0), 0.4))),
+    ("a pin and a skate off it", _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0)))),
+    (
+        "a pin and a skate square to it",
+        _body(Pin("pin", None, "body", (0.0, 0.0), (0.0, 0.0)), _skate("skate", (0.5, 0.0), np.pi / 2)),
+    ),
+    ("three skates", HeldBySkates().mechanism()),
+)
+
+
+def counting(material: Material) -> list[Observation]:
+    """Freedoms by rank and by brackets, and integrability by Frobenius, of skates on one body."""
+    found = []
+    for name, mechanism in COUNTED:
+        configuration, velocity = mechanism.degrees_of_freedom()
+        reached = freedoms_by_brackets(mechanism)[-1] if velocity else 0
+        kind = "integrable" if mechanism_is_integrable(mechanism) else "not integrable"
+        said = f"({configuration}, {velocity}); {kind}: of {configuration} it can reach {reached}"
+        if velocity == 0:
+            said = f"({configuration}, {velocity}): nothing can move, wherever it stands"
+        found.append(Observation(name, f"{mechanism.row_count} row{'' if mechanism.row_count == 1 else 's'}", said))
+    return found
+
 
 Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
@@ -177,30 +225,6 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "The skates constrain its velocity and not its place. So every slip that a method leaves adds up, and no "
             "engine can notice it."
-        ),
-    ),
-)
-
-# Offsets of the centre of mass ahead of the skate [m]: far behind, behind, nearly on it, ahead, far ahead.
-OFFSETS = (-10.0, -0.5, -1e-3, 1e-3, 0.5, 10.0, 1e3)
-# (samples, steps a sample): steps of 0.3, 0.1, 0.03, 0.01 and 0.001 s over 3 s.
-MAP_STEPS = ((10, 1), (30, 1), (100, 1), (300, 1), (300, 10))
-MAPPED = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned", "extended"))
-
-MAPS: tuple[StabilityMap, ...] = (
-    StabilityMap(
-        name="offsets",
-        title="How far may the centre of mass be from the skate, at which step?",
-        parameter="offset of the centre of mass [m]",
-        cells=tuple(
-            (offset, Cell(ChaplyginSleigh(offset=offset), engine, every, "map", samples))
-            for engine in MAPPED
-            for offset in OFFSETS
-            for samples, every in MAP_STEPS
-        ),
-        remark=(
-            "A positive offset is ahead of the skate. For a method that holds the row the offset matters little. The "
-            "naive zeroing (`pymunk default`) is right only where the centre of mass is on the skate."
         ),
     ),
 )

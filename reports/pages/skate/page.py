@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -11,28 +12,89 @@ from matplotlib.figure import Figure
 
 from engines import Engine
 from engines.registry import VARIANTS
+from reference.body import Triple
 from reference.scene import Scene
 from reference.skate import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
 from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.parking import commutator_displacement
+from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.skate.slopes import SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.convergence import best_of, by_method, groups, sweeps
+from reports.model.convergence import by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import FEATURED, Material, Page
 from reports.model.tasks import Motion
-from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN, ORDERS
-from reports.pages.skate.experiments import FAILURES, MAPS
+from reports.pages.skate.experiments import FAILURES
 from reports.pages.skate.methods import CONSTRUCTIONS, known
 from reports.plots import work_precision as charts
-from reports.plots.plane_panels import Blades, Panel, Path, paths
+from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
 from reports.write.holders import holders
-from reports.write.lookups import nearest_step
-from reports.write.unmeasured import UNMEASURED
+from reports.write.rows import Rows
+
+BLADE = 0.35  # m
+GAP = (0.0, 1.0, 0.0)  # the pose that is asked for: straight sideways of the start
+
+
+def parking() -> Figure:
+    """From a pose to the one beside it: with all the room, within a lane, and by ever smaller commutators."""
+    start: Triple = (0.0, 0.0, 0.0)
+    panels = [
+        _manoeuvre("turn, slide, turn", start, park(start, GAP)),
+        _manoeuvre("sidestep, at most 0.6 rad", start, sidestep(GAP[1], 0.5, 0.6)),
+        _manoeuvre("the commutator: 0.8 rad, 1 m", start, commutator(0.8, 1.0)),
+    ]
+    sizes = np.geomspace(1.0, 1e-3, 60)
+    moved = commutator_displacement(sizes, sizes) / sizes[:, None] ** 2
+    panels.append(
+        Panel(
+            "the commutator's way, over the product of its moves",
+            [
+                Path(np.column_stack([sizes, moved[:, 1]]), "sideways, towards 1", "third"),
+                Path(np.column_stack([sizes, moved[:, 0]]), "along, towards 0", "first", "--"),
+            ],
+            plane=False,
+            across="size of both moves [rad, m]",
+            logarithmic_across=True,
+        )
+    )
+    return paths(panels, columns=2, height=2.6)
+
+
+def _manoeuvre(title: str, start: Triple, moves: tuple[Move, ...]) -> Panel:
+    way, poses = trace(start, moves), stops(start, moves)
+    return Panel(
+        title,
+        [Path(way[:, :2], "path of C", "second", "-", 1.6)],
+        [Blades(poses[1:-1], BLADE, "quiet", 1.6), Blades(poses[[0, -1]], BLADE, "ink", 3.4)],
+        [
+            Note((poses[0][0], poses[0][1] - 0.16), "from", "center"),
+            Note((poses[-1][0], poses[-1][1] + 0.16), "to", "center"),
+        ],
+    )
+
+
+def slope() -> Figure:
+    """An ideal skate that turns on an incline: it goes sideways in cycloids, and never down."""
+    t = np.linspace(0, 2 * math.pi, 721)
+    panels = []
+    for title, scene in (
+        ("turning at 1 rad/s from rest, blade across the slope", SkateOnSlope(turning_rate=1.0)),
+        ("the same with a push of 0.5 m/s", SkateOnSlope(turning_rate=1.0, speed=0.5)),
+    ):
+        poses = scene.motion(t).pose[:, 0]
+        panels.append(
+            Panel(
+                title,
+                [Path(poses[:, :2], "path of C; down the slope is down", "second", "-", 1.6, dot=True)],
+                [Blades(poses[::60], BLADE, "ink", 2.2)],
+            )
+        )
+    return paths(panels, columns=2)
+
 
 NAME = "skate"
 SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
@@ -112,8 +174,8 @@ def figures(material: Material) -> dict[str, str]:
     rows = [row for row in material.sweep((SLEIGH,)) if row.method in CHARTED]
     found = {
         "paths": svg(path_picture(material), "The skate's path, ahead and backwards, in truth and in several methods"),
-        "parking": svg(skate_pictures.parking(), "Parallel parking by turns and slides, and the commutator"),
-        "slope": svg(skate_pictures.slope(), "An ideal skate that turns on a slope"),
+        "parking": svg(parking(), "Parallel parking by turns and slides, and the commutator"),
+        "slope": svg(slope(), "An ideal skate that turns on a slope"),
     }
     if any(Outcome(row.outcome).comparable for row in rows):
         chart = charts.error_against_step(rows, lambda row: True, "position")
@@ -132,8 +194,8 @@ def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = 
         if all(row.outcome == Outcome.UNSUPPORTED for row in members):
             told.append((np.inf, [members[0].method, "can't be built", *[tables.NOTHING] * 4, ""]))
             continue
-        row = nearest_step((row for row in members if row.outcome != Outcome.UNSUPPORTED), COMPARED)
-        if row is None:
+        row = Rows(row for row in members if row.outcome != Outcome.UNSUPPORTED).near(COMPARED)
+        if not row:
             continue
         numbers = [tables.number(value) for value in (row.position, row.slip, row.energy, row.reaction)]
         if not Outcome(row.outcome).comparable:
@@ -177,18 +239,16 @@ def words(material: Material) -> Mapping[str, Any]:
     row at about that step; `least(engine, variant)`, the row with the least position error; `finest(method)`, the row
     at the smallest step that has a position error.
     """
-    rows = material.sweep((SLEIGH,))
+    rows = Rows(material.sweep((SLEIGH,)))
 
     def at(name: str, step: float = COMPARED) -> Any:
-        own = (row for row in rows if row.method == name and np.isfinite(row.position))
-        return nearest_step(own, step) or UNMEASURED
+        return rows.of(method=name).known("position").near(step)
 
     def least(engine: str, variant: str) -> Any:
-        return best_of(rows, engine, variant, "position") or UNMEASURED
+        return rows.of(method=f"{engine} {variant}").best("position")
 
     def finest(name: str) -> Any:
-        own = (row for row in rows if row.method == name and np.isfinite(row.position))
-        return min(own, key=lambda row: row.step, default=UNMEASURED)
+        return rows.of(method=name).known("position").finest()
 
     commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
@@ -212,7 +272,6 @@ PAGE = Page(
     scenes=SCENES,
     engines=(*VARIANTS, *CONSTRUCTIONS),
     failures=FAILURES,
-    maps=MAPS,
     compared=compared,
     quantity="position",
     featured=featured,

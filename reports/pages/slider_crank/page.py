@@ -10,10 +10,10 @@ from engines.registry import VARIANTS
 from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.model.page import Material, Page
 from reports.pages.slider_crank.expectations import KNOWN
-from reports.pages.slider_crank.experiments import FAILURES, MAPS
-from reports.plots.stroboscope import Strip, stroboscope
+from reports.pages.slider_crank.experiments import FAILURES
+from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
-from reports.write.lookups import told
+from reports.write.rows import lookups
 
 NAME = "slider_crank"
 SCENES = (DrivenSliderCrank(), FreeSliderCrank())
@@ -37,7 +37,7 @@ def words(material: Material) -> Mapping[str, Any]:
     shape = DrivenSliderCrank().moving.shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
-    return {**told(material, SCENES), **formulas}
+    return {**lookups(material, SCENES), **formulas}
 
 
 PAGE = Page(
@@ -48,7 +48,6 @@ PAGE = Page(
     advised="free_slider_crank",
     engines=VARIANTS,
     failures=FAILURES,
-    maps=MAPS,
     figures=figures,
     words=words,
     known=KNOWN,

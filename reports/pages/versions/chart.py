@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from reports.model.outcomes import Outcome
-from reports.plots.stability import HATCHES, outcome_colour
+from reports.plots.looks import HATCHES, outcome_colour
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes
 from reports.versions.comparison import lines, size
 from reports.versions.table import Entry

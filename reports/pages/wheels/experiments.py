@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,13 +15,39 @@ from reference.scene import Scene
 from reference.wheels.car_and_trailer import CarAndTrailer
 from reference.wheels.cart import Cart
 from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
-from reports.model.tasks import Motion
-from reports.pages.observing import observe
-from reports.pages.wheels.folding import Folding
+from reports.model.tasks import Motion, Task, Values
+from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
+
+
+@dataclass(frozen=True)
+class Folding(Task):
+    """A car with a trailer that starts backwards; driven it is looked at for `driven` [s]."""
+
+    scene: CarAndTrailer
+    driven: float
+
+    @property
+    def cost(self) -> float:
+        return 0.1  # measured
+
+    @property
+    def label(self) -> str:
+        return "the reference on a reversing trailer"
+
+    def run(self) -> Values:
+        """`jackknifed` [s]: when the trailer is square to the driven car; `t`, `pose`: of the truth, coasting."""
+        scene = self.scene
+        car = CarWithTrailers(scene.wheelbase, (scene.length,), (scene.hitch,))
+        convoy = car.drive(scene.speed, scene.steering, scene.pose, (scene.bend,), [self.driven])
+        when = np.nan if convoy.jackknifed_at is None else convoy.jackknifed_at
+        t = np.linspace(0, scene.duration, scene.samples + 1)
+        return {"jackknifed": np.asarray(when), "t": t, "pose": scene.motion(t).pose}
+
 
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 MOTION = ("position", "angle", "gap", "slip", "energy")

@@ -2,23 +2,134 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from engines.registry import VARIANTS
 from reference.wheels import CarAndTrailer, Cart
+from reference.wheels.casters import Casters
+from reference.wheels.tractrix import Tow
+from reference.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.pages.skate.methods import known
 from reports.pages.skate.page import counted
-from reports.pages.wheels import pictures as wheels_pictures
 from reports.pages.wheels.expectations import KNOWN
 from reports.pages.wheels.experiments import FAILURES
-from reports.plots.plane_panels import paths
+from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
+
+# The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].
+LENGTH = 1.0
+RADII = (1.6, 1.0, 0.6)
+DRAWBARS = 7  # how many are drawn on the way
+
+
+def tows() -> Figure:
+    """A wheel towed along a straight line (the tractrix) and round three circles, R >, =, < L."""
+    panels = [_tow("straight: the tractrix", math.inf, 4 * LENGTH)]
+    for radius, sign in zip(RADII, (">", "=", "<"), strict=True):
+        panels.append(_tow(f"R {sign} L", radius, 2.5 * 2 * math.pi * radius))
+    return paths(panels, columns=4)
+
+
+def _tow(title: str, radius: float, distance: float) -> Panel:
+    tow = Tow(LENGTH, math.pi / 2, radius)
+    way = np.linspace(0, distance, 800)
+    some = np.linspace(0, min(distance, 4 * LENGTH), DRAWBARS)
+    middles = 0.5 * (tow.hitch(some) + tow.wheel(some))
+    drawbars = np.column_stack([middles, tow.heading(some)])
+    return Panel(
+        title,
+        [
+            Path(
+                tow.hitch(way if math.isinf(radius) else np.linspace(0, 2 * math.pi * radius, 200)),
+                "hitch",
+                "quiet",
+                "--",
+                1.2,
+            ),
+            Path(tow.wheel(way), "towed wheel", "second", "-", 1.8, dot=True),
+        ],
+        [Blades(drawbars, LENGTH, "quiet", 0.9, "drawbar")],
+    )
+
+
+def casters() -> Figure:
+    """A cart's two casters: going ahead they trail, pushed back they swing round, however straight they stood."""
+    own = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
+    t = np.linspace(0, 2, 801)
+    panels = []
+    for title, speed, start in (
+        ("going ahead at 0.5 m/s", 0.5, (2.5, -0.8)),
+        ("pushed back, from 0.05 and -0.001 rad", -0.5, (0.05, -0.001)),
+    ):
+        angles, _ = own.swing(start, speed, 0.0, t)
+        lines, curves = [Path(_cart(own, speed * t[-1]), "cart, at the end", "ink", "-", 1.2)], []
+        for index, (colour, dashes) in enumerate((("second", "-"), ("first", "--"))):
+            x, y = own.places[index]
+            place = np.column_stack([x + speed * t, np.full_like(t, y)])
+            wheel = place - own.trail * np.column_stack([np.cos(angles[:, index]), np.sin(angles[:, index])])
+            name = ("left caster's wheel", "right caster's wheel")[index]
+            lines += [
+                Path(place, "kingpins", "quiet", ":", 1.0),
+                Path(wheel, name, colour, dashes, 1.8, dot=True),
+            ]
+            curves.append(Path(np.column_stack([t, angles[:, index]]), name, colour, dashes))
+        curves += [Path(np.column_stack([t, 0 * t + level]), "", "quiet", ":", 1.0) for level in (-math.pi, 0, math.pi)]
+        panels.append(Panel(title, lines))
+        panels.append(Panel("angles against the cart [rad]", curves, plane=False, across="time [s]"))
+    return paths(panels, columns=2, height=1.9)
+
+
+def _cart(casters: Casters, travelled: float) -> np.ndarray:
+    """The cart's outline (points, 2) [m]: from its fixed axle, which has come so far [m], to the kingpins."""
+    places = np.array(casters.places)
+    corners = np.array([[0.0, places[0, 1]], places[0], places[1], [0.0, places[1, 1]], [0.0, places[0, 1]]])
+    return corners + np.array([travelled, 0.0])
+
+
+def reversing() -> Figure:
+    """A car backs straight with its trailer bent a little: the trailer folds, at the instant that the tractrix says."""
+    car = CarWithTrailers(1.0, (0.8,), (0.2,))
+    t = np.linspace(0, 3.2, 321)
+    panels = []
+    for title, bends in (("bent by 0.05 rad", (0.05,)), ("bent by 0.5 rad", (0.5,))):
+        convoy = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), bends, t)
+        folded = (
+            "" if convoy.jackknifed_at is None else f": folded beyond a right angle at {convoy.jackknifed_at:.3f} s"
+        )
+        chosen = convoy.pose[::40]
+        back, trailer = chosen[:, 0], chosen[:, 1]
+        bodies = back + np.stack([0.5 * np.cos(back[:, 2]), 0.5 * np.sin(back[:, 2]), 0 * back[:, 2]], axis=-1)
+        half = 0.4 * np.stack([np.cos(trailer[:, 2]), np.sin(trailer[:, 2]), 0 * trailer[:, 2]], axis=-1)
+        panels.append(
+            Panel(
+                title + folded,
+                [
+                    Path(convoy.pose[:, 0, :2], "car's rear axle", "quiet", "--", 1.2),
+                    Path(convoy.pose[:, 1, :2], "trailer's axle", "second", "-", 1.8, dot=True),
+                ],
+                [Blades(bodies, 1.0, "grid", 4.0, "car"), Blades(trailer + half, 0.8, "first", 1.6, "drawbar")],
+            )
+        )
+    return paths(panels, columns=2)
+
+
+def coasting(pose: np.ndarray, found: dict[str, tuple[np.ndarray, str, str]], title: str) -> Panel:
+    """The paths (times, bodies, 3) of a vehicle's bodies: the truth, and other methods' over it."""
+    lines = [Path(pose[:, body, :2], "truth", "ink", "-", 3.0) for body in range(pose.shape[1])]
+    for name, (other, colour, dashes) in found.items():
+        lines += [
+            Path(other[:, body, :2], name, colour, dashes, 1.5, framed=False, dot=True) for body in range(pose.shape[1])
+        ]
+    return Panel(title, lines)
+
 
 NAME = "wheels"
 SCENES = (CarAndTrailer(), Cart())
@@ -47,12 +158,12 @@ def figures(material: Material) -> dict[str, str]:
         made = material.motions(cells.values())
         truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
         found = {name: (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made}
-        panels.append(wheels_pictures.coasting(truth, found, title))
+        panels.append(coasting(truth, found, title))
     return {
         "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),
-        "tows": svg(wheels_pictures.tows(), "A towed wheel: the tractrix, and tows round circles"),
-        "casters": svg(wheels_pictures.casters(), "Casters that trail, and that swing round"),
-        "reversing": svg(wheels_pictures.reversing(), "A reversing trailer folds"),
+        "tows": svg(tows(), "A towed wheel: the tractrix, and tows round circles"),
+        "casters": svg(casters(), "Casters that trail, and that swing round"),
+        "reversing": svg(reversing(), "A reversing trailer folds"),
     }
 
 

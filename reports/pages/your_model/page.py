@@ -2,16 +2,54 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from reference.four_bar import FreeFourBar
 from reports.check.pictures import from_text, pictures
 from reports.model.page import Material, Page
-from reports.pages.your_model import others
-from reports.pages.your_model.answers import WALKS, Walk
+from reports.pages.your_model.experiments import WALKS, Walk
 from reports.write.tables import markdown, number
+
+TABLE = Path(__file__).parent / "models" / "of_others.csv"
+SOURCES = {
+    "mujoco": "MuJoCo's package",
+    "gymnasium": "Gymnasium",
+    "dm_control": "dm_control's suite",
+    "pymunk": "pymunk's examples",
+}
+OTHERS_HEADER = ("from", "model", "what became of it")
+
+
+def rows() -> list[dict[str, str]]:
+    """Every model that was tried, by its name."""
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def other_models() -> dict[str, object]:
+    """How many were tried and read, as they are and with something switched off, and the table."""
+    found = rows()
+    read = [row for row in found if row["bodies"]]
+    body = [[SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in found]
+    return {
+        "count": len(found),
+        "as_is": sum(not row["without"] for row in read),
+        "switched": sum(bool(row["without"]) for row in read),
+        "table": markdown(list(OTHERS_HEADER), body),
+    }
+
+
+def _sentence(row: dict[str, str]) -> str:
+    off = "".join(f" `--without {word}`" for word in row["without"].split())
+    if row["bodies"]:
+        bodies = f"read: {row['bodies']} {'body' if row['bodies'] == '1' else 'bodies'}"
+        return f"{bodies}, with{off}" if off else bodies
+    return f"refused{f', with{off} too' if off else ''}: {row['reason']}"
+
 
 NAME = "your_model"
 HEADER = ("setting", "largest error", "reaction error")
@@ -52,7 +90,7 @@ def words(material: Material) -> Mapping[str, Any]:
         found = found_of(material, walk)
         stem = walk.file.split(".")[0]
         told[stem] = None if found is None else {**found, "table": table(found)}
-    return {"others": others.told(), "found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
+    return {"others": other_models(), "found": told, "walks": {walk.file.split(".")[0]: walk for walk in WALKS}}
 
 
 PAGE = Page(

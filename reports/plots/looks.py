@@ -1,4 +1,4 @@
-"""A colour and a mark for every family of engines: those of the registry in its order, so that pictures keep theirs."""
+"""How families of engines and outcomes are drawn; families in the registry's order, so that pictures keep theirs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from engines import registry
+from reports.model.outcomes import Outcome
 from reports.plots.theme import SERIES, Theme
 
 # One more than there are colours: family by family both change, and no pair comes again before the 72nd.
@@ -69,3 +70,30 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
         "markersize": 5.5,
         "linewidth": 1.5,
     }
+
+
+HATCHES = {
+    Outcome.UNRESOLVED: "oo",
+    Outcome.SATURATED: "..",
+    Outcome.BRANCH_FLIP: "\\\\\\",
+    Outcome.TORN: "///",
+    Outcome.DIVERGED: "xx",
+    Outcome.RESET: "--",
+    Outcome.ABORTED: "++",
+    Outcome.TIMED_OUT: "||",
+}
+
+
+def outcome_colour(outcome: Outcome, theme: Theme) -> str:
+    """The colour of a cell of a map that ended so."""
+    match outcome:
+        case Outcome.FINISHED | Outcome.CONVERGED:
+            return theme.good
+        case Outcome.PLATEAU | Outcome.UNRESOLVED | Outcome.SATURATED | Outcome.BRANCH_FLIP:
+            return theme.middling
+        case Outcome.TORN | Outcome.DIVERGED | Outcome.RESET:
+            return theme.bad
+        case Outcome.UNSUPPORTED | Outcome.REFUSED:
+            return theme.grid
+        case _:
+            return theme.worse

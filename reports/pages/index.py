@@ -1,8 +1,25 @@
-"""What users see go wrong, in their words, and the section that answers."""
+"""The index of all pages with what users see go wrong, in their words; and the readme's parts."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+
+from engines import Engine
+from reference.scene import Scene
+from reports.model.convergence import judged
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page
+from reports.model.usual_steps import USUAL_STEPS
+from reports.pages.findings.findings import findings
+from reports.write import unmeasured
+from reports.write.page_tables import overviews
+from reports.write.provenance import machine, versions
+from reports.write.templates import environment, inert_page, link, with_part
+
+FEW = 100  # steps: a scene of fewer is no example of a step
 
 
 @dataclass(frozen=True)
@@ -49,8 +66,8 @@ SYMPTOMS: tuple[Symptom, ...] = (
     Symptom(
         "A heavy body on a light chain: the chain stretches.",
         "A map of mass ratios and steps says what still works.",
-        "pendulum",
-        "A light chain with a heavy tip",
+        "atlas",
+        "A pendulum of three links with a heavy tip",
     ),
     Symptom(
         "How do I drive a crank at a given speed?",
@@ -119,3 +136,58 @@ SYMPTOMS: tuple[Symptom, ...] = (
         "Cost of a step",
     ),
 )
+
+
+def foot(command: str, engines: Iterable[Engine] = ()) -> str:
+    """What the page was made with, its engines that are not registered included."""
+    return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
+
+
+def engines_of(pages: Iterable[Page]) -> list[Engine]:
+    """Every engine that these pages compare."""
+    return list(dict.fromkeys(engine for page in pages for engine in page.engines))
+
+
+def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
+    """The index: findings, symptoms, every scene in a line, every page with its lesson. `files`: what is beside it."""
+    entries = [(page, _overview_rows(page, material, page.scenes)) for page, material in pages.items()]
+    told = findings(pages)
+    known = {page.name for page in pages}
+    text = (
+        environment()
+        .get_template("index.md")
+        .render(
+            pages=list(pages),
+            titles={page.name: page.title for page in pages},
+            findings=[found for found in told if found.page in known],
+            symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
+            overviews=overviews(entries),
+            steps=list(USUAL_STEPS),
+            outcomes=list(Outcome),
+            files=files,
+            foot=foot(command, engines_of(pages)),
+        )
+    )
+    return inert_page(unmeasured.without_marks(text))
+
+
+def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> list[Measurement]:
+    return judged([*material.sweep(scenes), *material.usual(scenes)], page.quantity)
+
+
+def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
+    """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
+
+    Nothing in it depends on timings. A scene that is over within a hundred of the steps is left to the index: at such a
+    step nobody would run it. Raises ValueError where the marks of a part are missing.
+    """
+    step = USUAL_STEPS["1 ms"]
+    firsts = [
+        (page, _overview_rows(page, material, page.scenes[:1]))
+        for page, material in pages.items()
+        if page.scenes and page.scenes[0].duration > FEW * step
+    ]
+    shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
+    told = overviews(firsts, {"1 ms": step}, "reports/results/")
+    text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
+    return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))

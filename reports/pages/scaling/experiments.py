@@ -1,7 +1,7 @@
-"""The reference's own equations of a chain as a method among others: a banded solve for the joint forces, under RK4.
+"""The reference's own equations of a chain as a method among others, and how exact the truth of long chains is.
 
-It is no engine: it reads an open chain of uniform bars from a mechanism and can do nothing else. It stands beside the
-engines to say what an evaluation needs to cost.
+The method is a banded solve for the joint forces, under RK4. It is no engine: it reads an open chain of uniform bars
+from a mechanism and can do nothing else. It stands beside the engines to say what an evaluation needs to cost.
 """
 
 from __future__ import annotations
@@ -16,8 +16,30 @@ from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.pendulum.chain import Array, Chain
+from reference.pendulum.many_links import LongPendulum
 from reference.trajectory import Trajectory
 from reference.validation import Count, Positive, validated
+from reports.model.tasks import Task, Values
+
+
+@dataclass(frozen=True)
+class TruthError(Task):
+    """The truth of a long chain at the end of its run."""
+
+    scene: LongPendulum
+
+    @property
+    def cost(self) -> float:
+        return 0.5  # measured, with 200 links
+
+    @property
+    def label(self) -> str:
+        return f"error of the truth of {self.scene.links} links"
+
+    def run(self) -> Values:
+        """`error`: the largest of an angle [rad]."""
+        return {"error": self.scene.truth_error([self.scene.duration])[0]}
+
 
 ROUNDING = 1e-9  # relative: numbers that were made from one another
 

@@ -1,4 +1,6 @@
-"""The words of pages: sentences that are read at once, formulas as mathematics, and no mark of a template in sight.
+"""The words of pages: sentences that are read at once, formulas as mathematics. A lint that warns and never fails.
+
+    python -m tests.prose    # part of `make check`
 
 What stands in templates and in strings of the pages' modules is read as it is written: no page is rendered, so that
 clauses count that vanish without their rows.
@@ -12,15 +14,16 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-import pytest
-
 PAGES = Path(__file__).parents[1] / "reports" / "pages"
+RESULTS = PAGES.parent / "results"
 TEMPLATES = tuple(sorted(PAGES.rglob("*.md")))
 # What is drawn, or printed on the terminal too, has no mathematics of Markdown.
-DRAWING = ("charts.py", "chart.py", "drawings.py", "pictures.py", "errata_engines.py")
+DRAWN = ("centrodes/page.py", "atlas/page.py", "rolling/drawings.py", "rolling/page.py", "versions/chart.py")
+DRAWING = (*DRAWN, "errata/experiments.py")
 MODULES = tuple(path for path in sorted(PAGES.rglob("*.py")) if not {"programs", "snippets"} & set(path.parts))
 
 LONGEST = 35  # words: two or three lines of a page
+LIMIT = 25_000  # bytes of Markdown: about five minutes
 
 CODE = re.compile(r"^ *```.*?^ *```$", re.DOTALL | re.MULTILINE)
 SPAN = re.compile(r"`[^`\n]*`")
@@ -107,22 +110,23 @@ def ascii_mathematics(text: str) -> list[str]:
     return [text[max(0, found.start() - 30) : found.end() + 30] for found in ASCII_MATHEMATICS.finditer(text)]
 
 
-@pytest.mark.parametrize("path", [*TEMPLATES, *MODULES], ids=named)
-def test_no_sentence_of_a_page_is_too_long_to_be_read_at_once(path):
-    assert [long for text in written(path) for long in long_sentences(text)] == []
+def long_pages() -> list[str]:
+    """Published pages that take longer to read than five minutes; data pages, tables and lists of scripts apart."""
+    pages = (path for path in RESULTS.glob("*.md") if (PAGES / path.stem / "experiments.py").is_file())
+    sizes = {path.name: path.stat().st_size for path in sorted(pages)}
+    return [f"{name}: {size} bytes" for name, size in sizes.items() if size > LIMIT]
 
 
-@pytest.mark.parametrize("path", [*TEMPLATES, *(p for p in MODULES if p.name not in DRAWING)], ids=named)
-def test_formulas_of_a_page_are_mathematics(path):
-    assert [found for text in written(path) for found in ascii_mathematics(text)] == []
+def warnings() -> Iterator[str]:
+    """What a reader may stumble over; none of it is wrong by itself."""
+    for path in (*TEMPLATES, *MODULES):
+        for text in written(path):
+            yield from (f"{named(path)}: {long}" for long in long_sentences(text))
+            if named(path) not in DRAWING:
+                yield from (f"{named(path)}: no mathematics: {found!r}" for found in ascii_mathematics(text))
+    yield from long_pages()
 
 
-def test_a_long_sentence_and_a_formula_in_letters_are_noticed():
-    long = "word " * (LONGEST + 1)
-    assert long_sentences(f"Short. {long.strip()}.") != []
-    assert long_sentences(f"{'word ' * LONGEST}{{% filter if_measured %}}{{{{ one }}}} more{{% endfilter %}}.") != []
-    assert long_sentences(("Short enough. " * 40).strip()) == []
-    for formula in ("sqrt(2)", "N^2", "exp(4 t)", "d/dt x", "J-dot v", "kappa_A", "t + dt/2", "O(N)", "omega x r"):
-        assert ascii_mathematics(f"It is {formula}.") != [], formula
-        assert ascii_mathematics(f"It is ${formula}$ or `{formula}`.") == [], formula
-    assert strings('"""Told."""\nx = f"a {y} b" "c"\n') == ["a 0 bc"]
+if __name__ == "__main__":
+    for line in warnings():
+        print(f"warning: {line}")

@@ -1,0 +1,187 @@
+"""What is asked of engines beside cells: what they build, the velocity term of their rows, the work at open pins.
+
+The velocity term of loops, by force: reactions at instants of the exact motion, and the law with it and without. The
+mechanism is started anew at poses and velocities of the exact motion, where every gap and slip is zero. In the tree's
+coordinates q a loop's rows are J q'' = -J' q'. Without the velocity term they are J q'' = 0. In the coordinates of
+bodies, rows are then accelerated as they are where no coordinate of the tree is. Rows that an engine does not say to be
+soft hold exactly. Both laws follow from the mechanism alone, and no step is taken.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine, Unsupported
+from engines.conformance.pushed import FORCES
+from engines.conformance.worlds import MOVING, WORLDS
+from engines.tree import spanning_tree
+from reference.four_bar.scenes import FreeFourBar
+from reference.joints import Gear, Pin, Rod, Weld
+from reference.mechanism import Body, Mechanism
+from reference.trajectory import energy
+from reports.model.cells import Cell
+from reports.model.tasks import Task, Values
+
+
+@dataclass(frozen=True)
+class Asked(Task):
+    """Subclasses say in a few words `what` is asked of the engine `of`."""
+
+    what: ClassVar[str]
+
+    of: Engine
+
+    @property
+    def cost(self) -> float:
+        return 0.1 + getattr(self.of, "building", 0.0)
+
+    @property
+    def label(self) -> str:
+        return f"{self.of.name} {self.of.variant}: {self.what}"
+
+    @property
+    def engine(self) -> Engine:
+        return self.of
+
+
+STEP = 1e-2  # s
+WORLD = {world.name: world.mechanism for world in (*WORLDS, *MOVING)}
+_WHEELS = tuple(Body(name, 1.0, 0.1, (x, 0.0, 0.0)) for name, x in (("first", 0.0), ("second", 1.0)))
+_AXLES = tuple(Pin(f"axle of the {body.name}", None, body.name, body.pose[:2], (0.0, 0.0)) for body in _WHEELS)
+_DOWN = (0.0, -10.0)
+# What is asked, and the mechanism that asks it: of conformance, or the smallest that has the element.
+ASKED = {
+    "hinge": WORLD["swinging bar"],
+    "loop": WORLD["swinging parallelogram"],
+    "drive": WORLD["driven crank"],
+    "slot": WORLD["sliding block"],
+    "slot in a loop": WORLD["trammel"],
+    "rod": Mechanism(_WHEELS[1:], (Rod("rod", None, "second", (0.0, 0.0), (0.0, 0.0), 1.0),), _DOWN),
+    "weld": Mechanism(_WHEELS, (_AXLES[0], Weld("weld", "first", "second", (0.5, 0.0), (-0.5, 0.0))), _DOWN),
+    "gear": Mechanism(_WHEELS, (*_AXLES, Gear("gear", "first", "second", -2.0))),
+    **{force.name: Mechanism(_WHEELS[:1], _AXLES[:1], _DOWN, (replace(force, second="first"),)) for force in FORCES},
+    "skate": WORLD["sleigh"],
+    "disc rolls on a line": WORLD["disc on a slope"],
+    "disc rolls in a ring": WORLD["disc in a hole"],
+}
+
+
+@dataclass(frozen=True)
+class Capabilities(Asked):
+    """By the names in ASKED: "yes, by whom it is held", or the engine's sentence; `reaction` and `width` of a run."""
+
+    what: ClassVar[str] = "what it builds"
+
+    def run(self) -> Values:
+        told: dict[str, str] = {}
+        for what, mechanism in ASKED.items():
+            try:
+                self.of.build(mechanism, STEP)
+            except Unsupported as reason:
+                told[what] = str(reason)
+            else:
+                told[what] = "yes"
+                with suppress(ValueError):
+                    held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
+                    if mechanism.forces:
+                        held.add(getattr(self.of, "forces_by", "engine"))
+                    told[what] = "yes" if held == {"engine"} else "with code of ours"
+        run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
+        known = [bool(np.isfinite(each).all()) for each in run.reaction]
+        told["reactions"] = "yes" if all(known) else "but at the start" if all(known[1:]) else "no"
+        velocity = run.twist[1:]
+        # Velocities are the engine's own numbers, which poses of a tree or of angles are not.
+        told["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
+        return told
+
+
+@dataclass(frozen=True)
+class OpenWork(Task):
+    """`lost`: the change of energy over the motion [J]; `work` (rows,): sum of reaction times opening of a row [J].
+
+    The cell's motion is sampled at every step. A row's gap counts from the first body to the second and its reaction
+    acts on the second, so that opening against a force that pulls together is negative work.
+    """
+
+    cell: Cell
+
+    @property
+    def cost(self) -> float:
+        return 0.1
+
+    @property
+    def label(self) -> str:
+        return f"work at open pins: {self.cell.label}"
+
+    @property
+    def engine(self) -> Engine:
+        return self.cell.engine
+
+    def run(self) -> Values:
+        mechanism = self.cell.scene.mechanism()
+        run = self.cell.engine.build(mechanism, self.cell.step)(self.cell.sample_count * self.cell.every, 1)
+        gap = np.nan_to_num(mechanism.gap(run.pose, run.t))
+        force = np.nan_to_num(run.reaction)  # a change of velocity is not told at the start
+        own = energy(mechanism, run)
+        work = np.sum((force[1:] + force[:-1]) / 2 * np.diff(gap, axis=0), axis=0)
+        return {"lost": np.array(own[-1] - own[0]), "work": work}
+
+
+Array = NDArray[np.float64]
+INSTANTS = 12
+ROWS_STEP = 1e-3  # s, that a model is built for; none is compared
+
+
+def started_anew(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
+    """The mechanism with its bodies at these poses and twists (bodies, 3)."""
+    bodies = tuple(
+        replace(body, pose=tuple(place.tolist()), twist=tuple(speed.tolist()))
+        for body, place, speed in zip(mechanism.bodies, pose, twist, strict=True)
+    )
+    return replace(mechanism, bodies=bodies)
+
+
+def reactions_with(
+    mechanism: Mechanism, soft: tuple[bool, ...], complete: bool, compliance: Array | float = 0.0
+) -> Array:
+    """The start's reactions (rows,) [N] if soft rows have their velocity term or not; `compliance` (rows,) [1/kg]."""
+    rows = mechanism.rows(mechanism.pose)
+    bias = mechanism.bias(mechanism.pose, mechanism.twist)
+    if not complete:
+        tree = spanning_tree(mechanism)
+        still = np.zeros((1, tree.coordinates))
+        _, _, carried = tree.motion(still, tree.start_rates()[None], still)
+        bias = np.where(soft, rows @ carried.reshape(-1), bias)
+    weight = 1 / mechanism.inertias.reshape(-1)
+    right: Array = bias - rows @ mechanism.free_fall.reshape(-1)
+    inverse = (rows * weight) @ rows.T + np.diag(np.broadcast_to(compliance, right.shape))
+    return np.asarray(np.linalg.solve(inverse, right), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class VelocityTerm(Asked):
+    """How far an engine's reactions (instants,) are from those with the velocity term and without, of the largest."""
+
+    what: ClassVar[str] = "the velocity term of a loop"
+
+    def run(self) -> Values:
+        scene = FreeFourBar()
+        described = scene.mechanism()
+        softness = self.of.softness(described, ROWS_STEP)
+        if softness is None:
+            raise ValueError(f"{self.of.name} {self.of.variant} declares no soft rows: its loops are exact")
+        t = np.linspace(0.2, 1.0, INSTANTS) * scene.duration
+        truth = scene.motion(t)
+        found: dict[str, list[float]] = {"with": [], "without": []}
+        for pose, twist in zip(truth.pose, truth.twist, strict=True):
+            now = started_anew(described, pose, twist)
+            told = self.of.build(now, ROWS_STEP)(1, 1).reaction[0]
+            for name, complete in (("with", True), ("without", False)):
+                wanted = reactions_with(now, softness.rows, complete)
+                found[name].append(float(np.abs(told - wanted).max() / np.abs(wanted).max()))
+        return {"t": t, **{name: np.array(values) for name, values in found.items()}}
