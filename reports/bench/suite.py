@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from reports.model.cells import Cell
-from reports.model.measure import Measurement
+from reports.model.measure import TIMED, Measurement
 from reports.model.outcomes import Loss
 from reports.model.spending import taken
 from reports.model.tasks import Task
-from reports.run.pool import TIMED, run_cells
+from reports.run.running import run_cells
 from reports.run.supervisor import Answer, supervise
 
 STARTING, BETWEEN, OTHER = "starting workers", "between items", "other work on items"

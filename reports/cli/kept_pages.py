@@ -21,7 +21,7 @@ import numpy as np
 from reports.model.fingerprint import OURS, ROOT, digest_of, modules_behind
 from reports.model.page import Material, Page
 from reports.pages.rendering import foot
-from reports.run.stored_text import text_of_row
+from reports.run.store import text_of_row
 
 PUBLISHED = ROOT / "reports" / "results"
 # Of what is published: what a report writes there, and reads never.

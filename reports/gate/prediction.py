@@ -21,7 +21,7 @@ from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.gate.judge import QUANTITY_NAMES, errors
 from reports.model.errors import constraint_errors, largest, motion_errors
-from reports.model.measure import SATURATED, TORN
+from reports.model.outcomes import SATURATED, TORN
 
 # Which rows are soft, and whether they have the term of velocities: what the judge has to run once.
 Kind = tuple[tuple[bool, ...], bool]

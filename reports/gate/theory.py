@@ -10,8 +10,8 @@ from engines import EXACT, Promise, Softness, Unpromised
 from reports.gate.prediction import Prediction
 from reports.model.checks import Check
 from reports.model.convergence import ROOM_SOFT
-from reports.model.measure import SATURATED, Measurement
-from reports.model.outcomes import Outcome
+from reports.model.measure import Measurement
+from reports.model.outcomes import SATURATED, Outcome
 from reports.model.quantities import QUANTITIES
 
 # Check -> the quantities that it holds.

@@ -8,7 +8,7 @@ import subprocess
 from html import escape
 from pathlib import Path
 
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site.markdown import Formulas
 from reports.site.packages import NotFetched, fetched
 from reports.site.packages_used import KATEX

@@ -8,7 +8,7 @@ import sys
 from importlib.util import find_spec
 
 from reports.plots.theme import DARK, LIGHT, Theme
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site.packages import NotFetched
 
 MODULES = ("reference", "engines")

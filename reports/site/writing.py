@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from reports.model.ending import FileTrouble
-from reports.run.files import folder_for
-from reports.run.temporary import temporary_folder
+from reports.run.files import folder_for, temporary_folder
 from reports.site.build import MARKER
 
 REMEDY = "give another --output"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from engines import Engine
 from reports.model.ending import nearest
-from reports.model.requirements import normalised
+from reports.model.fingerprint import normalised
 
 # Names that a distribution had before; the first that has a version is taken.
 FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}

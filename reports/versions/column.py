@@ -15,8 +15,8 @@ from reports.model.cells import Cell, estimated_cost
 from reports.model.fingerprint import ROOT
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome, describe_exit
+from reports.run.files import temporary_folder
 from reports.run.installed import environment
-from reports.run.temporary import temporary_folder
 from reports.versions.request import Finished, Request, Running, TreesRow, Trouble
 
 MARK = "known to be wrong"  # the word of adapters for such a release, in the sentence of every row

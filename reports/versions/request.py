@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reference.scene import Scene
-from reports.run.pool import TIME_LIMIT
+from reports.run.running import TIME_LIMIT
 
 
 @dataclass(frozen=True)

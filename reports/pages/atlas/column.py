@@ -16,7 +16,8 @@ from engines.pymunk.contraction import contraction
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
-from reports.model.measure import TORN, Measurement, measure
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import TORN
 from reports.model.tasks import Task, Values
 
 LOOKS = 20  # instants of the truth at which the forces are taken

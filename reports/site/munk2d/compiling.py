@@ -13,7 +13,7 @@ import tarfile
 from importlib.metadata import version
 from pathlib import Path
 
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site.packages import NotFetched
 
 SHIM = Path(__file__).with_name("shim.c")
