@@ -126,14 +126,16 @@ def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers,
 
 
 def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(two_workers, monkeypatch):
-    monkeypatch.setattr(two_workers.scheduler, "allowed_failures", 1)  # each takes a worker that has to start
+    # Each takes a worker that has to start.
+    monkeypatch.setattr(two_workers.scheduler, "allowed_failures", 1)
+    monkeypatch.setattr(clusters, "MOST_TRIES", 2)
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with cluster(two_workers.scheduler_address) as own:
         told = {cell.every: result for cell, result, _ in own.supervise(end_the_supervisor, cells, 60.0)}
     lost = told.pop(901)
     assert isinstance(lost, Loss)
     assert lost.outcome == Outcome.LOST
-    assert lost.sentence.startswith("every worker that ran it ended: KilledWorker")
+    assert lost.sentence.startswith("every worker ended that ran it: KilledWorker")
     assert told == {1: "fine", 2: "fine"}
 
 
@@ -211,6 +213,13 @@ def test_a_chunk_has_what_takes_its_time_together(monkeypatch):
     monkeypatch.setattr(clusters, "expected_seconds", float)
     assert [chunk.items for chunk in chunks([1.0, 0.1, 0.1, 0.2, 0.25])] == [(1.0,), (0.1, 0.1), (0.2,), (0.25,)]
     assert [len(chunk.items) for chunk in chunks([0.0] * 450)] == [200, 200, 50]
+
+
+def test_what_a_worker_has_not_done_of_a_chunk_in_time_is_sent_again(two_workers):
+    cells = [Cell(Disc(), SlowToy(seconds=0.3, factor=float(number)), 1) for number in range(9)]  # all in one chunk
+    with cluster(two_workers.scheduler_address) as own:
+        rows = list(run_cells(cells, timed=False, supervised=own.supervise))
+    assert Counter(row.key for row in rows) == Counter(cell.key for cell in cells)
 
 
 def test_no_process_is_left_when_a_worker_is_closed():

@@ -30,9 +30,10 @@ PLAIN = {float, int, bool, str, type(None)}
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
 INSTALLED = {"site-packages", "dist-packages"}  # names of the folders in which a version stands for the files
 # An import at the beginning of a line or of a part of one. A sentence that looks like one adds what may not be needed.
-IMPORT = re.compile(
-    r"(?:^|[:;])[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]*(\([^)]*\)|[^\n;]*)|import[ \t]+([^\n;]*))", re.M
-)
+NAMES = r"[\w.]+(?:[ \t]+as[ \t]+\w+)?"
+LIST = rf"{NAMES}(?:[ \t]*,[ \t]*{NAMES})*(?=[ \t]*,?[ \t]*(?:[#;\\\r\n]|\Z))"
+FROM = rf"from[ \t]+([\w.]+)[ \t]+import[ \t]*(\([^)]*\)|{LIST}|\*)"
+IMPORT = re.compile(rf"(?:^|[:;])[ \t]*(?:{FROM}|import[ \t]+({LIST}))", re.M)
 
 
 @cache
@@ -54,7 +55,8 @@ def _piece(module: str) -> tuple[Path, ...]:
     if spec is None:
         return ()
     places = [Path(name) for name in spec.submodule_search_locations or filter(None, [spec.origin])]
-    return tuple(place for place in places if place.exists() and INSTALLED.isdisjoint(place.parts))
+    # A folder without sources is none, though Python would take it: one of results, of the name of a word.
+    return tuple(place for place in places if INSTALLED.isdisjoint(place.parts) and place.exists() and _files(place))
 
 
 @cache
@@ -87,7 +89,7 @@ def _imports(place: Path) -> frozenset[str]:
         if path.suffix == ".py":
             for origin, names, modules in IMPORT.findall(path.read_bytes().decode(errors="replace")):
                 found.update(f"{origin}.{name}" for name in re.findall(r"\w+", names))
-                found.update([origin] if origin else re.findall(r"[\w.]+", modules))
+                found.update([origin] if origin else (name.split()[0] for name in modules.split(",")))
     return frozenset(name for name in found if not name.startswith("."))  # those lie in the same piece
 
 

@@ -41,7 +41,9 @@ FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
 ANSWERS_WITHIN = 10.0  # s for a scheduler to answer
 WORKERS_WITHIN = 120.0  # s for a worker to be there
 CHUNK = 0.3  # s that a chunk should take: much more than sending one, much less than waiting for the last
+LONGEST = 1.0  # s after which a worker hands over what it has of a chunk: more was expected of it than it can
 MOST_ITEMS = 200  # of a chunk
+MOST_TRIES = 5  # of an item that Dask has given up, since every worker ended that ran it
 RETRIES = 2  # of a chunk that raises, by Dask: of a worker that can't start a process just now
 # What Dask measures of itself, a hundred times a second, in the process that hands out chunks: nobody looks there.
 QUIET = {
@@ -89,9 +91,10 @@ def behind(item: Any) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Items that are sent together."""
+    """Items that are sent together, and how often Dask gave them up."""
 
     items: tuple[Any, ...]
+    tries: int = 0
 
     def packed(self, function: bytes, limit: float, wall: float) -> bytes:
         own = tuple(pickle.dumps((item, getattr(item, "key", None))) for item in self.items)
@@ -114,9 +117,14 @@ def run_chunk(data: bytes) -> bytes:
         _crews.append(_own.stack)
         _own.crew = _own.stack.enter_context(crew(limit, 1, wall))
     hands: Crew = _own.crew
+    begin, answers = time.monotonic(), []
     try:
-        hands.give(job, enumerate(items))
-        return pickle.dumps([(place, result, note) for (place, _), result, note in hands.answers(_watch)])
+        for pair in enumerate(items):
+            hands.give(job, [pair])
+            answers += [(place, result, note) for (place, _), result, note in hands.answers(_watch)]
+            if time.monotonic() - begin > LONGEST:  # the others are sent again
+                break
+        return pickle.dumps(answers)
     except BaseException:
         _own.terms = None  # the next chunk begins anew
         _end(_own.stack)
@@ -281,6 +289,8 @@ class Cluster:
                         answers = self._lost(running[future], error, waiting)
                     chunk = running.pop(future)
                     future.release()
+                    if 0 < len(answers) < len(chunk.items):
+                        waiting.appendleft(Chunk(chunk.items[len(answers) :]))
                     for place, result, note in answers:
                         if isinstance(result, Refusal):
                             raise _refused(result, self._name)
@@ -293,13 +303,13 @@ class Cluster:
                     self._client.cancel(list(running), force=True)
 
     def _lost(self, chunk: Chunk, error: Exception, waiting: deque[Chunk]) -> Sequence[tuple[int, Any, str]]:
-        """The answers of a chunk that Dask gives up; those of several items wait to be sent again, each by itself."""
+        """The answers of a chunk that Dask has given up: none before the last try, its items wait, each by itself."""
         if isinstance(error, ImportError | AttributeError):
             raise BadInput(f"a worker at {self._name} can't run cells ({describe(error)}): install this program there")
-        if len(chunk.items) > 1:
-            waiting.extend(Chunk((item,)) for item in chunk.items)
+        if chunk.tries + 1 < MOST_TRIES:
+            waiting.extend(Chunk((item,), chunk.tries + 1) for item in chunk.items)
             return ()
-        return [(0, Loss(Outcome.LOST, f"every worker that ran it ended: {describe(error)}"), "")]
+        return [(0, Loss(Outcome.LOST, f"every worker ended that ran it: {describe(error)}"), "")]
 
 
 def chunks(items: Iterable[Any]) -> Iterator[Chunk]:
