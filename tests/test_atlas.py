@@ -18,8 +18,8 @@ from engines.registry import VARIANTS
 from reference.pendulum.scenes import LinkPendulum
 from reports.model.cells import Cell
 from reports.model.ending import FINE, REFUSED
-from reports.model.measure import TORN, measure
-from reports.model.outcomes import Outcome
+from reports.model.measure import measure
+from reports.model.outcomes import TORN, Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer
 from reports.pages.atlas import page
@@ -185,8 +185,8 @@ def test_a_column_leaves_out_what_lies_between_points_that_end_alike():
 
 def test_a_column_whose_process_ends_is_asked_cell_by_cell(tmp_path):
     from reports.cli.atlas import run_columns, whole
-    from reports.cli.elsewhere import pool
     from reports.cli.terminal import Terminal
+    from reports.run.cluster import pool
 
     column = Column(Disc(), (Toy(), FailingToy("abort")), ((10, 1), (10, 2)))
     with Store(tmp_path / "cells.sqlite") as store:

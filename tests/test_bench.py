@@ -17,7 +17,7 @@ from reports.model import spending
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Motion
-from reports.run.pool import run_items
+from reports.run.running import run_items
 from tests.toys import Disc, FailingToy, Toy
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import pickle
 import random
 import signal
 import subprocess
@@ -20,18 +21,14 @@ import pytest
 
 from engines.registry import VARIANTS
 from reference.four_bar.scenes import FreeFourBar
-from reports.model import fingerprint
 from reports.model.cells import Cell
 from reports.model.ending import REFUSED, BadInput
-from reports.model.fingerprint import digest_of, modules_of
 from reports.model.measure import TIMINGS
 from reports.model.outcomes import Loss, Outcome
 from reports.model.tasks import Motion
 from reports.run import cluster as clusters
-from reports.run.cluster import cluster
-from reports.run.foreman import Request, refused
-from reports.run.pool import run_cells
-from reports.run.running import run_into
+from reports.run.cluster import Job, Refusal, chunks, cluster
+from reports.run.running import run_cells, run_into
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from tests.rough_toys import end_the_supervisor
@@ -128,15 +125,17 @@ def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers,
     assert len(killed) == kills
 
 
-def test_an_item_that_ends_every_foreman_is_lost_and_the_others_are_not(two_workers, monkeypatch):
-    monkeypatch.setattr(clusters, "MOST_TRIES", 2)  # each takes a foreman that has to start
+def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(two_workers, monkeypatch):
+    # Each takes a worker that has to start.
+    monkeypatch.setattr(two_workers.scheduler, "allowed_failures", 1)
+    monkeypatch.setattr(clusters, "MOST_TRIES", 2)
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with cluster(two_workers.scheduler_address) as own:
         told = {cell.every: result for cell, result, _ in own.supervise(end_the_supervisor, cells, 60.0)}
     lost = told.pop(901)
     assert isinstance(lost, Loss)
     assert lost.outcome == Outcome.LOST
-    assert lost.sentence.startswith("2 times its worker ended")
+    assert lost.sentence.startswith("every worker ended that ran it: KilledWorker")
     assert told == {1: "fine", 2: "fine"}
 
 
@@ -163,35 +162,25 @@ def test_a_worker_with_another_version_is_refused_and_both_are_named(no_workers,
     assert f"pymunk 99.0 there, {version('pymunk')} here" in one_line(capsys.readouterr().err)
 
 
-def test_what_has_other_source_files_behind_it_is_not_run():
-    modules = modules_of(Disc(), Toy())
-    own = Request(b"", (), frozenset({(modules, digest_of(modules))}), 1.0, 1.0)
-    assert refused(own) is None
-    other = replace(own, sources=frozenset({(modules, digest_of(modules)), (modules, "of another file")}))
-    told = refused(other)
-    assert told is not None
+def every_of(cell: Cell) -> int:
+    return cell.every
+
+
+def test_an_item_with_other_source_files_behind_it_or_none_is_not_run(tmp_path, monkeypatch):
+    cell = Cell(Disc(), Toy(), 3)
+    job = Job(pickle.dumps(every_of), ())
+    assert job((0, pickle.dumps((cell, cell.key)))) == 3
+    told = job((0, pickle.dumps((cell, "of other files"))))
+    assert isinstance(told, Refusal)
     assert told.versions.keys() >= {"Python", "numpy", "our source files"}
-
-
-def test_a_file_that_is_not_at_the_worker_is_another_file(tmp_path, monkeypatch):
-    def forgotten() -> None:
-        for cached in (fingerprint._place, fingerprint._direct, fingerprint._closure, fingerprint._behind, digest_of):
-            cached.cache_clear()
-
-    (tmp_path / "a_file_of_somebody.py").write_text("TEN = 10\n")
-    modules = frozenset({*modules_of(Disc(), Toy()), "a_file_of_somebody"})
-    with monkeypatch.context() as patch:
-        patch.setattr(sys, "path", [*sys.path, str(tmp_path)])
-        forgotten()
-        request = Request(b"", (), frozenset({(modules, digest_of(modules))}), 1.0, 1.0)
-        assert refused(request) is None
-    forgotten()
-    assert refused(request) is not None
-    with monkeypatch.context() as patch:
-        patch.setattr(sys, "path", [*sys.path])
-        forgotten()
-        assert refused(replace(request, paths=(str(tmp_path),))) is None  # on the same machine it is found
-    forgotten()
+    (tmp_path / "a_file_of_somebody.py").write_text("def f(item): return 'found'\n")
+    theirs = b"\x80\x04\x8c\x12a_file_of_somebody\x8c\x01f\x93."  # what pickle makes of a function in it
+    missing = job((0, b"(" + theirs[2:-1] + b"Nt."))
+    assert isinstance(missing, Refusal)
+    assert "a_file_of_somebody" in missing.versions["what it would run"]
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    there = replace(job, function=theirs, paths=(str(tmp_path),))  # on the same machine it is found
+    assert there((0, pickle.dumps((1, None)))) == "found"
 
 
 def test_without_workers_a_run_ends_after_a_while_in_a_sentence(no_workers, monkeypatch):
@@ -220,26 +209,20 @@ def test_without_dask_the_line_names_the_extra(monkeypatch):
         pass
 
 
-def test_chunks_keep_to_their_time(two_workers):
-    """Cells that take longer than estimated go in smaller chunks: the last ones are not waited for."""
-    cells = [Cell(Disc(), SlowToy(seconds=0.05, factor=float(number)), 1) for number in range(80)]
-    sizes: list[int] = []
-    start = clusters._Sender.__call__
-
-    def counted(self: Any, chunk: Any) -> None:
-        sizes.append(len(chunk.items))
-        start(self, chunk)
-
-    with pytest.MonkeyPatch.context() as patch, cluster(two_workers.scheduler_address) as own:
-        patch.setattr(clusters._Sender, "__call__", counted)
-        for _ in run_cells(cells, timed=False, supervised=own.supervise):
-            pass
-    assert sum(sizes) == len(cells)
-    assert max(sizes) <= 11
-    assert sizes[-1] <= 2
+def test_a_chunk_has_what_takes_its_time_together(monkeypatch):
+    monkeypatch.setattr(clusters, "expected_seconds", float)
+    assert [chunk.items for chunk in chunks([1.0, 0.1, 0.1, 0.2, 0.25])] == [(1.0,), (0.1, 0.1), (0.2,), (0.25,)]
+    assert [len(chunk.items) for chunk in chunks([0.0] * 450)] == [200, 200, 50]
 
 
-def test_no_foreman_is_left_when_a_cluster_is_closed():
+def test_what_a_worker_has_not_done_of_a_chunk_in_time_is_sent_again(two_workers):
+    cells = [Cell(Disc(), SlowToy(seconds=0.3, factor=float(number)), 1) for number in range(9)]  # all in one chunk
+    with cluster(two_workers.scheduler_address) as own:
+        rows = list(run_cells(cells, timed=False, supervised=own.supervise))
+    assert Counter(row.key for row in rows) == Counter(cell.key for cell in cells)
+
+
+def test_no_process_is_left_when_a_worker_is_closed():
     before = set(_processes())
     start: Any = distributed.LocalCluster
     with (
@@ -249,8 +232,8 @@ def test_no_foreman_is_left_when_a_cluster_is_closed():
         cluster(there.scheduler_address) as own,
     ):
         assert list(run_cells([Cell(Disc(), Toy(), 1)], supervised=own.supervise))
-        assert _foremen(before)
-    assert _none_soon(lambda: _foremen(before))
+        assert _below(before)
+    assert _none_soon(lambda: _below(before))
 
 
 def test_no_worker_is_left_when_a_local_cluster_is_closed_at_work():
@@ -287,12 +270,12 @@ def _workers(before: set[int]) -> list[int]:
     return [worker.pid for server in servers for worker in server.children() if worker.pid not in before]
 
 
-def _foremen(before: set[int]) -> list[int]:
+def _below(before: set[int]) -> list[int]:
+    """New processes, wherever they are now, that a fork server is or has started."""
     import psutil
 
     found = []
     for process in psutil.process_iter(["pid", "cmdline"]):
-        line = process.info["cmdline"] or []
-        if process.info["pid"] not in before and "reports.run.foreman" in line:
+        if process.info["pid"] not in before and "forkserver" in " ".join(process.info["cmdline"] or []):
             found.append(process.info["pid"])
     return found

@@ -18,12 +18,12 @@ from reference.pendulum.link import BarPendulum
 from reference.pendulum.scenes import HundredLinks, TenLinks
 from reference.skate.sleigh import ChaplyginSleigh
 from reports.cli.selection import BadInput, steps_per_sample
-from reports.model import timing
+from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
+from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
-from reports.model.timing import repeated_stepping
 from reports.pages.centrodes.page import returned
 from reports.pages.scaling.page import cost_table, crossing
 from reports.pages.skate.page import constructions
@@ -112,7 +112,7 @@ class Clock:
 
     def __init__(self, monkeypatch):
         self.now = 0.0
-        monkeypatch.setattr(timing.time, "process_time", lambda: self.now)
+        monkeypatch.setattr(measuring.time, "process_time", lambda: self.now)
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def test_process_time_is_the_difference_of_two_readings(monkeypatch):
         clock.now += 3.0
         return "done"
 
-    assert timing.process_seconds(work) == (3.0, "done")
+    assert measuring.process_seconds(work) == (3.0, "done")
 
 
 def test_the_round_trip_is_the_worst_distance_and_the_rotation_looked_at():

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from engines.loading import load
-from reports.cli import trial
+from reports.cli import known
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import REFUSED, BadInput
@@ -63,7 +63,7 @@ OF_SCENES = {
 @pytest.fixture
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(trial, "SLEEPING", 10.0)  # s: a loaded machine imports for seconds
+    monkeypatch.setattr(known, "SLEEPING", 10.0)  # s: a loaded machine imports for seconds
     return tmp_path
 
 

@@ -15,8 +15,8 @@ from reports.gate.prediction import prediction
 from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
-from reports.run.pool import run_cells
-from reports.run.waiting import kin_of
+from reports.run.queue import kin_of
+from reports.run.running import run_cells
 from tests.toys import Disc, FailingToy, Toy
 
 NO_KINDS: frozenset[Any] = frozenset()

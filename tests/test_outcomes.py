@@ -10,8 +10,8 @@ import pytest
 
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.measure import BLOWN, SATURATED, TORN, classify, compare, measure
-from reports.model.outcomes import LETTERS, MEANINGS, Outcome, describe_exit
+from reports.model.measure import compare, measure
+from reports.model.outcomes import BLOWN, LETTERS, MEANINGS, SATURATED, TORN, Outcome, describe_exit, of_motion
 from tests.rows import row
 from tests.test_errors import SCENE, Pair
 from tests.test_measure import DISC, LENGTH, TIMES, Given, disc, shifted
@@ -131,7 +131,7 @@ def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) ->
     quiet = {"gap": 0.0, "drive_gap": 0.0, "flips": 0, "angle": 0.0, "angle_duration": 0.0}
     given = row(**{**quiet, **fields_of_a_row})
     count = len(trajectory.t) if count is None else count
-    return classify(given, DISC.mechanism(), trajectory, count)[0]
+    return of_motion(given, DISC.mechanism(), trajectory, count)[0]
 
 
 def test_the_gravest_finding_decides():
@@ -158,7 +158,7 @@ def test_the_gravest_finding_decides():
 
 
 def test_two_changes_of_assembly_are_said_to_be_two():
-    sentence = classify(row(gap=0.0, drive_gap=0.0, flips=2), DISC.mechanism(), disc(), len(TIMES))[1]
+    sentence = of_motion(row(gap=0.0, drive_gap=0.0, flips=2), DISC.mechanism(), disc(), len(TIMES))[1]
     assert sentence == "2 changes of assembly that the truth lacks"
 
 

@@ -15,9 +15,8 @@ from reports.__main__ import main
 from reports.model.cells import Cell
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome, describe_exit
-from reports.run.pool import run_cells, worker_count
-from reports.run.processors import apart, usable_cores
-from reports.run.running import missing, run_into
+from reports.run.queue import apart, usable
+from reports.run.running import missing, run_cells, run_into, worker_count
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from tests.rough_toys import RoughToy
@@ -120,7 +119,7 @@ def test_lost_workers_are_one_line_and_status_1_at_the_command_line(monkeypatch,
 
 
 def test_what_is_not_timed_uses_every_processor():
-    assert worker_count(timed=False) == usable_cores() >= 1
+    assert worker_count(timed=False) == len(usable()) >= 1
     assert worker_count(timed=True) == len(apart()) >= 1
 
 

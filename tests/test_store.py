@@ -19,7 +19,7 @@ from reports.model.cells import Cell
 from reports.model.ending import FileTrouble
 from reports.model.measure import blank
 from reports.model.outcomes import Outcome
-from reports.run import stored_text
+from reports.run import store as store_module
 from reports.run.store import Store
 from tests.toys import Disc, Toy
 
@@ -151,7 +151,7 @@ def altered(**changes):
     def change(text):
         values = {**json.loads(text.partition(" ")[2]), **changes}
         new = json.dumps({name: value for name, value in values.items() if value is not None})
-        return f"{stored_text.digest(new)} {new}"
+        return f"{store_module.digest(new)} {new}"
 
     return change
 
@@ -160,8 +160,8 @@ ROWS = {
     "no text": lambda text: b"\xff\xfe\x00",
     "a number": lambda text: 7,
     "cut off": lambda text: text[:-20],
-    "no JSON": lambda text: f"{stored_text.digest('{')} {{",
-    "a list": lambda text: f"{stored_text.digest('[1]')} [1]",
+    "no JSON": lambda text: f"{store_module.digest('{')} {{",
+    "a list": lambda text: f"{store_module.digest('[1]')} [1]",
     "a digit changed": lambda text: text.replace("0.001", "0.002"),
     "a field of a newer version": altered(colour=3.0),
     "a field of a newer version missing": altered(slip=None),

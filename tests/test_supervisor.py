@@ -13,8 +13,8 @@ import pytest
 
 from reports.model.cells import Cell
 from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.run import supervisor, worker_process
-from reports.run.pool import run_cells
+from reports.run import supervisor, worker
+from reports.run.running import run_cells
 from reports.run.supervisor import WorkersLost, supervise
 from tests.rough_toys import ACTIONS, RoughToy, act, dies, helpers, spoiled
 from tests.toys import Disc, Toy
@@ -153,11 +153,11 @@ def test_time_in_which_the_parent_was_stopped_is_not_counted(monkeypatch):
 
 
 def test_workers_that_end_while_they_start_are_replaced(monkeypatch):
-    real, starts = worker_process.work, iter(range(100))
+    real, starts = worker.work, iter(range(100))
     start = supervisor.start_worker
 
     def mostly_dies(*arguments):
-        monkeypatch.setattr(worker_process, "work", dies if next(starts) % 5 < 4 else real)
+        monkeypatch.setattr(worker, "work", dies if next(starts) % 5 < 4 else real)
         return start(*arguments)
 
     monkeypatch.setattr(supervisor, "start_worker", mostly_dies)
@@ -192,7 +192,7 @@ def test_a_second_try_is_in_a_worker_that_has_run_nothing_else():
 
 
 def test_a_pool_whose_workers_never_start_is_told_in_one_line(monkeypatch):
-    monkeypatch.setattr(worker_process, "work", dies)
+    monkeypatch.setattr(worker, "work", dies)
     with pytest.raises(WorkersLost, match=r"^5 worker processes in a row ended while they started: .*SIGKILL.$"):
         list(run_cells([Cell(Disc(), Toy(), 1)]))
 

@@ -17,7 +17,7 @@ import pytest
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.run import supervisor
-from reports.run.pool import run_cells
+from reports.run.running import run_cells
 from tests.rough_toys import RoughToy, helpers
 from tests.toys import Disc
 
@@ -94,7 +94,7 @@ SCRIPT = """
 import sys
 import threading
 from reports.model.cells import Cell
-from reports.run.pool import run_cells
+from reports.run.running import run_cells
 from tests.rough_toys import RoughToy
 from tests.toys import Disc
 
@@ -126,7 +126,7 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
 INTERRUPTED = """
 import sys
 import time
-from reports.run.pool import TIME_LIMIT
+from reports.run.running import TIME_LIMIT
 from reports.run.supervisor import supervise
 
 if __name__ == "__main__":

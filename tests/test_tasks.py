@@ -24,9 +24,8 @@ from reports.model.page import Failure, Material, Page
 from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
 from reports.pages.rendering import render_page
 from reports.pages.skate.page import path_picture
-from reports.run import stored_text
-from reports.run.pool import run_items
-from reports.run.running import missing, run_into
+from reports.run import store as store_module
+from reports.run.running import missing, run_into, run_items
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from tests.present import present
@@ -158,18 +157,18 @@ def test_the_key_of_a_task_is_that_of_its_numbers_its_kind_and_its_sources(monke
     [
         lambda text: text[:-3],
         lambda text: text.replace("finished", "finisheD"),
-        lambda text: stored_text._signed("[1]"),
-        lambda text: stored_text._signed(json.dumps({"key": "another"})),
-        lambda text: stored_text._signed(text.partition(" ")[2].replace('"finished"', '"melted"')),
-        lambda text: stored_text._signed(re.sub(r'"float64": "\w', '"float64": "=', text.partition(" ")[2])),
-        lambda text: stored_text._signed(text.partition(" ")[2].replace('"values"', '"numbers"')),
+        lambda text: store_module._signed("[1]"),
+        lambda text: store_module._signed(json.dumps({"key": "another"})),
+        lambda text: store_module._signed(text.partition(" ")[2].replace('"finished"', '"melted"')),
+        lambda text: store_module._signed(re.sub(r'"float64": "\w', '"float64": "=', text.partition(" ")[2])),
+        lambda text: store_module._signed(text.partition(" ")[2].replace('"values"', '"numbers"')),
     ],
 )
 def test_an_answer_that_can_not_be_read_is_none(change):
-    text = stored_text.text_of_answer("key", answered(Sum((1.0, 2.0))))
-    assert present(stored_text.answer_of("key", text)).number("sum") == 3.0
-    assert stored_text.answer_of("another", text) is None
-    assert stored_text.answer_of("key", change(text)) is None
+    text = store_module.text_of_answer("key", answered(Sum((1.0, 2.0))))
+    assert present(store_module.answer_of("key", text)).number("sum") == 3.0
+    assert store_module.answer_of("another", text) is None
+    assert store_module.answer_of("key", change(text)) is None
 
 
 def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
@@ -196,11 +195,12 @@ def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
 
 
 def test_no_answer_is_stale_because_of_words_or_pictures():
-    """A task's module is apart from templates, commands and charts; experiments may stand beside it."""
-    words = re.compile(r"reports\.(plots|cli|pages\.rendering|pages\.\w+\.(page|expectations))\b")
-    for task in {task for page in PAGES for task in all_tasks(page)}:
-        files, _ = fingerprint._closure(type(task).__module__)
-        assert [name for name, _ in files if words.match(name)] == [], type(task).__name__
+    """A task's module, and what it imports, is apart from templates, commands and charts."""
+    words = re.compile(r"reports/(plots|cli|pages/(rendering|\w+/(page|expectations)))\b")
+    for kind in {type(task) for page in PAGES for task in all_tasks(page)}:
+        places, _ = fingerprint._behind(frozenset({kind.__module__}))
+        names = [place.relative_to(fingerprint.ROOT).as_posix() for place in places]
+        assert [name for name in names if words.match(name)] == [], kind.__name__
 
 
 @cache

@@ -13,23 +13,23 @@ from pathlib import Path
 import pytest
 
 from reports.cli import interruption
-from reports.run import temporary
-from reports.run.temporary import remove_all, temporary_folder
+from reports.run import files
+from reports.run.files import remove_all, temporary_folder
 from tests.test_command_line import environment
 
-pytestmark = pytest.mark.skipif(temporary.fcntl is None, reason="nothing is locked or swept on Windows")
+pytestmark = pytest.mark.skipif(files.fcntl is None, reason="nothing is locked or swept on Windows")
 
 
 @pytest.fixture(autouse=True)
 def anew():
-    temporary._sweep.cache_clear()
+    files._sweep.cache_clear()
 
 
 HOLDS = """
 import sys, time
 from pathlib import Path
 from reports.cli.interruption import ending_at_once, kept
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 
 with ending_at_once(), temporary_folder(Path(sys.argv[1])) as folder:
     (folder / "file").write_text("x")
@@ -86,7 +86,7 @@ def test_what_a_kill_left_is_swept_and_what_somebody_holds_or_has_named_is_not(t
         alive.kill()
         alive.communicate()
     assert len([*tmp_path.iterdir()]) == len(mine) + 1
-    temporary._sweep.cache_clear()
+    files._sweep.cache_clear()
     with temporary_folder(tmp_path):
         pass
     assert sorted(tmp_path.iterdir()) == sorted(mine)
@@ -95,16 +95,16 @@ def test_what_a_kill_left_is_swept_and_what_somebody_holds_or_has_named_is_not(t
 def test_a_folder_for_sockets_has_a_path_that_a_socket_can_have(tmp_path, monkeypatch):
     long = tmp_path / ("a" * 60)
     long.mkdir()
-    monkeypatch.setattr(temporary.tempfile, "gettempdir", lambda: str(long))
-    monkeypatch.setattr(temporary, "_own", {})
-    folder = temporary.lasting_folder.__wrapped__()
+    monkeypatch.setattr(files.tempfile, "gettempdir", lambda: str(long))
+    monkeypatch.setattr(files, "_own", {})
+    folder = files.lasting_folder.__wrapped__()
     assert len(f"{folder}/listener-12345678") < 104
     remove_all()
     assert not folder.exists()
 
 
 def test_all_folders_of_a_process_go_at_once(tmp_path, monkeypatch):
-    monkeypatch.setattr(temporary, "_own", {})  # of this process' own, its workers' stays
+    monkeypatch.setattr(files, "_own", {})  # of this process' own, its workers' stays
     with temporary_folder(tmp_path), temporary_folder(tmp_path):
         remove_all()
         assert [*tmp_path.iterdir()] == []

@@ -96,4 +96,4 @@ def test_a_run_keeps_them_beside_its_store_wherever_it_is_started(tmp_path, monk
         assert run_into(store, [cell]) == 1
     assert (tmp_path / "here" / truths.FOLDER).is_dir()
     kept = {file.suffix for file in (tmp_path / "here" / truths.FOLDER).iterdir()}
-    assert kept == {".npz", ".json"}  # beside the truths what sources import
+    assert kept == {".npz"}

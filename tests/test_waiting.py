@@ -17,11 +17,10 @@ from reports.model import spending
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.tasks import Motion, Task, Values
-from reports.run import expected, processors
-from reports.run.expected import dearest_first, expected_seconds
-from reports.run.pool import run_items
+from reports.run import queue
+from reports.run.queue import Waiting, dearest_first, expected_seconds, kin_of
+from reports.run.running import run_items
 from reports.run.supervisor import supervise
-from reports.run.waiting import Waiting, kin_of
 from tests.toys import Disc, Toy
 
 
@@ -65,7 +64,7 @@ def test_cells_and_motions_of_a_scene_are_akin_and_those_of_another_are_not():
 def test_the_dearest_kin_comes_first_and_in_it_the_dearest_cell(monkeypatch):
     costs = {(2.0, 1): 1.0, (2.0, 2): 3.0, (5.0, 1): 2.5, (7.0, 1): 2.0, (7.0, 3): 2.5}
     cells = {Cell(Disc(rate=rate), Toy(), every): (rate, every) for rate, every in costs}
-    monkeypatch.setattr(expected, "expected_seconds", lambda cell: costs[cells[cell]])
+    monkeypatch.setattr(queue, "expected_seconds", lambda cell: costs[cells[cell]])
     mixed = random.Random(1).sample(list(cells), len(cells))
     assert [cells[cell] for cell in dearest_first(mixed)] == [(7.0, 3), (7.0, 1), (2.0, 2), (2.0, 1), (5.0, 1)]
 
@@ -80,10 +79,10 @@ def test_what_a_cell_took_when_it_was_published_counts_more_than_a_formula(tmp_p
         encoding="utf-8",
     )
     assert expected_seconds(cell) < 1.0
-    published = expected._published(tmp_path / "timings.csv")
-    assert expected._published(tmp_path / "none.csv") == {}
-    monkeypatch.setattr(expected, "_published", lambda: published)
-    assert expected_seconds(cell) == pytest.approx(10.0 * cell.scene.duration + 0.5 + expected.LEAST, rel=1e-9)
+    published = queue._published(tmp_path / "timings.csv")
+    assert queue._published(tmp_path / "none.csv") == {}
+    monkeypatch.setattr(queue, "_published", lambda: published)
+    assert expected_seconds(cell) == pytest.approx(10.0 * cell.scene.duration + 0.5 + queue.LEAST, rel=1e-9)
     assert expected_seconds(replace(cell, purpose="map")) < 1.0  # it has no number there
 
 
@@ -91,16 +90,16 @@ def test_published_timings_that_are_damaged_are_told_and_change_no_cell_of_a_qui
     quick = choose_cells(SCENES[:3], VARIANTS, PAGES, False)
     (tmp_path / "timings.csv").write_text("scene,engine\ndisc,toy\n", encoding="utf-8")
     with pytest.warns(UserWarning, match="can't be read"):
-        assert expected._published(tmp_path / "timings.csv") == {}
-    monkeypatch.setattr(expected, "_published", lambda: {})
+        assert queue._published(tmp_path / "timings.csv") == {}
+    monkeypatch.setattr(queue, "_published", lambda: {})
     assert choose_cells(SCENES[:3], VARIANTS, PAGES, False) == quick
-    named = {expected._name(cell): 100.0 for cell in quick}
-    monkeypatch.setattr(expected, "_published", lambda: named)
+    named = {queue._name(cell): 100.0 for cell in quick}
+    monkeypatch.setattr(queue, "_published", lambda: named)
     assert choose_cells(SCENES[:3], VARIANTS, PAGES, False) == quick
 
 
 def test_the_published_timings_are_found_and_some_of_the_grid_is_in_them():
-    assert len(expected._published()) > 1000
+    assert len(queue._published()) > 1000
 
 
 def process_of(item: Kindred) -> int:
@@ -127,20 +126,20 @@ def where_it_stays(item: int) -> tuple[int, ...]:
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="this system keeps no process on a processor")
 def test_a_worker_that_times_stays_on_a_processor_of_its_own_and_others_on_none():
-    own = processors.apart()
+    own = queue.apart()
     told = {found for _, found, _ in supervise(where_it_stays, range(8), 60.0, len(own), None, None, True)}
     assert told <= {(one,) for one in own}
-    assert [found for _, found, _ in supervise(where_it_stays, [0], 60.0, 1)] == [processors.usable()]
+    assert [found for _, found, _ in supervise(where_it_stays, [0], 60.0, 1)] == [queue.usable()]
 
 
 def test_of_processors_that_share_a_core_one_is_taken(tmp_path, monkeypatch):
-    monkeypatch.setattr(processors, "usable", lambda: (0, 1, 2, 3, 4))
-    monkeypatch.setattr(processors, "TOPOLOGY", tmp_path)
-    assert processors.apart() == (0, 1, 2, 3, 4)  # the system does not tell
+    monkeypatch.setattr(queue, "usable", lambda: (0, 1, 2, 3, 4))
+    monkeypatch.setattr(queue, "TOPOLOGY", tmp_path)
+    assert queue.apart() == (0, 1, 2, 3, 4)  # the system does not tell
     for number, siblings in enumerate(("0,2", "1,3", "0,2", "1,3")):
         (tmp_path / f"cpu{number}/topology").mkdir(parents=True)
         (tmp_path / f"cpu{number}/topology/thread_siblings_list").write_text(siblings + "\n", encoding="ascii")
-    assert processors.apart() == (0, 1, 4)
+    assert queue.apart() == (0, 1, 4)
 
 
 @dataclass(frozen=True)
@@ -162,7 +161,7 @@ class Where(Task):
 
 
 def test_more_workers_than_cores_run_what_is_timed_first_and_alone(monkeypatch):
-    monkeypatch.setattr("reports.run.pool.worker_count", lambda timed: 1 if timed else 2)
+    monkeypatch.setattr("reports.run.running.worker_count", lambda timed: 1 if timed else 2)
     rounds = []
 
     def told(function, items, limit, workers, watch, wall, alone):

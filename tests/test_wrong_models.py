@@ -19,7 +19,7 @@ from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
 from reference.scenes import SCENES
 from reports.model.outcomes import Loss
-from reports.run.processors import usable_cores
+from reports.run.queue import usable
 from reports.run.supervisor import supervise
 from tests.mistakes import KINDS, Mistake, mistaken, mistakes
 from tests.noticing import Sighting, Trial, noticed
@@ -193,7 +193,7 @@ def found(trials: Iterable[Trial]) -> Findings:
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
     # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
-    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=usable_cores())
+    told = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=len(usable()))
     return {
         (trial.scene.name, trial.method): result if isinstance(result, Loss) else result[index]
         for own, result, _ in told

@@ -13,11 +13,11 @@ from engines.entry_points import registered_by_key
 from engines.loading import Kind
 from reference.mechanism import Mechanism
 from reports.model.cells import Cell
-from reports.model.measure import Measurement
+from reports.model.measure import TIMED, Measurement
 from reports.model.outcomes import Loss
 from reports.model.spending import taken
 from reports.model.tasks import Task
-from reports.run.pool import TIMED, run_cells
+from reports.run.running import run_cells
 from reports.run.supervisor import Answer, supervise
 
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")

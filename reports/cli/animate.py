@@ -90,8 +90,7 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
 
 
 def _write(shown: Shown, kind: str, path: Path) -> None:
-    from reports.run.files import folder_for, write_whole
-    from reports.run.temporary import temporary_folder
+    from reports.run.files import folder_for, temporary_folder, write_whole
     from reports.site.animated import animation, film
     from reports.write.tables import number
 

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
     from reports.model.tasks import Answer
     from reports.pages.atlas.column import Column
     from reports.pages.atlas.subjects import Subject
     from reports.pages.atlas.table import Cost, Line
+    from reports.run.cluster import Workforce
     from reports.run.store import Store
 
 LIMIT = 600.0  # CPU seconds of one column, far above any that is known
@@ -43,11 +42,11 @@ def atlas(
 ) -> None:
     """Map where methods fail: step against the parameter that breaks a scene. It is no part of a full run."""
     from engines.registry import VARIANTS
-    from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.report import published, refuse_outside_a_checkout, write_files
     from reports.cli.terminal import Terminal, opened
     from reports.pages.atlas.column import Column
     from reports.pages.atlas.table import CELLS, COSTS, Costs, as_csv, costs_as_csv, read, read_costs
+    from reports.run.cluster import elsewhere, pool
     from reports.write.provenance import machine, today, versions
 
     subjects = chosen(scenes)
@@ -102,23 +101,16 @@ def chosen(scenes: str | None) -> tuple[Subject, ...]:
 
 def run_columns(terminal: Terminal, store: Store, columns: Sequence[Column], crew: Workforce) -> int:
     """Run what is not stored; a column whose process ends is asked again cell by cell. How many columns were run."""
-    from reports.cli.terminal import progress
+    from reports.cli.terminal import interruptible
     from reports.run.running import missing, run_into
 
-    waiting = sorted(missing(columns, store, LIMIT), key=lambda column: -column.cost)  # the longest first
-    with kept() as check:
-        try:
-            with progress(terminal, len(waiting), check) as (done, watch):
-                run_into(store, waiting, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
-                answers = store.answers(columns)
-                singles = [one for column in columns if not answers[column].finished for one in column.singles]
-                singles = list(missing(singles, store, LIMIT))
-                run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)
-            check()
-        except KeyboardInterrupt:
-            left = len(missing(columns, store, LIMIT))
-            terminal.say(f"Stopped: {len(columns) - left} of {len(columns)} columns are stored; the next goes on.")
-            raise
+    ordered = sorted(columns, key=lambda column: -column.cost)  # the longest first
+    with interruptible(terminal, store, ordered, LIMIT, "columns") as (waiting, done, watch):
+        run_into(store, waiting, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
+        answers = store.answers(columns)
+        singles = [one for column in columns if not answers[column].finished for one in column.singles]
+        singles = list(missing(singles, store, LIMIT))
+        run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)
     return len(waiting)
 
 

@@ -18,16 +18,17 @@ def bench_suite(scenes: Sequence[str], full: bool, workers: int | None) -> None:
     """Run the grid of these scenes (all if none) into a store that is thrown away, and print the shares."""
     begin = time.process_time()
     from reports.bench.suite import Account, timings_alike
-    from reports.cli.elsewhere import Pool, pool
     from reports.cli.interruption import ending_at_once
     from reports.cli.known import registered, with_words
     from reports.cli.run import run_interruptible
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal
     from reports.model.cells import estimated_seconds
-    from reports.run.pool import TIMED, worker_count
+    from reports.model.measure import TIMED
+    from reports.run.cluster import Pool, pool
+    from reports.run.files import temporary_folder
+    from reports.run.running import worker_count
     from reports.run.store import Store
-    from reports.run.temporary import temporary_folder
     from reports.write.provenance import machine, versions
 
     parts = {"importing": time.process_time() - begin}

@@ -77,8 +77,8 @@ def asked(request: Any, limit: float) -> CheckReport:
 
     from reports.check.request import Refused, answered
     from reports.model.outcomes import Loss, Outcome
+    from reports.run.files import temporary_folder
     from reports.run.supervisor import supervise
-    from reports.run.temporary import temporary_folder
 
     with temporary_folder() as folder:
         notes = folder / "progress"

@@ -14,12 +14,11 @@ from reports.cli.compare import compare
 from reports.cli.conform import conform
 from reports.cli.errata import errata
 from reports.cli.export import export, view
-from reports.cli.listing import list_command
 from reports.cli.report import report
 from reports.cli.run import run
 from reports.cli.search import search
 from reports.cli.shapes import shapes
-from reports.cli.show import show
+from reports.cli.show import list_command, show
 from reports.cli.site import site
 from reports.cli.terminal import written
 from reports.cli.versions import versions

@@ -61,7 +61,7 @@ def compare(
     from reports.cli.terminal import Terminal
     from reports.cli.versions import named_scenes
     from reports.model.ending import nearest
-    from reports.run.temporary import temporary_folder
+    from reports.run.files import temporary_folder
     from reports.versions.comparison import compared
 
     engines = (*VARIANTS, *OTHERS) if engine is None else _named(engine)

@@ -18,7 +18,7 @@ from reports.gate.prediction import all_tasks
 from reports.model.outcomes import Loss
 from reports.model.page import Material, Page
 from reports.pages.rendering import render_page
-from reports.run.pool import worker_count
+from reports.run.running import worker_count
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost, supervise
 

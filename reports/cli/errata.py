@@ -39,7 +39,7 @@ def errata(
     )
     if engines:
         from reports.pages.errata.experiments import TASKS, rulings
-        from reports.run.pool import run_items
+        from reports.run.running import run_items
         from reports.write.tables import number as short
 
         found = dict(run_items(TASKS))

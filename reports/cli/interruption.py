@@ -46,7 +46,7 @@ def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
 def _end(number: int, frame: FrameType | None) -> None:
     # An exception would not do: while compiled modules are imported it comes out as another one, or is lost. What is
     # not imported, or not yet whole, has nothing to be taken away.
-    for module, name in (("reports.run.worker_process", "stop_all"), ("reports.run.temporary", "remove_all")):
+    for module, name in (("reports.run.worker", "stop_all"), ("reports.run.files", "remove_all")):
         getattr(sys.modules.get(module), name, lambda: None)()
     os._exit(128 + number)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -10,14 +11,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from engines import Engine, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene
 from reference.variation import told_apart, with_settings
 from reports.cli.selection import known_engines
 from reports.model import catalogue
+from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput, nearest
+from reports.model.outcomes import Loss
 from reports.model.page import Page
+
+SLEEPING = 120.0  # s of wall time for code of somebody else that does not use its CPU time
 
 
 @dataclass(frozen=True)
@@ -112,8 +119,6 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
 
     motion: of a command that asks scenes for their motion.
     """
-    from reports.cli.trial import refused
-
     given = []
     for text in texts:
         with suppress(ValueError):  # a text of another version
@@ -137,8 +142,6 @@ def with_words(
     Names that are no references are left for `choose_scenes`, unless numbers of theirs are set. motion: of a command
     that asks scenes for their motion. Raises BadInput.
     """
-    from reports.cli.trial import refused
-
     folder = str(Path.cwd())
     values = _settings(settings)
     if values and not scenes:
@@ -187,3 +190,64 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
             raise BadInput(f"--set gives {name} twice")
         out[name] = value.strip()
     return out
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What a worker does: read what is given, and ask its members. `motion`: the motion at the samples too."""
+
+    motion: bool
+
+    def __call__(self, given: Given) -> str:
+        """Why it can't be used, a sentence; empty if it can."""
+        try:
+            values = values_of(given)
+        except ValueError as reason:
+            return str(reason)
+        for value in values:
+            _touch(value)
+            if isinstance(value, Scene):
+                _ask(value, self.motion)
+            else:
+                _ask_costs(catalogue.SCENES, (value,))
+        return ""
+
+
+def _touch(value: Any) -> None:
+    """As the tables, dictionaries and lists of a command do."""
+    if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
+        raise ValueError("it is not equal to itself")
+
+
+def _ask(scene: Scene, motion: bool) -> None:
+    scene.mechanism()
+    _ask_costs((scene,), registry.VARIANTS)
+    if motion:
+        with suppress(ValueError):  # the textbook refuses, which pages can tell
+            scene.motion(np.linspace(0.0, scene.duration, scene.samples + 1))
+
+
+def _ask_costs(scenes: Sequence[Scene], engines: Sequence[Engine]) -> None:
+    for scene in scenes:
+        for engine in engines:
+            with suppress(BadInput):  # that is told where the cost is needed
+                estimated_cost(Cell(scene, engine, 1))
+
+
+def refused(given: Sequence[Given], motion: bool = False) -> dict[Given, str]:
+    """Why some of what is given can't be used, a sentence each. Raises WorkersLost.
+
+    A worker does first what a command will ask of it: somebody else's code may end its process.
+    """
+    from reports.run.running import TIME_LIMIT
+    from reports.run.supervisor import supervise
+
+    if not given or multiprocessing.parent_process() is not None:  # a worker asks for itself
+        return {}
+    found = {}
+    for each, result, _ in supervise(Trial(motion), given, TIME_LIMIT, workers=1, wall=SLEEPING):
+        if isinstance(result, Loss):
+            found[each] = f"{each.word}: its own code can't be used: {result.sentence}"
+        elif result:
+            found[each] = result
+    return found

@@ -39,7 +39,7 @@ def report(
         write_files({folder / name: text for name, text in searched.items()}, line)
         return
     if (results / STORE).stat().st_size > LARGE:
-        from reports.run.worker_process import start_early
+        from reports.run.worker import start_early
 
         # Beside what is imported here; by the time that workers are wanted, they can be there.
         start_early("reports.cli.drawing")

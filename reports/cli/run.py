@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.interruption import kept
 from reports.cli.options import (
     FOLDER,
     STORE,
@@ -25,11 +24,11 @@ from reports.cli.options import (
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
     from reports.model.cells import Cell
     from reports.model.measure import Measurement
     from reports.model.tasks import Task
+    from reports.run.cluster import Workforce
     from reports.run.store import Store
 
 
@@ -48,10 +47,10 @@ def run(
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
-    from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
     from reports.cli.terminal import Terminal, opened
+    from reports.run.cluster import elsewhere, pool
 
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
@@ -82,22 +81,13 @@ def run_interruptible(
 
     Raises KeyboardInterrupt, having said what is stored.
     """
-    from reports.cli.elsewhere import pool
-    from reports.cli.terminal import progress
-    from reports.run.running import missing, run_into
+    from reports.cli.terminal import interruptible
+    from reports.run.cluster import pool
+    from reports.run.running import run_into
 
     by = crew or pool(None)
-    with kept() as check:
-        waiting = items if fresh else missing(items, store, limit)
-        try:
-            with progress(console, len(waiting), check) as (done, watch):
-                count = run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
-            check()
-        except KeyboardInterrupt:
-            stored = len(items) - len(missing(items, store, limit))
-            console.say(f"Stopped: {stored} of {len(items)} cells are stored; the next run goes on from there.")
-            raise
-    return count
+    with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
+        return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.interruption import kept
 from reports.cli.options import (
     FOLDER,
     SEARCH,
@@ -24,8 +23,8 @@ from reports.cli.options import (
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from reports.cli.elsewhere import Workforce
     from reports.cli.terminal import Terminal
+    from reports.run.cluster import Workforce
     from reports.run.store import Store
     from reports.search.chunk import Asked, Chunk
     from reports.search.subjects import Subject
@@ -55,8 +54,8 @@ def search(
     results: Folder = FOLDER,
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
-    from reports.cli.elsewhere import elsewhere, pool
     from reports.cli.terminal import Terminal, opened
+    from reports.run.cluster import elsewhere, pool
     from reports.search.chunk import as_words, asked, chunks, stored
     from reports.search.subjects import ORACLES
 
@@ -125,26 +124,18 @@ def run_pieces(
 
     All at once where there is time for all: between two waves workers wait for the last of the first.
     """
-    from reports.cli.terminal import progress
+    from reports.cli.terminal import interruptible
     from reports.run.running import missing, run_into
     from reports.search.chunk import lost, stored
 
     begin = monotonic()
-    waiting = list(missing(pieces, store, LIMIT))
-    size = len(waiting) if seconds is None else WAVE * crew.threads
-    with kept() as check:
-        try:
-            with progress(terminal, len(waiting), check) as (done, watch):
-                while waiting and (seconds is None or monotonic() - begin < seconds):
-                    wave, waiting = waiting[:size], waiting[size:]
-                    run_into(store, wave, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
-                    singles = missing(lost(stored(store, wave)), store, LIMIT)
-                    run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)
-            check()
-        except KeyboardInterrupt:
-            left = len(missing(pieces, store, LIMIT))
-            terminal.say(f"Stopped: {len(pieces) - left} of {len(pieces)} pieces are stored; the next search goes on.")
-            raise
+    with interruptible(terminal, store, pieces, LIMIT, "pieces") as (waiting, done, watch):
+        size = len(waiting) if seconds is None else WAVE * crew.threads
+        while waiting and (seconds is None or monotonic() - begin < seconds):
+            wave, waiting = waiting[:size], waiting[size:]
+            run_into(store, wave, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
+            singles = missing(lost(stored(store, wave)), store, LIMIT)
+            run_into(store, singles, False, LIMIT, crew.threads, watch=watch, supervised=crew.supervise)
 
 
 def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
@@ -157,19 +148,17 @@ def print_summary(terminal: Terminal, told: Sequence[Asked]) -> None:
 
 def shrink_and_write(terminal: Terminal, store: Store, told: Sequence[Asked], folder: Path, crew: Workforce) -> None:
     """Make some findings of each check smaller, and write them as recipes and scripts."""
-    from reports.cli.terminal import progress
+    from reports.cli.terminal import interruptible
     from reports.run.files import write_whole
-    from reports.run.running import missing, run_into
+    from reports.run.running import run_into
     from reports.search.shrinking import Shrink, files_of, line_of, worst_of
 
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
     if not tasks:
         terminal.say("Nothing was found.")
         return
-    with kept() as check:
-        with progress(terminal, len(missing(tasks, store, LIMIT)), check) as (done, watch):
-            run_into(store, tasks, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
-        check()
+    with interruptible(terminal, store, tasks, LIMIT, "findings") as (waiting, done, watch):
+        run_into(store, waiting, False, LIMIT, crew.threads, done, watch, supervised=crew.supervise)
     texts = {}
     answers = store.answers(tasks)
     for task in tasks:

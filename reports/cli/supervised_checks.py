@@ -20,9 +20,9 @@ from engines.registry import ENGINES, INSTALLED, load
 from reports.cli.selection import choose_engines
 from reports.model.ending import BadInput
 from reports.model.outcomes import Loss, Outcome
-from reports.run.pool import TIME_LIMIT
+from reports.run.files import temporary_folder
+from reports.run.running import TIME_LIMIT
 from reports.run.supervisor import supervise
-from reports.run.temporary import temporary_folder
 
 MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
 

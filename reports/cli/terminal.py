@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from reports.cli.interruption import kept
 from reports.model.ending import FileTrouble
 
 if TYPE_CHECKING:
@@ -103,6 +104,30 @@ def _plain_table(title: str, lines: Sequence[Sequence[str]], widths: Sequence[in
     return Text.assemble(
         (title, "table.title"), "\n", (told(head, " ┃ "), "bold"), "\n", rule, "\n" if rest else "", body
     )
+
+
+@contextmanager
+def interruptible(
+    console: Terminal, store: Store, items: Sequence[Any], limit: float, words: str, fresh: bool = False
+) -> Iterator[tuple[Sequence[Any], Callable[[object], None], Callable[[list[Any]], None]]]:
+    """(the items that are to be run, done, watch): a run into a store that Ctrl-C leaves where it can be left.
+
+    `words`: what the items are called; `fresh`: those that are stored too; done and watch: see `progress`. Raises
+    KeyboardInterrupt, having said what is stored.
+    """
+    from reports.run.running import missing
+
+    with kept() as check:
+        waiting = items if fresh else missing(items, store, limit)
+        try:
+            with progress(console, len(waiting), check) as (done, watch):
+                yield waiting, done, watch
+            check()
+        except KeyboardInterrupt:
+            stored = len(items) - len(missing(items, store, limit))
+            line = f"Stopped: {stored} of {len(items)} {words} are stored; the next run goes on from there."
+            console.say(line)
+            raise
 
 
 @contextmanager

@@ -22,7 +22,7 @@ from reference.trajectory import Trajectory
 from reports.gate.judge import QUANTITY_NAMES, errors
 from reports.model.cells import mechanism_of
 from reports.model.errors import constraint_errors, largest, motion_errors
-from reports.model.measure import SATURATED, TORN
+from reports.model.outcomes import SATURATED, TORN
 from reports.model.page import Page
 from reports.model.tasks import Answer, Task, Values
 

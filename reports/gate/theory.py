@@ -19,8 +19,8 @@ from reports.model.cells import FULL, QUICK, Cell, mechanism_of, sweep_cells
 from reports.model.checks import Check, Deviation
 from reports.model.convergence import ENOUGH as ENOUGH_POINTS
 from reports.model.convergence import ROOM_SOFT, Verdict, fit
-from reports.model.measure import SATURATED, Measurement
-from reports.model.outcomes import Outcome
+from reports.model.measure import Measurement
+from reports.model.outcomes import SATURATED, Outcome
 from reports.model.page import Page
 from reports.model.quantities import QUANTITIES
 

@@ -30,9 +30,9 @@ from reports.model.cells import Cell, mechanism_of
 from reports.model.checks import CHANGE, Check, complaints, nearest
 from reports.model.measure import Measurement
 from reports.model.outcomes import Loss
-from reports.run.pool import run_cells
+from reports.run.queue import kin_of
+from reports.run.running import run_cells
 from reports.run.supervisor import Answer, Supervise, supervise
-from reports.run.waiting import kin_of
 
 # The judge's largest scenes take this long [s] on a busy machine.
 JUDGE_LIMIT = 600.0

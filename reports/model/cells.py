@@ -54,7 +54,7 @@ class Cell(Valid):
 
     @property
     def kin(self) -> Scene:
-        """Cells of a scene share its exact motion (`reports.run.waiting`)."""
+        """Cells of a scene share its exact motion (`reports.run.queue`)."""
         return self.scene
 
     @property

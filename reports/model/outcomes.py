@@ -1,10 +1,27 @@
-"""How a cell can end: the closed list, and what each word means."""
+"""How a cell can end: the closed list, what each word means, and the one place where it is decided.
+
+`of_motion` decides of a cell that gave a motion; `refusal`, `failure`, `out_of_time` and `of_lost_process` of others.
+`converged` and `plateau` need a sweep (`reports.model.convergence`).
+"""
 
 from __future__ import annotations
 
+import math
 import signal
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from reports.model.ending import describe
+
+if TYPE_CHECKING:
+    from reference.mechanism import Mechanism
+    from reference.trajectory import Trajectory
+    from reports.model.measure import Measurement
+
+TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
+BLOWN = 1e3  # of the mechanism's length
+SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to what causes it
 
 
 class Outcome(StrEnum):
@@ -129,3 +146,55 @@ def describe_exit(code: int | None) -> str:
     if code >= 2**31:  # Windows ends a process that does what it may not with such a status
         return f"aborted with status 0x{code:08X}"
     return f"the process ended by itself with exit status {code}"
+
+
+def refusal(reason: Exception) -> Loss:
+    """Of a cell that an engine or the reference can't do, in its own words: ValueError, or `engines.Unsupported`."""
+    return Loss(Outcome.REFUSED if isinstance(reason, ValueError) else Outcome.UNSUPPORTED, str(reason))
+
+
+def failure(error: BaseException) -> Loss:
+    """Of a cell that raised anything else."""
+    return Loss(Outcome.FAILED, describe(error))
+
+
+def out_of_time(limit: float, wall: float | None = None) -> Loss:
+    """Of a cell that used up its CPU time [s]; or, with `wall`, that slept longer than this [s]."""
+    if wall is None:
+        return Loss(Outcome.TIMED_OUT, f"did not end within {limit:g} s of CPU time")
+    return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")
+
+
+def of_lost_process(code: int | None, words: str, earlier: str) -> Loss:
+    """Of a cell whose process ended, with this exit code and in these words, at its second try. earlier: the first."""
+    if from_outside(code):
+        return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
+    return Loss(Outcome.ABORTED, words)
+
+
+def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
+    """(one cell's outcome, the gravest first; the number that decided it): `count` samples of its motion are finite."""
+    length = mechanism.length_scale
+    if trajectory.reset_at is not None:
+        return Outcome.RESET, f"started anew by itself at {trajectory.reset_at:.4g} s"
+    if count < len(trajectory.t):
+        return Outcome.DIVERGED, f"not finite from {trajectory.t[count]:.4g} s"
+    if row.gap > BLOWN * length:
+        return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
+    if row.gap > TORN * length:
+        # Adapters begin their own findings with "ours:"; what counts here is whether the engine itself said anything.
+        quiet = "" if any(not w.startswith("ours:") for w in trajectory.warnings) else ", without a warning"
+        return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
+    if row.drive_gap > SATURATED:
+        return Outcome.TORN, f"the drive fell behind by {row.drive_gap:.2g} rad"
+    if row.flips:
+        return Outcome.BRANCH_FLIP, f"{row.flips} change{'s' if row.flips > 1 else ''} of assembly that the truth lacks"
+    if row.angle > SATURATED:
+        return Outcome.SATURATED, f"an angle is wrong by {row.angle:.2g} rad within the horizon"
+    if trajectory.unresolved_at is not None:
+        if math.isnan(row.estimate):
+            return Outcome.UNRESOLVED, "its coarser run was lost, so it has no estimate"
+        return Outcome.UNRESOLVED, f"its own estimate is {row.estimate:.2g} rad"
+    if row.angle_duration > SATURATED:
+        return Outcome.FINISHED, f"beyond the horizon an angle is wrong by {row.angle_duration:.2g} rad"
+    return Outcome.FINISHED, ""

@@ -19,7 +19,7 @@ from engines.contract import flaw
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, estimated_cost
 from reports.model.fingerprint import fingerprint
-from reports.model.outcomes import Outcome
+from reports.model.outcomes import Outcome, refusal
 from reports.model.spending import spending
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ class Task(ABC):
 
     @property
     def kin(self) -> Hashable:
-        """What is shared with cells and other tasks (`reports.run.waiting`); None: nothing."""
+        """What is shared with cells and other tasks (`reports.run.queue`); None: nothing."""
         return None
 
     @abstractmethod
@@ -132,7 +132,6 @@ def answered(task: Task) -> Answer:
         try:
             with spending("tasks"):
                 return Answer(Outcome.FINISHED, values=task.run())
-        except Unsupported as reason:
-            return Answer(Outcome.UNSUPPORTED, str(reason))
-        except ValueError as reason:
-            return Answer(Outcome.REFUSED, str(reason))
+        except (Unsupported, ValueError) as reason:
+            loss = refusal(reason)
+            return Answer(loss.outcome, loss.sentence)

@@ -22,8 +22,7 @@ from pathlib import Path
 
 from engines.user_cache import CACHE, cache_folder
 from reports.model.ending import BadInput
-from reports.run.files import folder_for
-from reports.run.temporary import temporary_folder
+from reports.run.files import folder_for, temporary_folder
 
 # The name of the folder itself: what lies in one of this name counts by its version (`reports.model.fingerprint`).
 PACKAGES = "site-packages"

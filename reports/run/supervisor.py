@@ -23,19 +23,20 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
 from reports.model.ending import Broken, describe
-from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
-from reports.run.processors import apart
-from reports.run.temporary import temporary_folder
-from reports.run.waiting import Waiting
-from reports.run.worker import READY, SPENT, cpu_time, timed_out
-from reports.run.worker_process import (
-    Job,
+from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside, of_lost_process, out_of_time
+from reports.run.files import temporary_folder
+from reports.run.queue import Waiting, apart
+from reports.run.worker import (
+    READY,
+    SPENT,
     Worker,
+    cpu_time,
     interrupts_held,
     last_words,
     one_thread_each,
@@ -59,6 +60,15 @@ class WorkersLost(Broken):
     """Something outside kills the workers: work is left that can be done at another time."""
 
 
+@dataclass
+class Job:
+    """An item to be worked on; `earlier`: how its first worker ended, empty if it was not tried before."""
+
+    item: Any
+    earlier: str = ""
+    earlier_outside: bool = False
+
+
 def wall_limit(limit: float) -> float:
     """Seconds of wall time for `limit` seconds of CPU time: a machine ten times overloaded is still waited for."""
     return 10 * limit + 60
@@ -77,8 +87,8 @@ def supervise(
 
     `function` must be importable by its name. `limit`: CPU seconds for one item, all threads together; `wall`: seconds
     for one that does not use its CPU time, `wall_limit` if None. `watch` is told a few times a second which items are
-    running. `alone`: each worker stays on a processor of its own (`reports.run.processors.apart`), as far as there are
-    so many. Items that are akin go to one worker (`reports.run.waiting`). Raises WorkersLost when no worker can be
+    running. `alone`: each worker stays on a processor of its own (`reports.run.queue.apart`), as far as there are
+    so many. Items that are akin go to one worker (`reports.run.queue`). Raises WorkersLost when no worker can be
     started. Leaving the iterator ends the workers.
     """
     with crew(limit, workers, wall, alone) as own:
@@ -214,27 +224,22 @@ class Crew:
         if job is None:
             return
         if code == SPENT:
-            yield job.item, Loss(Outcome.TIMED_OUT, timed_out(self._limit)), ""
+            yield job.item, out_of_time(self._limit), ""
         elif not job.earlier:
             self._again.append(Job(job.item, words, from_outside(code)))
-        elif from_outside(code):
-            yield job.item, Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {job.earlier}"), ""
         else:
-            yield job.item, Loss(Outcome.ABORTED, words), ""
+            yield job.item, of_lost_process(code, words, job.earlier), ""
 
     def _end_overdue(self, worker: Worker) -> Iterator[Answer]:
         if not worker.ready and worker.awake > START_LIMIT:
             self._dismiss(worker)
             self._start_failed(f"not ready after {START_LIMIT:g} s")
-        elif worker.job is not None and worker.used_cpu() > self._limit + IMPORTS:
-            job = worker.job
+        elif (job := worker.job) is not None and worker.used_cpu() > self._limit + IMPORTS:
             self._dismiss(worker)
-            yield job.item, Loss(Outcome.TIMED_OUT, timed_out(self._limit)), ""
-        elif worker.job is not None and worker.awake > self._wall:
-            job = worker.job
+            yield job.item, out_of_time(self._limit), ""
+        elif job is not None and worker.awake > self._wall:
             self._dismiss(worker)
-            sentence = f"did not end within {self._wall:g} s, and used less than {self._limit:g} s of CPU time"
-            yield job.item, Loss(Outcome.TIMED_OUT, sentence), ""
+            yield job.item, out_of_time(self._limit, self._wall), ""
 
     def _dismiss(self, worker: Worker) -> None:
         self._workers.remove(worker)

@@ -1,6 +1,7 @@
-"""What runs in a worker process: one job after another, each within its CPU time, until a job leaves something behind.
+"""A worker: a process that answers one job after another, each within its CPU time, until one leaves something behind.
 
-Only the standard library is imported here, so that a worker that has to start from nothing is there at once.
+The first part is its parent's: how it is started and ended. The second, from `work` on, is what runs in it. Nothing of
+an engine is imported here, so that a worker that has to start from nothing is there at once.
 """
 
 from __future__ import annotations
@@ -14,21 +15,29 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+import warnings
+from collections.abc import Hashable, Iterator
 from contextlib import contextmanager, suppress
-from multiprocessing.connection import Connection
+from dataclasses import dataclass
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from reports.model.ending import describe
-from reports.model.outcomes import Loss, Outcome
-from reports.run.processors import stay_on
+from reports.model.outcomes import failure, out_of_time
+from reports.run.files import lasting_folder
 
+IMPORTED_ONCE = ("reports.model.measure", "engines.registry")  # by the fork server, for all workers
+PATIENCE = 30.0  # s for a process that has ended to be gone: its memory may have to be written first
 READY = b"ready"
 LARGEST = 2**28  # bytes of one result: far above any motion, far below what would fill the memory of the parent
 SPENT = 152  # how a worker ends whose job has used up its CPU time, where nobody else sees that: 128 + SIGXCPU
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 LOOK = 0.2  # s between two looks at its own CPU time
+# Starting a process looks at all others, and takes away the exit code of one that has ended: with several threads, each
+# of which supervises workers of its own, that may be another's.
+_reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
@@ -42,6 +51,132 @@ def cpu_time(process: int) -> float | None:
         return time.clock_gettime((~process << 3) | 2)
     except (AttributeError, OSError, OverflowError):
         return None
+
+
+def stop_all() -> None:
+    """End every worker of this process; for a process that ends where it stands."""
+    for child in multiprocessing.active_children():
+        _kill(child)
+
+
+def _kill(process: BaseProcess) -> None:
+    """With what its jobs have forked."""
+    with suppress(OSError):
+        if hasattr(os, "killpg") and process.pid is not None:
+            os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
+
+
+@dataclass
+class Worker:
+    process: BaseProcess
+    connection: Connection
+    ready: bool = False
+    used: bool = False
+    job: Any = None  # of `supervisor.Job`; None: it waits for one
+    awake: float = 0.0  # s since it was started or given its job, as far as the parent was awake
+    cpu: float | None = None  # s of CPU time when it was given its job; None where the system does not tell
+    kin: Hashable = None  # of its last job, see `reports.run.queue`
+    processor: int | None = None  # where it stays
+
+    def used_cpu(self) -> float:
+        """CPU seconds that its job has used so far; zero where the system does not tell."""
+        now = cpu_time(self.process.pid or 0)
+        return 0.0 if now is None or self.cpu is None else now - self.cpu
+
+    def exit_code(self) -> int | None:
+        """Of a worker whose connection has ended; None if nobody knows how the process ended."""
+        wait([self.process.sentinel], PATIENCE)
+        with _reading:
+            return self.process.exitcode
+
+    def stop(self) -> None:
+        """End the process, whatever it does, and what it has started."""
+        _kill(self.process)
+        self.connection.close()
+        wait([self.process.sentinel], PATIENCE)
+        with _reading:
+            if self.process.exitcode is not None:
+                self.process.close()
+
+
+def start_method(*modules: str) -> Any:
+    """How worker processes start: by a fork server, which imports these modules once for all, where there is one."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    # Where the fork server's socket lies: it would be left behind by an interruption.
+    vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(lasting_folder()))
+    context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
+    return context
+
+
+def start_early(*modules: str) -> None:
+    """Have the fork server import these modules too, while the caller does something else.
+
+    Where there is none, or it can't be started now, workers import for themselves: only time is lost.
+    """
+    if start_method(*modules).get_start_method() == "forkserver":
+        from multiprocessing import forkserver
+
+        one_thread_each()
+        with interrupts_held(), suppress(OSError):
+            forkserver.ensure_running()
+
+
+def one_thread_each() -> None:
+    """CPU time is counted over all threads of a process: a threaded BLAS would be charged for waiting."""
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+
+
+def start_worker(context: Any, folder: str, limit: float, wall: float, processor: int | None) -> Worker:
+    """Start a process that runs `work` on these terms. Raises OSError or EOFError if none can be started."""
+    ours, theirs = context.Pipe()
+    process = context.Process(target=work, args=(theirs, folder, limit, wall, processor), daemon=True)
+    # About a resource tracker killed in this moment.
+    with theirs, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            with _reading:
+                process.start()
+        except BaseException:
+            ours.close()
+            raise
+    return Worker(process, ours, processor=processor)
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Ctrl-C waits until a process has started: it would print a traceback there, and leave it without a parent here.
+
+    Processes started meanwhile inherit this: a worker ignores Ctrl-C from then on, the fork server as long as it lives.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # The standard library warns when its resource tracker was killed, and starts another; nothing here needs it.
+    # Starting one ends the holding of Ctrl-C, so it comes first.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def last_words(folder: Path, pid: int | None) -> str:
+    """In what words native code said why it aborts, if it did."""
+    with suppress(OSError):
+        text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        first = next((at for at, line in enumerate(lines) if "abort" in line.lower() or "error" in line.lower()), 0)
+        # Chipmunk's reason and the condition that failed stand below a line that ends with a colon.
+        count = 3 if lines and lines[first].endswith(":") else 1
+        return " ".join(lines[first : first + count])[:300]
+    return ""
 
 
 WATCHED = cpu_time(os.getpid()) is not None  # whether the parent sees when a job has used up its CPU time
@@ -142,13 +277,13 @@ def _answer(job: bytes, clock: Clock, limit: float, wall: float) -> tuple[bool, 
         with _timers(clock, limit, wall):
             result = function(item)
         if time.process_time() - start > limit:
-            result = Loss(Outcome.TIMED_OUT, timed_out(limit))
+            result = out_of_time(limit)
         answer = pickle.dumps(result)
         if len(answer) > LARGEST:
             raise OverflowError(f"a result of {len(answer)} bytes; {LARGEST} can be handed over")
     except BaseException as error:  # what an engine raises is a result, SystemExit and KeyboardInterrupt too
         # It may have stopped half-way through a change of its own library, so nobody else gets this process.
-        return False, pickle.dumps(Loss(Outcome.FAILED, describe(error)))
+        return False, pickle.dumps(failure(error))
     return _traces() == before, answer
 
 
@@ -181,5 +316,8 @@ def _traces() -> tuple[Any, ...]:
     return folder, streams, handlers, blocked, python_streams, threading.active_count(), dict(os.environ)
 
 
-def timed_out(limit: float) -> str:
-    return f"did not end within {limit:g} s of CPU time"
+def stay_on(processor: int | None) -> None:
+    """Keep this process, and what it starts, on one processor; None, or a system that can't: where it was."""
+    if processor is not None and hasattr(os, "sched_setaffinity"):
+        with suppress(OSError):  # taken away meanwhile
+            os.sched_setaffinity(0, {processor})

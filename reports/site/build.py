@@ -16,7 +16,7 @@ from markupsafe import Markup
 
 from reports.model.tasks import Motion
 from reports.plots.theme import DARK, LIGHT, Theme
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site import markdown
 from reports.site.embed import data, picture, shown
 from reports.site.lesson import Lesson, Source

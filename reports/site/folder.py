@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.model.ending import BadInput, FileTrouble
-from reports.run.files import folder_for
-from reports.run.temporary import temporary_folder
+from reports.run.files import folder_for, temporary_folder
 from reports.site.build import MARKER
 
 REMEDY = "give another --output"

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site.packages import KATEX, NotFetched, fetched
 from reports.write.templates import CODE, inert
 

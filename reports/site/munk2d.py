@@ -15,7 +15,7 @@ import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 from reports.site.packages import NotFetched
 
 SHIM = Path(__file__).with_suffix(".c")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.run.temporary import temporary_folder
+from reports.run.files import temporary_folder
 
 PATIENCE = 180  # s for one package
 

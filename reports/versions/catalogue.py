@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from engines import Engine
 from reports.model.ending import nearest
-from reports.model.requirements import normalised
+from reports.model.fingerprint import normalised
 from reports.run.installed import numbers
 
 CHANGELOG = "https://mujoco.readthedocs.io/en/stable/changelog.html"

@@ -16,9 +16,9 @@ from reports.model.cells import Cell, estimated_cost
 from reports.model.fingerprint import ROOT
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome, describe_exit
+from reports.run.files import temporary_folder
 from reports.run.installed import environment
-from reports.run.pool import TIME_LIMIT
-from reports.run.temporary import temporary_folder
+from reports.run.running import TIME_LIMIT
 
 
 @dataclass(frozen=True)

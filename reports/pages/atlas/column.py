@@ -16,8 +16,8 @@ from engines.pymunk.contraction import contraction
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell, estimated_cost
-from reports.model.measure import TORN, Measurement, measure
-from reports.model.outcomes import Outcome
+from reports.model.measure import Measurement, measure
+from reports.model.outcomes import TORN, Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.pages.atlas.subjects import Subject
 from reports.pages.atlas.table import LIKE_THE_LAST, Line, power
