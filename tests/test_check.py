@@ -22,7 +22,8 @@ from reports.check import rendering
 from reports.check.checked import best, cheapest, check
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
-from reports.check.pictures import from_text, pictures, shown_of
+from reports.check.picture_data import from_text, shown_of
+from reports.check.pictures import pictures
 from reports.check.request import CheckReport, CheckRequest, answered, read
 from reports.check.telling import data, sections, verdict
 

@@ -90,7 +90,8 @@ def answered(request: CheckRequest) -> CheckReport | Refused:
         drawn = {}
         if request.pictures:
             told("drawing")
-            from reports.check.pictures import pictures, shown_of  # a second of imports
+            from reports.check.picture_data import shown_of
+            from reports.check.pictures import pictures  # a second of imports
 
             drawn = pictures(shown_of(found))
     except (Unsupported, InvalidMechanism, ValueError) as reason:

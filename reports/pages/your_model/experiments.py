@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.check.checked import Checked, Tried, check
-from reports.check.pictures import shown_of
+from reports.check.picture_data import shown_of
 from reports.check.request import read
 from reports.check.telling import data
 from reports.model.tasks import Task, Values
