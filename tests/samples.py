@@ -8,7 +8,7 @@ import numpy as np
 
 from engines import Size, registry
 from engines.extrapolated import Extrapolated
-from engines.lagrange import Lagrange, stacked
+from engines.lagrange import Lagrange
 from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
 from engines.mujoco.joints.roll.rows import RollEquality, RollRows
 from engines.mujoco.limited import limited_tendon
@@ -95,6 +95,5 @@ INSTANCES: tuple[Any, ...] = (
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
     *(limited_groove(5.0), limited_tendon(5.0)),
     *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
-    stacked((four_bar(),)),
     Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),
 )

@@ -1,4 +1,4 @@
-"""The compiled judge against its numpy twin and against sixty digits: random mechanisms, steps, softness, batches."""
+"""The compiled judge against its numpy twin and against sixty digits: random mechanisms, steps, softness."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from engines import Softness, Unsupported
-from engines.lagrange import METHODS, VARIANTS, Lagrange, batch, loading, stacked
-from engines.lagrange.compiled_run import Machine
-from engines.lagrange.dynamics import Dynamics
-from engines.lagrange.flat import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, flat
-from engines.lagrange.tableaus import RK4
+from engines import Softness
+from engines.lagrange import METHODS, VARIANTS, Lagrange, loading
+from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, arrays_of
+from engines.lagrange.dynamics import RK4, Dynamics
+from engines.lagrange.machine import Machine
 from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Roll, Skate, Slot
 from reference.mechanism import Mechanism
@@ -25,7 +24,6 @@ from reference.pendulum.many_links import LongPendulum
 from reference.pendulum.scenes import HundredLinks
 from reference.rolling.scenes import RollingEllipse
 from reference.trajectory import joint_gap, slip
-from reference.validation import InvalidMechanism
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY
@@ -130,7 +128,7 @@ def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
 @pytest.mark.parametrize("links", [100, 1000])
 def test_a_long_chain_is_factorised_in_a_narrow_band(links):
     scene = LongPendulum(links=links)
-    whole = flat(scene.mechanism()).whole
+    whole = arrays_of(scene.mechanism()).whole
     assert whole[CHANGE] - whole[MATRIX] < 4 * whole[ROWS]  # a pin's two rows meet those of its two neighbours
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
@@ -160,7 +158,7 @@ def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_bef
 def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
     mechanism = RollingEllipse().mechanism()
     expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
-    monkeypatch.setattr("engines.lagrange.rolls.Windows.move", lambda self, which, theta: False)
+    monkeypatch.setattr("engines.lagrange.machine.Windows.move", lambda self, which, theta: False)
     found = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
     np.testing.assert_array_equal(found.pose, expected.pose)
     np.testing.assert_array_equal(found.reaction, expected.reaction)
@@ -218,26 +216,6 @@ def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
     expected = in_numpy(scene.mechanism(), len(found.t) - 1, scene.spacing, 4, 4, soft, project)
     np.testing.assert_allclose(found.pose, expected.pose, rtol=0, atol=1e-13)
     np.testing.assert_allclose(found.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
-
-
-def test_a_batch_moves_each_mechanism_as_if_it_were_alone():
-    mechanisms = [four_bar(crank_rate=rate) for rate in np.linspace(1.0, 3.0, 7)]
-    stack = stacked(tuple(mechanisms))
-    found = batch(stack, 0.05, 4, 1e-10)
-    for mechanism, pose in zip(mechanisms, found.pose, strict=True):
-        alone = Lagrange(tolerance=1e-10).build(mechanism, 0.05)(4, 1)
-        np.testing.assert_array_equal(pose, alone.pose)
-    fixed = batch(stack, 0.05, 4, None, every=10)
-    np.testing.assert_array_equal(fixed.pose[3], Lagrange("rk4").build(mechanisms[3], 5e-3)(4, 10).pose)
-
-
-def test_a_batch_is_of_one_shape():
-    with pytest.raises(InvalidMechanism, match="mechanism 1 has other bodies or joints"):
-        stacked((four_bar(), pendulum()))
-    with pytest.raises(InvalidMechanism, match="give at least one"):
-        stacked(())
-    with pytest.raises(Unsupported, match="only discs and rings"):
-        stacked((RollingEllipse().mechanism(),))
 
 
 def test_without_numba_the_same_runs_in_numpy(monkeypatch):

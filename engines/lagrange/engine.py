@@ -10,10 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
-from engines.lagrange.compiled_run import Machine, not_held
-from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, adaptive, runge_kutta, semi_implicit_euler
+from engines.lagrange.dynamics import (
+    FIXED_DOP853,
+    NONE,
+    PROJECTION_ITERATIONS,
+    RK4,
+    Dynamics,
+    Step,
+    adaptive,
+    runge_kutta,
+    semi_implicit_euler,
+)
 from engines.lagrange.loading import compiled, installed
-from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
+from engines.lagrange.machine import Machine, not_held
 from engines.motions import is_prescribed, over_three
 from reference.joints import Joint
 from reference.kinds import Rule

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from engines import Softness
-from engines.lagrange.compiled_run import Machine
-from engines.lagrange.flat import SMALLEST
+from engines.lagrange.arrays import SMALLEST
+from engines.lagrange.dynamics import Tableau
 from engines.lagrange.loading import installed
-from engines.lagrange.tableaus import Tableau
+from engines.lagrange.machine import Machine
 from reference.kept import fixed
 from reference.mechanism import Mechanism
 from reference.row_system import RANK_TOLERANCE

@@ -1,6 +1,6 @@
 """A short motion and its reactions against the judge, at two steps, with the order that the engine promises.
 
-The judge moves one mechanism at a time: no two cases are of one shape, as `engines.lagrange.batch` asks.
+The judge moves one mechanism at a time: no two cases are of one shape.
 """
 
 from __future__ import annotations

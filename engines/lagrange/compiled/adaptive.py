@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.compiled.steps import accelerated, combined, projected, staged
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     ACCELERATION,
     COLUMNS,
     NEW_POSE,
@@ -30,6 +28,8 @@ from engines.lagrange.flat import (
     VELOCITY,
     WANTED_ROLL,
 )
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.steps import accelerated, combined, projected, staged
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies

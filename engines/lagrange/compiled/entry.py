@@ -7,10 +7,21 @@ from __future__ import annotations
 
 from numba import njit, types
 
+from engines.lagrange.arrays import (
+    ACCELERATION,
+    COLUMNS,
+    CONTROL,
+    MARCH,
+    POSE,
+    REACTION,
+    ROWS,
+    TOLD,
+    TWIST,
+    WANTED_ROLL,
+)
 from engines.lagrange.compiled.adaptive import controlled
 from engines.lagrange.compiled.inner import straight
 from engines.lagrange.compiled.steps import accelerated, marched
-from engines.lagrange.flat import ACCELERATION, COLUMNS, CONTROL, MARCH, POSE, REACTION, ROWS, TOLD, TWIST, WANTED_ROLL
 
 WHOLE, CELLS = types.int64[::1], types.complex128[:, ::1]
 LIST, TABLE = types.float64[::1], types.float64[:, ::1]

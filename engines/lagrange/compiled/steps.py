@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.forces import free
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.compiled.rows import rows
-from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, missed, solved
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     ACCELERATION,
     BIAS,
     CHANGE,
@@ -31,6 +27,9 @@ from engines.lagrange.flat import (
     WANTED_ROLL,
     WHICH,
 )
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.rows import free, rows
+from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, missed, solved
 
 # Newton's correction is squared by the next one: after one this small, in parts of the mechanism, the next is lost in
 # rounding. So is what a factor of the rows before it leaves of the slip, which is itself a small part of the speeds.

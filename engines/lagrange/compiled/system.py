@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     CHANGE,
     COLUMNS,
     COMPLIANCE,
@@ -31,12 +30,13 @@ from engines.lagrange.flat import (
     ROWS,
     SMALLEST,
     SOFT,
+    TERM,
     TERM_AT,
     TERMS,
     TOLD,
     WHICH,
 )
-from engines.lagrange.ordering import TERM
+from engines.lagrange.compiled.inner import inner
 
 # Pivots below which a row follows from others. Where rows are independent at the start: the rounding of the product,
 # times a thousand. Where some are not: their dependence is blurred by as much, squared, as joints are open in a step,

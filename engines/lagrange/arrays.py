@@ -1,27 +1,29 @@
 """A mechanism as two flat arrays, which compiled code reads: the same types for each, so nothing is compiled twice.
 
-Whole numbers say who is joined with whom, and are shared by all mechanisms of one shape. Real numbers say how long and
-heavy everything is, and after them there is room to work in. A header of the whole numbers says where each of them
-begins: the constants below are its places. Arrays of arrays were tried: compiling took ten times as long.
+Whole numbers say who is joined with whom. Real numbers say how long and heavy everything is, and after them there is
+room to work in. A header of the whole numbers says where each of them begins: the constants below are its places.
+Arrays of arrays were tried: compiling took ten times as long.
 
-Bodies are counted as in `Mechanism.bodies`, and the ground is the body after the last. Rows stand in an order in which
-the row system J M^-1 J^T has a narrow envelope: O(bodies) numbers for a chain. Only rows on one body meet there, so its
-entries are a list of products, made here once.
+Bodies are counted as in `Mechanism.bodies`, and the ground is the body after the last. Rows stand in the order of
+Cuthill and McKee, reversed, in which the row system J M^-1 J^T has a narrow envelope: O(bodies) numbers for a chain.
+Only rows on one body meet there, so its entries are a list of products, made here once.
 """
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from engines.lagrange.ordering import ordered
-from engines.lagrange.rolls import CONSTANTS, form_of
+from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
+from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.row_system import rank
 
@@ -38,6 +40,7 @@ FORCE_KINDS: dict[type, int] = {
     **{Spring: SPRING, Damper: DAMPER, TorsionSpring: TORSION_SPRING, TorsionDamper: TORSION_DAMPER},
     **{Torque: TORQUE, Force: FORCE},
 }
+ON_LINE, ON_ROUND, TABLE, NOT_TABULATED = range(4)  # forms of rolling pairs
 MOST_ROWS = 400  # beyond, their rank takes longer than the run
 
 MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
@@ -50,6 +53,9 @@ ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells
 # Records, in real numbers.
 PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], its angle or length, rate or ratio, offset
 FORCE_PARAMETERS = 6  # of a force: its point on the first body, on the second [m], and two that its kind makes sense of
+CONSTANTS = 7  # complex ones, of a rolling pair
+CELL = 20  # complex numbers, of a table
+TERM = 4  # entry of the envelope; two ends of rows, and the body on which they meet: the entry gets their product
 STAGES = 16  # of the largest tableau, with those for dense output
 
 # How many; whether rows are dependent; whether some are soft, 1 by springs and dampers, 2 by a compliance too; which
@@ -78,7 +84,7 @@ TOLDS = 8
 
 
 @dataclass(frozen=True)
-class Flat:
+class Arrays:
     """One mechanism for compiled code; see the module."""
 
     whole: Integers
@@ -86,21 +92,12 @@ class Flat:
     rows: Integers  # (rows,) where each row of the mechanism stands among those of the row system
 
     @property
-    def numbers(self) -> slice:
-        """What of `real` belongs to the mechanism and is no room to work in."""
-        return slice(0, int(self.whole[TURNED]))
-
-    @property
     def rolls(self) -> Integers:
         """(rolls, ROLL_RECORD) a view of their records."""
         return self.whole[self.whole[ROLL_AT] :].reshape(-1, ROLL_RECORD)
 
-    def copy(self) -> Flat:
-        """The same mechanism with its own room to work in."""
-        return replace(self, whole=self.whole.copy(), real=self.real.copy())
 
-
-def flat(mechanism: Mechanism) -> Flat:
+def arrays_of(mechanism: Mechanism) -> Arrays:
     """The arrays of a mechanism."""
     joints, bodies = mechanism.joints, len(mechanism.bodies)
     index: dict[str | None, int] = {body.name: i for i, body in enumerate(mechanism.bodies)} | {None: bodies}
@@ -108,7 +105,11 @@ def flat(mechanism: Mechanism) -> Flat:
     ends = ends.reshape(-1, 2)
     forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
     size = np.array([joint.size for joint in joints], dtype=np.int64)
-    begin, place, owner, start, offset, terms = ordered(ends.tobytes(), size.tobytes(), bodies)
+    begin = _places(ends, size, bodies)
+    place = np.array([row for at, count in zip(begin, size, strict=True) for row in range(at, at + count)], dtype=int)
+    owner = np.empty(len(place), dtype=np.int64)
+    owner[place] = np.repeat(np.arange(len(joints)), size)
+    start, offset, terms = _products(ends[owner], bodies)
     holonomic = np.array([joint.holonomic for joint in joints], dtype=np.int64)[owner]
     rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
     which = np.cumsum([isinstance(joint, Roll) for joint in joints]) - 1
@@ -136,7 +137,7 @@ def flat(mechanism: Mechanism) -> Flat:
     whole = np.concatenate(
         [np.array(header, dtype=np.int64), *(record.reshape(-1).astype(np.int64) for record in records)]
     )
-    return Flat(whole, real, place)
+    return Arrays(whole, real, place)
 
 
 def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
@@ -208,3 +209,60 @@ def force_parameters(force: ForceElement) -> tuple[float, ...]:
             return (0.0, 0.0, 0.0, 0.0, force.torque, 0.0)
         case Force():
             return (0.0, 0.0, *force.second_point, *force.force)
+
+
+def _places(ends: Integers, size: Integers, bodies: int) -> Integers:
+    """(joints,) where the first row of every joint stands, such that joints on one body are near each other."""
+    count = len(ends)
+    if not count:
+        return np.zeros(0, dtype=np.int64)
+    member, joint = ends.reshape(-1), np.repeat(np.arange(count), 2)
+    moving = member < bodies
+    on = coo_array((np.ones(moving.sum()), (joint[moving], member[moving])), shape=(count, bodies)).tocsr()
+    order = reverse_cuthill_mckee((on @ on.T).tocsr(), symmetric_mode=True)
+    begin = np.empty(count, dtype=np.int64)
+    begin[order] = np.cumsum(size[order]) - size[order]
+    return begin
+
+
+def _products(bodies: Integers, count: int) -> tuple[Integers, Integers, Integers]:
+    """Of rows between these bodies (rows, 2), `count` of which move: first columns, where rows begin, and TERMs."""
+    ends: list[list[tuple[int, int]]] = [[] for _ in range(count)]
+    for row, pair in enumerate(bodies.tolist()):
+        for side, body in enumerate(pair):
+            if body < count:
+                ends[body].append((row, side))
+    start = np.arange(len(bodies))
+    for own in ends:
+        for row, _ in own:
+            start[row] = min(start[row], own[0][0])
+    offset = np.append(0, np.cumsum(np.arange(len(bodies)) - start + 1))
+    terms = [
+        (offset[row] + column - start[row], 6 * row + 3 * side, 6 * column + 3 * other, 3 * body)
+        for body, own in enumerate(ends)
+        for i, (row, side) in enumerate(own)
+        for column, other in own[: i + 1]
+    ]
+    return start, offset, np.array(terms, dtype=np.int64).reshape(-1, TERM)
+
+
+def form_of(rolling: Rolling) -> tuple[int, tuple[float, ...]]:
+    """(the form, its constants) of a pair: see `rows.py` in the folder `compiled` for what each stands for."""
+    try:
+        fast = rolled(rolling)
+    except (ValueError, ArithmeticError):  # curves that can't touch everywhere around the start
+        return NOT_TABULATED, _constants(())
+    match fast:
+        case RoundOnLine():
+            return ON_LINE, _constants(fast.constants)
+        case RoundOnRound():
+            return ON_ROUND, _constants(fast.constants)
+        case Table() if not fast.exact_only:
+            return TABLE, _constants((fast.width,))
+    return NOT_TABULATED, _constants(())
+
+
+def _constants(values: tuple[complex, ...]) -> tuple[float, ...]:
+    """Complex numbers as two each, real ones too, filled up with zeros."""
+    parts = [part for value in values for part in (complex(value).real, complex(value).imag)]
+    return tuple(parts + [0.0] * (2 * CONSTANTS - len(parts)))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Softness
-from engines.lagrange.dynamics import PROJECTION_ITERATIONS
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     ACCELERATION,
+    CELL,
     COLUMNS,
     COMPLIANCE,
     CONTROL,
@@ -20,6 +21,7 @@ from engines.lagrange.flat import (
     DEPENDENT,
     LACKING,
     MARCH,
+    NOT_TABULATED,
     REACT,
     ROUNDED,
     ROWS,
@@ -30,21 +32,70 @@ from engines.lagrange.flat import (
     STIFF,
     STIFFNESS,
     STOPPED,
+    TABLE,
     TOLD,
     WANTED_ANGLE,
     WANTED_ROLL,
-    Flat,
-    flat,
+    Arrays,
+    arrays_of,
 )
+from engines.lagrange.dynamics import ADAPTIVE_DOP853, NONE, PROJECTION_ITERATIONS, Tableau
 from engines.lagrange.loading import compiled
-from engines.lagrange.rolls import NOT_TABULATED, Windows
-from engines.lagrange.tableaus import ADAPTIVE_DOP853, NONE, Tableau
+from engines.rolling_table import BLOCK, FARTHEST, Table, rolled
 from reference.joints import Roll
 from reference.mechanism import Mechanism
+from reference.rolling.kinematics import Rolling
 
 Array = NDArray[np.float64]
 STEP_SHARE, LEAST_TOLERANCE = 0.1, 2e-15
 MOST_MOVES = 8  # of windows, for one sample
+
+
+# Of a window: 16 MB of cells. A motion beyond asks for another window, a table has as many cells as there are turns.
+MOST_CELLS = 2**15
+
+
+class Windows:
+    """The cells of all tables of a mechanism that compiled code may use, around the rotations that it has met.
+
+    Compiled code can't ask for cells that are not there: it stops and says so, and the window is moved. Where a table
+    has no cell at all, near an end of a curve or where the curves nearly fit, only the reference's own contact will do.
+    """
+
+    def __init__(self, rolls: Sequence[Rolling], records: NDArray[np.int64]) -> None:
+        self._tables = [rolled(rolling) for rolling in rolls]
+        self._records = records  # (rolls, ROLL_RECORD); written to
+        self._parts = [np.zeros((0, CELL), dtype=complex) for _ in rolls]
+        self.cells = np.zeros((0, CELL), dtype=complex)
+        for which, rolling in enumerate(rolls):
+            if records[which, 0] == TABLE:
+                self.move(which, rolling.theta)
+
+    def move(self, which: int, theta: float) -> bool:
+        """Have a roll's cells around a rotation [rad]; False where there is none: only exact contacts will do there."""
+        table = self._tables[which]
+        if not isinstance(table, Table) or not abs(theta) < FARTHEST:
+            return False
+        wanted = math.floor(theta / table.width)
+        first, count = int(self._records[which, 1]), int(self._records[which, 2])
+        if first <= wanted < first + count:  # it was there, so it is a cell without numbers
+            return False
+        # A block on either side at first, then twice as far each time: cells take longer to make than short motions do.
+        about = min(max(BLOCK, count), MOST_CELLS // 2)
+        low, high = wanted - about, wanted + about
+        if count and high - low + count <= MOST_CELLS:
+            low, high = min(low, first), max(high, first + count)
+        try:
+            self._parts[which] = table.cells(low, high - low)
+        except (ValueError, ArithmeticError):  # somewhere in it the curves can't touch
+            return False
+        if np.isnan(self._parts[which][wanted - low, 0].real):
+            return False
+        self._records[which, 1], self._records[which, 2] = low, high - low
+        begin = np.cumsum([0, *map(len, self._parts)])
+        self._records[:, 3] = begin[:-1]
+        self.cells = np.concatenate(self._parts)
+        return True
 
 
 def not_held(tolerance: float, t: float) -> str:
@@ -60,14 +111,14 @@ class Machine:
     """A mechanism's arrays and the compiled function that steps them."""
 
     mechanism: Mechanism
-    arrays: Flat
+    arrays: Arrays
     windows: Windows
     run: Callable[..., int] = field(default_factory=compiled)
 
     @classmethod
     def of(cls, mechanism: Mechanism) -> Machine | None:
         """None for a pair of curves that no table holds: only the reference's own contacts will do there."""
-        arrays = flat(mechanism)
+        arrays = arrays_of(mechanism)
         rolls = [joint.rolling for joint in mechanism.joints if isinstance(joint, Roll)]
         records = arrays.rolls
         if np.any(records[:, 0] == NOT_TABULATED):
@@ -129,7 +180,7 @@ class Machine:
         A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
         """
         tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
-        self.arrays.real[self.arrays.whole[TOLD] + STEPS] = 0.0  # a batch has one machine for many mechanisms
+        self.arrays.real[self.arrays.whole[TOLD] + STEPS] = 0.0
         return self._repeated(
             lambda at: self._call(
                 CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists
