@@ -72,9 +72,9 @@ class Box2D(Optional):
     of a sub-step, 0 for joints as shipped.
     """
 
-    extra: ClassVar[str] = "box2d"
+    name = "box2d"
+    packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
-    distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Holder] = "ours"
     precision: ClassVar[float] = 2.0**-23  # of its numbers
 

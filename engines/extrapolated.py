@@ -11,9 +11,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
-from engines.finer import Division, Lasting, division, tells_itself
-from reference.joints import Joint
+from engines import CLAIM, Around, Engine, Promise, Run, Size, Unpromised
+from engines.finer import Division, division, tells_itself
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
@@ -50,7 +49,7 @@ class Watched(Protocol):
 
 
 @dataclass(frozen=True)
-class Extrapolated(Valid):
+class Extrapolated(Around, Valid):
     """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
@@ -94,21 +93,6 @@ class Extrapolated(Valid):
                 f"but powers are {self.powers!r}; give one power fewer than levels"
             )
 
-    @property
-    def name(self) -> str:
-        """The name of the engine inside."""
-        return self.engine.name
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        """Those of the engine inside."""
-        return self.engine.packages
-
-    @property
-    def family(self) -> str:
-        """That of the engine inside."""
-        return self.engine.family
-
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         """The power after those removed; rounding grows by the sum of the weights' sizes.
@@ -140,16 +124,8 @@ class Extrapolated(Valid):
 
     @validated
     def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
-        """The same in a motion of `duration` [s]: see `engines.finer.Lasting`."""
-        inner = self.engine
-        lasting = isinstance(inner, Lasting)
-        each = inner.step_cost_within(mechanism, duration) if lasting else inner.step_cost(mechanism)
-        return sum(self.levels) * each
-
-    @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Whoever holds it in the runs that are combined."""
-        return self.engine.holder(joint, mechanism)
+        """The same in a motion of `duration` [s]."""
+        return sum(self.levels) * self.engine.step_cost_within(mechanism, duration)
 
     def softness(self, mechanism: Mechanism, dt: float) -> None:
         """Nothing is declared: a softness that is tied to the step is extrapolated too."""

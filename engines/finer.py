@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, isfinite
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -47,13 +46,6 @@ class Division:
     seconds: float
 
 
-@runtime_checkable
-class Lasting(Protocol):
-    """An engine whose step costs more than at the start [s] in a motion that is so long that it meets worse poses."""
-
-    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float: ...
-
-
 @validated
 def tells_itself(run: Trajectory, mechanism: Mechanism, dt: Positive, order: Positive) -> bool:
     """Whether a run with steps of dt [s] shows that its steps need no division, so that no rough run has to.
@@ -85,7 +77,7 @@ def division(
     """
     duration = float(f"{duration:.12g}")  # which runs at different steps round differently
     begin = time.process_time()
-    cost = method.step_cost_within(mechanism, duration) if isinstance(method, Lasting) else method.step_cost(mechanism)
+    cost = method.step_cost_within(mechanism, duration)
     steps = _found(build, mechanism, duration, order, finest, cost)
     return Division(steps, time.process_time() - begin)
 

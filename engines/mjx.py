@@ -56,18 +56,14 @@ NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so th
 class Mjx(Optional):
     """An engine in the sense of `engines.Engine`; `settings`: the MuJoCo method whose model and options are taken."""
 
-    extra: ClassVar[str] = "mjx"
+    name = "mjx"
+    packages = ("mujoco-mjx", "jax", "mujoco-core")
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
-    distributions: ClassVar[tuple[str, ...]] = ("mujoco-mjx", "jax", "mujoco-core")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
     building: ClassVar[float] = 20.0
 
     variant: Name
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
-
-    @property
-    def family(self) -> str:
-        return "mjx"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
-from engines.altered import Altered
 from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
 from reference.joints import Drive, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.kinematics import Rolling
 from reports.gate.judge import projected
+from reports.gate.nudged import Altered
 
 Array = NDArray[np.float64]
 Some = TypeVar("Some")

@@ -10,13 +10,12 @@ from pathlib import Path
 import pytest
 
 from engines import Promise
-from engines.altered import Altered
 from engines.lagrange import Lagrange
 from reference.four_bar.scenes import DrivenFourBar
 from reference.mechanism import Mechanism
 from reports.gate.baseline import BadBaseline, Baseline, Old, identity, mixed, read_baseline
 from reports.gate.change import change, cost, drift, growth, known_by_now
-from reports.gate.nudged import Nudge, nudged_cells
+from reports.gate.nudged import Altered, Nudge, nudged_cells
 from reports.gate.table import changes
 from reports.gate.verdicts import Case
 from reports.gate.walk import lost, remarks, vanished, walk

@@ -7,7 +7,6 @@ from dataclasses import fields, replace
 import pytest
 
 from engines import EXACT, Promise, Unpromised, mujoco, pymunk
-from engines.altered import Altered
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
@@ -21,6 +20,7 @@ from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.scenes import RollingEllipse
 from reference.skate.sleigh import ChaplyginSleigh
 from reference.wheels.car_and_trailer import CarAndTrailer
+from reports.gate.nudged import Altered
 from tests.mechanisms import four_bar
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(crank_rate=2.0), four_bar(crank_rate=2.0, drive=2.0)

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio, registry
-from engines.altered import Altered
+from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
 from engines.conformance.changes import Isometry
 from reference.joints import Gear
 from reference.mechanism import Mechanism
 from reference.validation import InvalidMechanism
+from reports.gate.nudged import Altered
 from reports.search import instant_mjx, relations
 from reports.search.recipe import build
 from reports.search.renumbered import RUN, SHAPES, of_a_shape
@@ -124,8 +124,8 @@ def planted(kind: str, relative: float) -> Callable[[Mechanism], Mechanism]:
 
 @pytest.mark.parametrize(("engine", "kind"), PLANTED, ids=lambda value: getattr(value, "name", value))
 def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> None:
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     kinds = ("pin",) if kind in ("pin", "inertia") else ("pin", kind)
     # The first that shows it ends this; gears of Bullet are between bodies on the ground alone, so most are refused.
     assert is_found(Altered(engine, planted(kind, SMALL)), kinds, 60, "motions")
@@ -138,8 +138,8 @@ def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> No
 def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str, monkeypatch: Any) -> None:
     """Ten times as large as elsewhere: of 60 mechanisms of pins an inertia off by 1e-3 is found in 26, by 1e-4 in 5."""
     engine = box2d.DEFAULT
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     kinds = ("pin",) if kind in ("pin", "inertia") else ("pin", kind)
     right = list(asked(engine, kinds, 40, "instant"))
     assert len(right) >= 4  # of slots, whose bodies seldom have no other joint
@@ -152,8 +152,8 @@ def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str,
 def test_what_box2d_rounds_grows_with_the_distance() -> None:
     """So that differences of two descriptions are rounded places, and nothing that the shift itself does."""
     engine = box2d.DEFAULT
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     subject = Adapted(engine)
     growth = []
     for number in (7, 20, 31, 44, 60):
@@ -173,8 +173,8 @@ def test_what_box2d_rounds_grows_with_the_distance() -> None:
 
 @pytest.fixture
 def compiled() -> None:
-    if registry.missing(mjx.DEFAULT):
-        pytest.skip(registry.missing(mjx.DEFAULT))
+    if mjx.DEFAULT.missing:
+        pytest.skip(mjx.DEFAULT.missing)
 
 
 @pytest.mark.slow
@@ -212,8 +212,8 @@ def _shaped(number: int) -> Any:
 
 
 def test_cases_of_a_shape_differ_in_numbers_alone() -> None:
-    if registry.missing(mjx.DEFAULT):
-        pytest.skip(registry.missing(mjx.DEFAULT))
+    if mjx.DEFAULT.missing:
+        pytest.skip(mjx.DEFAULT.missing)
     cases = [_shaped(number) for number in range(SHAPES * RUN)]
     shapes = {tuple((link.kind, link.first, link.second) for link in case.links) for case in cases}
     assert len(shapes) <= SHAPES

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from engines import Softness, Unpromised
+from engines import Around, Engine, Softness, Unpromised
 from engines.pymunk import LEAPFROG
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
@@ -19,14 +19,15 @@ class TwoLines(Wrong):
 
 
 @dataclass
-class Changeable:
+class Changeable(Around):
     """Not frozen."""
 
     variant: str = "changeable"
+    engine: Engine = LEAPFROG
     name: str = "wrong"
 
-    def __getattr__(self, member: str) -> Any:
-        return getattr(LEAPFROG, member)
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        return self.engine.build(mechanism, dt)
 
     __hash__ = object.__hash__
 
@@ -62,7 +63,7 @@ class Forgetful(Wrong):
         self.__dict__.update({**state, "_factor": 1.0})
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return self.inner.build(replace(mechanism, gravity=(0.0, self._factor * mechanism.gravity[1])), dt)
+        return self.engine.build(replace(mechanism, gravity=(0.0, self._factor * mechanism.gravity[1])), dt)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Literal
 
 import mujoco
 
-from engines import Holder, Promise, Size, Softness, Unpromised
+from engines import Engine, Holder, Promise, Size, Softness, Unpromised
 from engines.finer import Division, division
 from engines.motions import over_three
 from engines.mujoco import theory
@@ -38,7 +38,7 @@ Factorisation = Literal["auto", "dense", "sparse"]
 
 
 @dataclass(frozen=True)
-class MuJoCo(Valid):
+class MuJoCo(Engine, Valid):
     """A mechanism in MuJoCo; every field but `variant` is a setting.
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
@@ -55,6 +55,9 @@ class MuJoCo(Valid):
     steps (`engines.finer`), unless its estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
+
+    name = "mujoco"
+    packages = ("mujoco-core",)
 
     variant: Name
     integrator: Integrator = "Euler"
@@ -81,16 +84,8 @@ class MuJoCo(Valid):
             raise InvalidMechanism("MuJoCo: solvers is (); it must be a tuple of at least one of Newton, CG and PGS")
 
     @property
-    def name(self) -> str:
-        return "mujoco"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("mujoco-core",)
-
-    @property
-    def family(self) -> str:
-        return "mujoco"
+    def touches(self) -> bool:
+        return isinstance(self.rolls, RollContact)
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:

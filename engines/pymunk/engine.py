@@ -8,7 +8,7 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Holder, Promise, Softness, Unpromised
+from engines import Engine, Holder, Promise, Softness, Unpromised
 from engines.motions import over_three
 from engines.pymunk import theory
 from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
@@ -41,7 +41,7 @@ STEP_COST, SWEEP_COST = 2e-6, 13e-9
 
 
 @dataclass(frozen=True)
-class Pymunk(Valid):
+class Pymunk(Engine, Valid):
     """An engine in the sense of `engines.Engine`.
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
@@ -58,6 +58,9 @@ class Pymunk(Valid):
     Raises ValueError for other values: the engine would abort the process.
     """
 
+    name = "pymunk"
+    packages = ("pymunk",)
+
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
@@ -73,16 +76,8 @@ class Pymunk(Valid):
     work: Whole = 0
 
     @property
-    def name(self) -> str:
-        return "pymunk"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("pymunk",)
-
-    @property
-    def family(self) -> str:
-        return "pymunk"
+    def touches(self) -> bool:
+        return self.roll == "contact"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -96,7 +91,7 @@ class Pymunk(Valid):
 
     @validated
     def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
-        """The same in a motion of `duration` [s], swept for its worst pose: see `engines.finer.Lasting`."""
+        """The same in a motion of `duration` [s], swept for its worst pose."""
         return self._cost(mechanism, self.sweeping(mechanism, duration))
 
     def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
@@ -132,7 +127,7 @@ class Pymunk(Valid):
         )
 
     @validated
-    def sweeps(self, mechanism: Mechanism) -> int:
+    def iterations_of(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism, as it starts."""
         return self.sweeping(mechanism).iterations
 

@@ -43,7 +43,7 @@ class Shrink(Task):
 
     @property
     def cost(self) -> float:
-        return SECONDS + TRIED * getattr(self.engine, "building", 0.0)
+        return SECONDS + (TRIED * self.engine.building if self.engine else 0.0)
 
     @property
     def label(self) -> str:

@@ -19,7 +19,7 @@ class Asked(Task):
 
     @property
     def cost(self) -> float:
-        return 0.1 + getattr(self.of, "building", 0.0)
+        return 0.1 + self.of.building
 
     @property
     def label(self) -> str:

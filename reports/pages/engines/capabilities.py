@@ -56,7 +56,7 @@ class Capabilities(Asked):
                 with suppress(ValueError):
                     held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
                     if mechanism.forces:
-                        held.add(getattr(self.of, "forces_by", "engine"))
+                        held.add(self.of.forces_by)
                     told[what] = "yes" if held == {"engine"} else "with code of ours"
         run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
         known = [bool(np.isfinite(each).all()) for each in run.reaction]

@@ -43,7 +43,7 @@ COMPILED = tuple(
     Cell(BY_NAME[name], engine, MILLISECOND, "beside")
     for name in ("free_four_bar", "pendulum_2")
     for engine in registry.OTHERS
-    if getattr(engine, "building", 0.0) >= SLOW_TO_BUILD
+    if engine.building >= SLOW_TO_BUILD
 )
 BORROWED = (*sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL), *beside_cells(CHARTED_SCENES, registry.OTHERS))
 

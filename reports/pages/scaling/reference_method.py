@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines import EXACT, Engine, Holder, Promise, Size, Unpromised, Unsupported
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.pendulum.chain import Array, Chain
@@ -23,24 +23,12 @@ ROUNDING = 1e-9  # relative: numbers that were made from one another
 
 
 @dataclass(frozen=True)
-class BandedChain:
+class BandedChain(Engine):
     """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
 
-    @property
-    def name(self) -> str:
-        return "reference"
-
-    @property
-    def variant(self) -> str:
-        return "banded rk4"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("numpy",)
-
-    @property
-    def family(self) -> str:
-        return "reference"
+    name = "reference"
+    variant = "banded rk4"
+    packages = ("numpy",)
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -55,9 +43,6 @@ class BandedChain:
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         return "engine"
-
-    def softness(self, mechanism: Mechanism, dt: float) -> None:
-        """Nothing gives way."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:

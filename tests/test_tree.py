@@ -1,12 +1,11 @@
-"""Places at one instant, in plain floats, against those of the tree's arrays."""
+"""Motions of a spanning tree: places, their rates and those of these, at many times and at one instant."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from engines.pushes import instant, pushes
-from engines.tree import spanning_tree
+from engines.tree import pushes, spanning_tree
 from reference.andrews.scene import Andrews
 from reference.scenes import SCENES
 from reports.search.mechanisms import EVERY
@@ -28,11 +27,17 @@ def test_the_mechanisms_have_every_kind_of_link():
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=range(len(MECHANISMS)))
-def test_places_and_rates_at_an_instant_are_those_of_the_trees_arrays(mechanism):
+def test_twists_and_accelerations_are_the_derivatives_of_the_poses(mechanism):
     tree = spanning_tree(mechanism)
-    way, rate = np.random.default_rng(5).normal(size=(2, tree.coordinates))
-    pose, twist, _ = tree.motion(way[None], rate[None], np.zeros((1, tree.coordinates)))
-    for found, expected in zip(instant(tree, way, rate), (pose[0], twist[0]), strict=True):
+    way, rate, gain = np.random.default_rng(5).normal(size=(3, tree.coordinates))
+    h = 1e-4
+    t = np.array([-h, 0.0, h])[:, None]
+    pose, twist, change = tree.motion(way + rate * t + gain * t**2 / 2, rate + gain * t, np.tile(gain, (3, 1)))
+    for values, derivative in ((pose, twist), (twist, change)):
+        differences = (values[2] - values[0]) / (2 * h)
+        # What the difference misses is h^2 times a third derivative: cubes of rates, which are sums over many links.
+        np.testing.assert_allclose(differences, derivative[1], rtol=0, atol=1e-4 * np.abs(derivative).max())
+    for found, expected in zip(tree.instant(way, rate), (pose[1], twist[1]), strict=True):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
 
 

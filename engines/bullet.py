@@ -1,4 +1,20 @@
-"""Bullet's objects for a mechanism, and a run of them."""
+"""Bullet under test, by its binding PyBullet: a tree in reduced coordinates, loops closed by impulses at points.
+
+PyBullet and not ODE: it is what people use (the binding alone is asked about more than ODE is), and pip installs it
+whole, while ode-python needs a library of the system. It costs 290 MB, and there is a wheel for Python 3.11 alone.
+
+The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
+continuous joints, prismatic ones for slots whose angle is kept, fixed ones for welds. A Pin that closes a loop is a
+JOINT_POINT2POINT of enough force, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR
+between two joints of the tree. No link without a mass stands between two joints, so a body that slides and turns, or
+that hangs on nothing, is refused, as are slots in loops, rods, skates and rolling contact. There are no springs: what
+force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
+external forces. All damping and the limit on joint velocities are off; the wheel is built in double precision.
+
+One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
+a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
+order. Accelerations are changes of velocity over the last step, so nothing is told at t = 0.
+"""
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
 # (the package is an extra, and its bindings are compiled.)
@@ -7,21 +23,107 @@ from __future__ import annotations
 
 import tempfile
 import time
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from engines.contract import Size, Unsupported
-from engines.pushes import pushes
-from engines.single_run import Recorded, differences, quiet, tree_states
-from engines.tree import Link, Tree, world_offset
-from reference.joints import Gear, Pin, Slot, Weld
+from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.extrapolated import Extrapolated
+from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_all_but, tree_states
+from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+from reference.validation import Count, Fraction, Name, Positive, validated
 
 ENOUGH = 1e10  # N or N m, of a point that closes a loop and of a motor
 FAST = 1e9  # rad/s, beyond what a joint reaches
+STEP_COST = 9e-6  # s of a step of three bodies, as shipped
+FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
+ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
+SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
+LACKS = {
+    Rod: "bullet's trees have no constraint of a distance",
+    Skate: "bullet stops slip by friction at a contact alone, and has no joint for it",
+    Roll: "in bullet a disc rolls by contact and friction, there is no joint for it",
+}
+
+
+@dataclass(frozen=True)
+class Bullet(Optional):
+    """An engine in the sense of `engines.Engine`.
+
+    `iterations` of the solver over its rows, which end early below `residual`; `erp`: the share of a gap that a step
+    closes.
+    """
+
+    name = "bullet"
+    packages = ("pybullet",)
+    modules: ClassVar[tuple[str, ...]] = ("pybullet",)
+    forces_by: ClassVar[Holder] = "ours"
+
+    variant: Name
+    iterations: Count = SHIPPED_ITERATIONS
+    residual: Fraction = 1e-7
+    erp: Fraction = SHIPPED_ERP
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """First, of semi-implicit Euler; what the tree holds is exact."""
+        if spanning_tree(mechanism).loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
+            return Promise(1, differences=1)
+        if turns_steadily(mechanism) or is_prescribed(mechanism):
+            return Promise(EXACT, reaction=1, differences=1)
+        return Promise(1, gap=EXACT, slip=EXACT, differences=1)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]."""
+        rows = 3 * len(spanning_tree(mechanism).loops)
+        forces = FORCES_COST if mechanism.forces else 0.0
+        return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Every joint is the engine's own."""
+        return "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        refuse_all_but(mechanism, "bullet", (Pin, Slot, Drive, Weld, Gear), LACKS)
+        tree = spanning_tree(mechanism)
+        drives = _refused(mechanism, tree)
+        self.require()
+        parameters = {"numSolverIterations": self.iterations, "solverResidualThreshold": self.residual, "erp": self.erp}
+        world = World(mechanism, tree, drives, dt, parameters)
+        return SingleRun(mechanism, dt, world.size, lambda samples, every: world.record(dt, samples, every))
+
+
+def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
+    """Tree coordinates that a motor turns, and their rates [rad/s]; raises Unsupported."""
+    refuse_slots_in_loops(tree, "bullet")
+    for link in tree.links:
+        if len(link.columns) > 1:
+            raise Unsupported(
+                f"body {mechanism.bodies[link.body].name!r}: bullet's tree has no link without a mass, "
+                "which a body that slides and turns, or hangs on nothing, would need"
+            )
+    rates: dict[int, float] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and joint not in tree.kept:
+            turned = tree.turning(joint.first, joint.second)
+            if len(turned) != 1 or next(iter(turned)) in rates:
+                raise Unsupported(f"drive {joint.name!r}: a motor of bullet turns one joint, and has one rate")
+            ((column, sign),) = turned.items()
+            rates[column] = sign * joint.turning_rate
+        if isinstance(joint, Gear):
+            geared_columns(tree, joint)
+    return rates
 
 
 def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
@@ -180,3 +282,10 @@ class World:
         acceleration = differences(velocity, before, dt)
         motion = tree_states(self.tree, position, velocity, acceleration)
         return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity))
+
+
+DEFAULT = Bullet("default")
+TUNED = Bullet("tuned", iterations=200, residual=0.0, erp=1.0)
+# All of a gap is closed in every step: with less, what a few steps leave behind is no series in the step.
+EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3))
+VARIANTS = (DEFAULT, TUNED, EXTENDED)
