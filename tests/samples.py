@@ -13,9 +13,8 @@ from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
 from engines.mujoco.joints.roll.rows import RollEquality, RollRows
 from engines.mujoco.limited import limited_tendon
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
-from engines.pymunk.engine import Pymunk
+from engines.pymunk.engine import Pymunk, limited_groove
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
-from engines.pymunk.limited import limited_groove
 from engines.single_run import Recorded, SingleRun
 from reference import centrodes, shapes
 from reference.andrews import Dyad

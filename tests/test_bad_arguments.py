@@ -67,9 +67,9 @@ NOT_MADE_BY_USERS = {
     *("engines.mujoco.reading.joints.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
     "engines.mujoco.writers.Urdf",
     *("engines.pymunk.reading.joints.Described", "engines.pymunk.reading.own_model.OwnPymunk"),
-    *("engines.single_run.Recorded", "engines.conformance.changes.Isometry"),
+    *("engines.single_run.Recorded", "engines.conformance.same.Isometry"),
     *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
-    *("engines.conformance.worlds.world.Motion", "engines.conformance.worlds.world.World"),
+    *("engines.conformance.world.Motion", "engines.conformance.world.World"),
 }
 ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
 

@@ -10,7 +10,7 @@ import pytest
 
 from engines import Engine, lagrange, mujoco, pymunk
 from engines.conformance import CHECKS, Case, Subject, cases
-from engines.conformance.changes import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
+from engines.conformance.same import Isometry, bodies_reordered, joints_reordered, joints_swapped, relabelled
 from engines.conformance.worlds import MOVING, SPINNING, WORLDS
 from engines.mujoco import methods as of_mujoco
 from engines.pymunk import methods as of_pymunk
@@ -72,7 +72,7 @@ FOUND_BY = {
 
 METHODS = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS)
 SPECIAL = (
-    *(*of_pymunk.SKATES, *of_pymunk.SLOTS, *of_pymunk.ROLLS),
+    *(*of_pymunk.SKATES, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
     *(*of_mujoco.SKATES, *of_mujoco.SLOTS, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
 # Enough for every day: what differs by its settings alone, or takes seconds of steps in Python, is left out.

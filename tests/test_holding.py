@@ -49,18 +49,15 @@ def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, c
 def test_every_construction_of_a_skate_says_who_holds_it():
     ours = {"skate: centre's velocity zeroed", "skate: point's velocity zeroed", "skate: impulse at the blade"}
     ours |= {"applied force", "passive force"}
-    engines = {"skate: friction", "friction blade", "thin wheel", "velocity servo"}
+    engines = {"friction blade", "thin wheel", "velocity servo"}
     for engine in (*pymunk_methods.SKATES, *mujoco_methods.SKATES):
         expected = "ours" if engine.variant in ours else "engine" if engine.variant in engines else SHARED
         assert held_by(engine, SKATE) == expected, engine.variant
 
 
 def test_every_construction_of_a_rolling_contact_says_who_holds_it():
-    assert {held_by(engine, ROLL) for engine in (pymunk_methods.ROLL_SHIPPED, *pymunk_methods.ROLL_FACETED)} == {
-        "engine"
-    }
-    for engine in (pymunk_methods.ROLL_STALE_PIVOT, pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_PIVOT_EXTRAPOLATED):
-        assert held_by(engine, ROLL) == SHARED
+    assert {held_by(engine, ROLL) for engine in (pymunk.DEFAULT, *pymunk_methods.ROLL_FACETED)} == {"engine"}
+    assert {held_by(engine, ROLL) for engine in (pymunk.EXTENDED, pymunk_methods.ROLL_PIVOT)} == {SHARED}
     stiff, equality, completed = mujoco_methods.ROLLS
     assert [held_by(engine, ROLL) for engine in (stiff, equality, completed)] == ["engine", SHARED, SHARED]
 
@@ -73,8 +70,9 @@ def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
     joints = tuple(moved if joint == slot else joint for joint in turning)
     mechanism = replace(SLIDER, joints=joints)
     assert held_by(pymunk.TUNED, mechanism) == f"engine; slot: {SHARED}"
-    assert held_by(pymunk_methods.SLOT_GROOVE, mechanism) == "engine"
-    assert isinstance(pymunk_methods.SLOT_GROOVE.order(mechanism), Unpromised)
+    naive = replace(pymunk.DEFAULT, slot="groove")
+    assert held_by(naive, mechanism) == "engine"
+    assert isinstance(naive.order(mechanism), Unpromised)
 
 
 def test_an_overwritten_crank_is_ours():

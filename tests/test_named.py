@@ -93,7 +93,11 @@ def test_the_folder_of_an_engine_hides_no_module_that_is_installed(here):
     [
         ("", "broken.py", "nothing at the top level of this file is one"),
         ("ENGINES = ()", "broken:ENGINES", "it is empty"),
-        ("ENGINE = 'pymunk'", "broken:ENGINE", "a value of the type str is no engine: it lacks name, variant"),
+        (
+            "ENGINE = 'pymunk'",
+            "broken:ENGINE",
+            "the type str is no engine: it does not inherit from engines.Engine",
+        ),
         ("from engines.lagrange import Lagrange", "broken:Lagrange", "it is a class; give an engine made of it"),
         ("", "broken:ENGINE", "broken has no ENGINE"),
         ("", "broken:", "names nothing; give package.module:NAME"),
@@ -255,7 +259,7 @@ class Registered:
     [
         ("absent_module:ENGINE", "absent_module can't be imported: ModuleNotFoundError"),
         ("theirs_4:NOTHING", "theirs_4 has no NOTHING"),
-        ("theirs_4:FALLING", "is no engine: it lacks"),
+        ("theirs_4:FALLING", "is no engine: it does not inherit"),
         ("theirs_4:OURS", "'pymunk default' is left out, since planar-crosscheck has one of this name"),
         ("theirs_4:TWICE", "'mine rk4 projection' is left out, since theirs has one of this name"),
     ],

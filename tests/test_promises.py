@@ -11,7 +11,7 @@ from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.mujoco.methods import DRIVES, ROLLS, SKATES
-from engines.pymunk.methods import ROLL_STALE_PIVOT, SKATE_PROJECTED
+from engines.pymunk.methods import SKATE_PROJECTED
 from reference.forces import Torque
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
@@ -91,8 +91,6 @@ def test_pymunks_other_constructions_promise_their_own():
     assert told(pymunk.LEAPFROG, MOVING) == {"order": 2, "differences": 1}
     assert told(pymunk.LEAPFROG, SKATE)["order"] == 1
     assert told(SKATE_PROJECTED, SKATE)["slip"] == EXACT
-    assert told(ROLL_STALE_PIVOT, ROLL) == {"order": 1, "gap": 2, "slip": 2, "differences": 1}
-    assert told(ROLL_STALE_PIVOT, GEARS) == {"order": 2, "reaction": 1, "differences": 1}
 
 
 def test_an_extrapolation_promises_the_next_power_and_more_rounding():

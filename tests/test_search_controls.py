@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
-from engines.conformance.changes import Isometry
+from engines.conformance.same import Isometry
 from reference.joints import Gear
 from reference.mechanism import Mechanism
 from reference.validation import InvalidMechanism

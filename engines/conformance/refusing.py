@@ -9,8 +9,7 @@ from typing import Any
 
 from engines import Unsupported
 from engines.conformance.check import Check, Fails, NotAsked, Subject, require_a_sentence, stepped
-from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
-from engines.conformance.worlds.rolls import rolling
+from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
 from reference.curves.circles_lines import Circle, Line
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism

@@ -107,8 +107,7 @@ class Pymunk(Engine, Valid):
 
         One step stops a slip and closes a share of a gap; a row of the pose before the drift has no term of velocities.
         """
-        rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
-        stale = (rolling and self.roll != "pivot") or self.skate == "stale groove"
+        stale = self.touches and any(isinstance(joint, Roll) for joint in mechanism.joints)
         closed = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
         if not stale and (closed == 1 or not mechanism.holonomic.any()):
             return None
@@ -165,3 +164,22 @@ class Pymunk(Engine, Valid):
             self.contact,
         )
         return build_model(mechanism, settings)
+
+
+@dataclass(frozen=True)
+class LimitedGroove(Pymunk):
+    """A groove for a skate that slips when it would have to give more than `limit` [N], like dry friction."""
+
+    limit: Positive = 1.0
+
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Model:
+        model = super().swept_model(mechanism, dt, sweeping)
+        for constraint in model.space.constraints:
+            constraint.max_force = self.limit
+        return model
+
+
+@validated
+def limited_groove(limit: Positive) -> LimitedGroove:
+    """The groove with a limit [N] on its force."""
+    return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
-from engines.conformance.changes import Change, Isometry, joints_swapped, relabelled
+from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, difference

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from engines import Unsupported
-from engines.conformance.pushed import FORCES
+from engines.conformance.moving import FORCES
 from engines.conformance.worlds import MOVING, WORLDS
 from reference.joints import Gear, Pin, Rod, Weld
 from reference.mechanism import Body, Mechanism

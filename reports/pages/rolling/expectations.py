@@ -17,7 +17,6 @@ SOFT = "by design: as shipped the contact is a spring of 0.02 s, whatever the st
 CHATTER = "upstream: a contact without the velocity term is let go and caught again; its force is right on average"
 STANDING = "upstream: a row without the velocity term; at the start it carries the weight of a body at rest"
 BARELY = "by design: pins already hold the gears apart, so that only softness lets them press and rub"
-STALE = "by design: half of the rolling acceleration is missing, so that the forces are those of another motion"
 
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
@@ -30,10 +29,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_ellipse", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 3.8),
     ("rolling_disc", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("rolling_disc", "mujoco tuned", "reaction"): Deviation(CHATTER, 44),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 9.9),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "rate"): Deviation(STALE, 4.1),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "energy"): Deviation(STALE, 1.5),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "reaction"): Deviation(STALE, 2.8),
     ("rolling_disc", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 60),
     ("rolling_disc", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.9),
     ("rolling_cam", "pymunk default", "outcome"): Deviation(POLYGON, outcome=Outcome.SATURATED),
@@ -41,9 +36,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_cam", "pymunk tuned", "rate"): Deviation(POLYGON, 4.8),
     ("rolling_cam", "pymunk tuned", "energy"): Deviation(POLYGON, 1.3),
     ("rolling_cam", "pymunk tuned", "reaction"): Deviation(POLYGON, 75),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 3.7),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "rate"): Deviation(STALE, 1.8),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "reaction"): Deviation(STALE, 1.4),
     ("rolling_incline", "pymunk default", "error"): Deviation(POLYGON, 15),
     ("rolling_incline", "pymunk default", "rate"): Deviation(POLYGON, 6.3),
     ("rolling_incline", "pymunk default", "gap"): Deviation(POLYGON, 4.5),
@@ -56,7 +48,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_incline", "mujoco default", "reaction"): Deviation(CHATTER, 1.6),
     ("rolling_incline", "mujoco default", "order"): Deviation(CHATTER, 2.5),
     ("rolling_incline", "mujoco tuned", "reaction"): Deviation(CHATTER, 31),
-    ("rolling_incline", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 1.1),
     ("rolling_incline", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 37),
     ("rolling_incline", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.5),
     ("rolling_in_ring", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 1.1),

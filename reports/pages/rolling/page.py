@@ -40,8 +40,7 @@ SCENES = (
 )
 # Ideal constraints under Euler say nothing here that Runge-Kutta's don't, and finding a contact is what costs.
 COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
-BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_methods.ROLL_STALE_PIVOT, pymunk_methods.ROLL_PIVOT)
-ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_methods.ROLLS)
+ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
 HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
 

@@ -8,7 +8,7 @@ from engines import Engine
 from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.limited import limited_tendon
 from engines.pymunk import methods as pymunk_methods
-from engines.pymunk.limited import limited_groove
+from engines.pymunk.engine import limited_groove
 from engines.registry import VARIANTS
 
 CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)

@@ -51,7 +51,6 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 }
 # One of each kind: five looks an engine are what a chart can tell apart.
 CHARTED = (
-    "pymunk skate: groove, stale heading",
     "pymunk skate: groove, predicted heading",
     "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
