@@ -64,15 +64,6 @@ def order(method, mechanism: Mechanism, truth: Trajectory, quantity: str, every:
 # What is built
 
 
-@every_method
-@pytest.mark.parametrize("mechanism", [FREE, MOVING, DRIVEN, elbow()])
-def test_the_first_sample_is_the_mechanisms_start(method, mechanism):
-    trajectory = method.build(mechanism, 1e-3)(2, 1)
-    assert np.array_equal(trajectory.pose[0], mechanism.pose)
-    assert np.array_equal(trajectory.twist[0], mechanism.twist)
-    assert trajectory.t == pytest.approx([0, 1e-3, 2e-3])
-
-
 def test_the_default_is_the_engine_as_shipped():
     space, body = pymunk.Space(), pymunk.Body(1, 1)
     pivot = constraints.PivotJoint(space.static_body, body, (0, 0), (0, 0))
@@ -133,14 +124,6 @@ def test_bodies_are_recorded_in_the_order_asked_for_whatever_the_order_in_which_
 
 
 # When it reads
-
-
-@pytest.mark.parametrize("method", [DEFAULT, TUNED, LEAPFROG], ids=lambda method: method.variant)
-@pytest.mark.parametrize("mechanism", [MOVING, DRIVEN])
-def test_how_often_a_run_is_sampled_changes_no_sample(method, mechanism):
-    often, seldom = method.build(mechanism, 1e-3)(60, 1), method.build(mechanism, 1e-3)(12, 5)
-    for quantity in ("pose", "twist", "reaction"):
-        assert np.array_equal(getattr(often, quantity)[::5], getattr(seldom, quantity))
 
 
 def pendulum_truth(t: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
