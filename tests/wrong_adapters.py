@@ -26,7 +26,7 @@ class Wrong(Around):
 
     variant: str
     engine: Engine = LEAPFROG
-    name: str = "wrong"
+    name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
         return {**MISTAKES, **SMALL}[self.variant](self.engine, mechanism, dt)

@@ -15,7 +15,7 @@ from tests.wrong_adapters import Wrong
 
 @dataclass(frozen=True)
 class TwoLines(Wrong):
-    family: str = "two\nlines"
+    family: str = "two\nlines"  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 @dataclass
@@ -24,7 +24,7 @@ class Changeable(Around):
 
     variant: str = "changeable"
     engine: Engine = LEAPFROG
-    name: str = "wrong"
+    name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
         return self.engine.build(mechanism, dt)
@@ -60,15 +60,15 @@ class Forgetful(Wrong):
         object.__setattr__(self, "_factor", 0.5)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update({**state, "_factor": 1.0})
+        vars(self).update({**state, "_factor": 1.0})
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return self.engine.build(replace(mechanism, gravity=(0.0, self._factor * mechanism.gravity[1])), dt)
+        return self.engine.build(replace(mechanism, gravity=(0.0, vars(self)["_factor"] * mechanism.gravity[1])), dt)
 
 
 @dataclass(frozen=True)
 class Imported(Wrong):
-    packages: tuple[str, ...] = ("_pymunk_cffi_backend",)
+    packages: tuple[str, ...] = ("_pymunk_cffi_backend",)  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 @dataclass(frozen=True)
