@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines.contract import Unsupported
+from engines.remembered import by_identity
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components
@@ -208,25 +209,11 @@ def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
     where its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the
     angle. The trees of the last mechanisms are kept: a report asks for one once a joint.
     """
-    return _tree_of(_Same(mechanism), hanging)
+    return _tree_of(mechanism, hanging)
 
 
-class _Same:
-    """A mechanism that equals itself alone: comparing all of its numbers would take as long as the tree."""
-
-    def __init__(self, mechanism: Mechanism) -> None:
-        self.mechanism = mechanism
-
-    def __hash__(self) -> int:
-        return id(self.mechanism)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.mechanism is self.mechanism
-
-
-@lru_cache(maxsize=8)
-def _tree_of(same: _Same, hanging: bool) -> Tree:
-    mechanism = same.mechanism
+@by_identity()
+def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
     loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot | Weld)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
     usable: dict[str | None, list[Pin | Slot | Weld]] = {}

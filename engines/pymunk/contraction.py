@@ -27,6 +27,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from engines.remembered import by_identity
 from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
@@ -48,15 +49,12 @@ CONTACT_CONVERGED = 1000
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
-_latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
 
-
+@by_identity()
 @validated
 def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
-    if not (_latest and _latest[0][0] is mechanism):
-        _latest[:] = [(mechanism, contraction_at(mechanism, mechanism.pose))]
-    return _latest[0][1]
+    return contraction_at(mechanism, mechanism.pose)
 
 
 @validated
