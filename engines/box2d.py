@@ -44,7 +44,7 @@ import numpy as np
 
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_all_but, unwrapped
+from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_lacking, unwrapped
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -101,7 +101,7 @@ class Box2D(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "box2d", (Pin, Slot, Drive, Weld, Rod), LACKS)
+        refuse_lacking(mechanism, LACKS)
         self.require()
         world = _World(mechanism, self.closing * self.substeps / dt)
         return SingleRun(

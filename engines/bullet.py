@@ -33,7 +33,7 @@ import numpy as np
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_all_but, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_lacking, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -95,7 +95,7 @@ class Bullet(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "bullet", (Pin, Slot, Drive, Weld, Gear), LACKS)
+        refuse_lacking(mechanism, LACKS)
         tree = spanning_tree(mechanism)
         drives = _refused(mechanism, tree)
         self.require()

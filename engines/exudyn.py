@@ -105,11 +105,11 @@ class Exudyn(Optional):
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
         self.require()
-        length, force = 1.0, 1.0
+        length, solving = 1.0, self
         if self.own_units:
             length = 2.0 ** round(math.log2(mechanism.length_scale))
             force = max(body.mass for body in mechanism.bodies) / mechanism.time_scale**2
-        solving = replace(self, absolute=self.absolute * force)
+            solving = replace(self, absolute=self.absolute * force)
         system = System(mechanism, length)
         return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(solving, dt, samples, every))
 

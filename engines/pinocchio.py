@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
-from engines.single_run import Optional, Recorded, SingleRun, refuse_all_but, tree_states
+from engines.single_run import Optional, Recorded, SingleRun, refuse_lacking, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -98,7 +98,7 @@ class Pinocchio(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "pinocchio", (Pin, Slot, Drive, Weld), LACKS)
+        refuse_lacking(mechanism, LACKS)
         tree = spanning_tree(mechanism)
         refuse_slots_in_loops(tree, "pinocchio")
         self.require()

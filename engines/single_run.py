@@ -70,14 +70,11 @@ class Optional(Engine, Valid):
             raise Unsupported(self.missing)
 
 
-def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...], why: Mapping[type, str]) -> None:
-    """Raises Unsupported for joints of other kinds; `why`: by kind, a clause that says what the engine lacks for it."""
+def refuse_lacking(mechanism: Mechanism, lacks: Mapping[type, str]) -> None:
+    """Raises Unsupported for a joint of these kinds; `lacks`: by kind, a clause that says what the engine has not."""
     for joint in mechanism.joints:
-        if not isinstance(joint, kinds):
-            kind = type(joint)
-            raise Unsupported(
-                f"joint {joint.name!r}: {why.get(kind, f'{engine} is given no {kind.__name__.lower()} here')}"
-            )
+        if type(joint) in lacks:
+            raise Unsupported(f"joint {joint.name!r}: {lacks[type(joint)]}")
 
 
 @contextmanager

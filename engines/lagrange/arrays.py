@@ -73,14 +73,15 @@ _NUMBERS = range(14, 28)
 # that of a stage, that after a step, and velocities and accelerations of all stages.
 _ROOM = range(28, 48)
 (TURNED, ENDS, GAP, BIAS, RIGHT, LEFT, PIVOT, REACTION, FELT, MATRIX, CHANGE, POSE, TWIST) = _ROOM[:13]
-(STAGE_POSE, STAGE_TWIST, NEW_POSE, NEW_TWIST, VELOCITY, ACCELERATION, TOLD) = _ROOM[13:]
+(STAGE_POSE, STAGE_TWIST, NEW_POSE, NEW_TWIST, VELOCITY, ACCELERATION, STATUS) = _ROOM[13:]
 HEADER = 48
 
-# What is told, among the real numbers from TOLD on: the smallest pivot; the roll and the angle without a cell; accepted
-# steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if never; and how
-# much rounding alone may have changed the speeds, in parts of the mechanism's own; the last factor's smallest pivot.
+# What a call leaves behind, among the real numbers from STATUS on: the smallest pivot; the roll and the angle without a
+# cell; accepted steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if
+# never; and how much rounding alone may have changed the speeds, in parts of the mechanism's own; the last factor's
+# smallest pivot.
 SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED, PIVOTED = range(8)
-TOLDS = 8
+STATUSES = 8
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ def arrays_of(mechanism: Mechanism) -> Arrays:
     dependent, forces = int(_dependent(mechanism)), len(mechanism.forces)
     counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), dependent, 0, 0, forces)
     numbers = _numbers(mechanism, place)
-    room = [2 * bodies + 2, 6 * rows, *[rows] * 7, int(offset[-1]), *[columns] * 7, *[STAGES * columns] * 2, TOLDS]
+    room = [2 * bodies + 2, 6 * rows, *[rows] * 7, int(offset[-1]), *[columns] * 7, *[STAGES * columns] * 2, STATUSES]
     header = (
         *counts,
         *itertools.accumulate((record.size for record in records[:-1]), initial=HEADER),
@@ -133,7 +134,7 @@ def arrays_of(mechanism: Mechanism) -> Arrays:
     )
     real = np.concatenate([*numbers, np.zeros(sum(room))])
     real[header[TURNED] : header[TURNED] + 2 * bodies + 2 : 2] = 1.0  # the ground's stay so
-    real[header[TOLD] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0
+    real[header[STATUS] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0
     whole = np.concatenate(
         [np.array(header, dtype=np.int64), *(record.reshape(-1).astype(np.int64) for record in records)]
     )

@@ -28,12 +28,12 @@ from engines.lagrange.arrays import (
     SOFT,
     START_POSE,
     START_TWIST,
+    STATUS,
     STEPS,
     STIFF,
     STIFFNESS,
     STOPPED,
     TABLE,
-    TOLD,
     WANTED_ANGLE,
     WANTED_ROLL,
     Arrays,
@@ -140,25 +140,27 @@ class Machine:
     @property
     def left_to_numpy(self) -> bool:
         """Whether the last call ended at a contact that no table holds."""
-        return self.told(WANTED_ROLL) >= 0
+        return self.status(WANTED_ROLL) >= 0
 
     def warnings(self, tolerance: float) -> tuple[str, ...]:
         """What the control of steps has to say after a run."""
         found = []
-        if not np.isnan(self.told(STOPPED)):
-            found.append(not_held(tolerance, self.told(STOPPED)))
-        if not np.isnan(self.told(STIFF)):
-            found.append(f"lagrange: stiff from {self.told(STIFF):.6g} s on: stability and not accuracy sets the steps")
-        if self.told(ROUNDED) > 10 * tolerance:
+        if not np.isnan(self.status(STOPPED)):
+            found.append(not_held(tolerance, self.status(STOPPED)))
+        if not np.isnan(self.status(STIFF)):
+            found.append(
+                f"lagrange: stiff from {self.status(STIFF):.6g} s on: stability and not accuracy sets the steps"
+            )
+        if self.status(ROUNDED) > 10 * tolerance:
             found.append(
                 "lagrange: rows are so nearly dependent that rounding alone changes speeds by "
-                f"{self.told(ROUNDED):.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
+                f"{self.status(ROUNDED):.1g} of the mechanism's own, more than the tolerance {tolerance:g}"
             )
         return tuple(found)
 
-    def told(self, what: int) -> float:
+    def status(self, what: int) -> float:
         """One of the numbers that compiled code leaves behind."""
-        return float(self.arrays.real[self.arrays.whole[TOLD] + what])
+        return float(self.arrays.real[self.arrays.whole[STATUS] + what])
 
     def empty(self, samples: int) -> tuple[Array, Array]:
         """Poses and twists (samples + 1, columns), the first as at the start, the others NaN."""
@@ -180,7 +182,7 @@ class Machine:
         A step is allowed a tenth of the tolerance, since errors add up: so the result about holds it.
         """
         tolerance = max(STEP_SHARE * tolerance, LEAST_TOLERANCE)
-        self.arrays.real[self.arrays.whole[TOLD] + STEPS] = 0.0
+        self.arrays.real[self.arrays.whole[STATUS] + STEPS] = 0.0
         return self._repeated(
             lambda at: self._call(
                 CONTROL, ADAPTIVE_DOP853, PROJECTION_ITERATIONS, tolerance, spacing, 1, at, poses, twists
@@ -205,12 +207,12 @@ class Machine:
         whole, real = self.arrays.whole, self.arrays.real
         done, moves = begin, 0
         while True:
-            real[whole[TOLD] + WANTED_ROLL] = -1.0
+            real[whole[STATUS] + WANTED_ROLL] = -1.0
             before, done = done, call(done)
             moves = moves + 1 if done == before else 0
-            wanted = int(self.told(WANTED_ROLL))
+            wanted = int(self.status(WANTED_ROLL))
             # A body that turns through more than a window between two samples has lost its way.
-            if wanted < 0 or moves > MOST_MOVES or not self.windows.move(wanted, self.told(WANTED_ANGLE)):
+            if wanted < 0 or moves > MOST_MOVES or not self.windows.move(wanted, self.status(WANTED_ANGLE)):
                 return done
 
     def _call(
@@ -228,7 +230,7 @@ class Machine:
     ) -> int:
         estimates, whole, real = ADAPTIVE_DOP853, self.arrays.whole, self.arrays.real
         # Nothing of a run that was lost: NaN times the ground's mobility, zero, would stay in its acceleration.
-        real[whole[ACCELERATION] : whole[TOLD]] = 0.0
+        real[whole[ACCELERATION] : whole[STATUS]] = 0.0
         return self.run(
             *(task, whole, real, self.windows.cells),
             *(tableau.stages, tableau.weights, tableau.nodes, estimates.third, estimates.fifth, estimates.dense),

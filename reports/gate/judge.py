@@ -152,7 +152,7 @@ def _compiled(
     if machine.march(tableau, 1 if project else 0, spacing / every, every, 0, poses, twists) < samples:
         return None
     reactions, _ = machine.reactions(spacing, poses, twists)
-    if not np.all(np.isfinite(reactions)) or machine.told(SMALLEST) < RANK_TOLERANCE:
+    if not np.all(np.isfinite(reactions)) or machine.status(SMALLEST) < RANK_TOLERANCE:
         return None
     shape = (samples + 1, *mechanism.pose.shape)
     t = np.arange(samples + 1, dtype=np.float64) * spacing

@@ -40,7 +40,7 @@ from engines.lagrange.arrays import (
     ROLL_RECORD,
     SLOT,
     SPRING,
-    TOLD,
+    STATUS,
     TORQUE,
     TORSION_SPRING,
     TURNED,
@@ -76,7 +76,7 @@ def rows(whole, real, cells, pose, twist, t):
             real[bias] = 0.0
             continue
         if kind == ROLL:
-            rolled(whole, real, cells, record, pose, twist)
+            roll_rows(whole, real, cells, record, pose, twist)
             continue
         c, d = real[turned + 2 * (first // 3)], real[turned + 2 * (first // 3) + 1]
         g, h = real[turned + 2 * (second // 3)], real[turned + 2 * (second // 3) + 1]
@@ -127,7 +127,7 @@ def rows(whole, real, cells, pose, twist, t):
 
 
 @inner
-def rolled(whole, real, cells, record, pose, twist):
+def roll_rows(whole, real, cells, record, pose, twist):
     """The rows of a Roll, along e_t and then e_n = -i e_t; vectors are complex numbers, as in `rolling_table`.
 
     With P(theta) the place of the second body in the frame R of the first, the pair is closed by r2 - r1 = R P.
@@ -180,7 +180,7 @@ def contact(whole, real, cells, which, theta):
     index = math.floor(position) - whole[record + 1] if abs(position) < 1e15 else -1
     if index < 0 or index >= whole[record + 2] or math.isnan(cells[whole[record + 3] + index, 0].real):
         if not math.isnan(theta):
-            real[whole[TOLD] + WANTED_ROLL], real[whole[TOLD] + WANTED_ANGLE] = which, theta
+            real[whole[STATUS] + WANTED_ROLL], real[whole[STATUS] + WANTED_ANGLE] = which, theta
         lost = complex(math.nan, math.nan)
         return lost, lost, lost, lost, math.nan
     c = whole[record + 3] + index
@@ -202,7 +202,7 @@ def contact(whole, real, cells, which, theta):
 
 
 @inner
-def free(whole, real, pose, twist, out):
+def applied_accelerations(whole, real, pose, twist, out):
     """Accelerations of all forces but those of joints, to `out`."""
     for body in range(out, out + whole[COLUMNS] - 3, 3):
         real[body], real[body + 1], real[body + 2] = real[whole[GRAVITY]], real[whole[GRAVITY] + 1], 0.0

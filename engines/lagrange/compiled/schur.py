@@ -1,4 +1,4 @@
-"""The row system J M^-1 J^T reaction = right, in its envelope: O(bodies) for a chain.
+"""The Schur complement of the KKT system, J M^-1 J^T reaction = right, in its envelope: O(bodies) for a chain.
 
 The factor L D L^T needs no scaling, since scaling rows changes no digit of it; a pivot is compared with the row's own
 diagonal, and tells what part of the row the earlier ones leave. Where nothing is left the row follows from them, and
@@ -30,10 +30,10 @@ from engines.lagrange.arrays import (
     ROWS,
     SMALLEST,
     SOFT,
+    STATUS,
     TERM,
     TERM_AT,
     TERMS,
-    TOLD,
     WHICH,
 )
 from engines.lagrange.compiled.inner import inner
@@ -45,7 +45,7 @@ ROUNDING, BLURRED = 1e-13, 1e-9
 EASY = 1e-2  # above, rounding costs less than two digits, and nothing is corrected
 FEW_ROWS = 24  # the condition of a long chain shows in no pivot, so more rows than this are always corrected once
 MOST_CORRECTIONS = 4
-LEAST_FELT = 0.1  # see `softened`
+LEAST_FELT = 0.1  # see `assemble_soft`
 
 # Which rows are asked for; the others are kept apart, with a diagonal of one. It stands among the whole numbers, since
 # an argument that is a constant would have each function compiled once for every value.
@@ -62,7 +62,7 @@ def left_out(whole, real, row):
 
 
 @inner
-def assembled(whole, real):
+def assemble(whole, real):
     """Fill the envelope with J M^-1 J^T."""
     ends, mobility, matrix = whole[ENDS], whole[MOBILITY], whole[MATRIX]
     for entry in range(matrix, whole[CHANGE]):
@@ -77,7 +77,7 @@ def assembled(whole, real):
 
 
 @inner
-def factorised(whole, real):
+def factorise(whole, real):
     """Make the factor of what is assembled; the smallest pivot that is used, as a part of its row's diagonal."""
     matrix, pivots, records = whole[MATRIX], whole[PIVOT], whole[ROW_AT]
     limit = BLURRED if whole[DEPENDENT] > 0 else ROUNDING
@@ -114,7 +114,7 @@ def factorised(whole, real):
 
 
 @inner
-def substituted(whole, real, right):
+def substitute(whole, real, right):
     """Replace the vector at `right` by the solution of L D L^T x = right.
 
     What one row hands to the next stays in a register: through memory it would take half of the time.
@@ -145,7 +145,7 @@ def substituted(whole, real, right):
 
 
 @inner
-def pushed(whole, real):
+def apply_reactions(whole, real):
     """Fill the change with M^-1 J^T reaction."""
     change, end, record = whole[CHANGE], whole[ENDS], whole[ROW_AT]
     for k in range(whole[COLUMNS]):
@@ -164,7 +164,7 @@ def pushed(whole, real):
 
 
 @inner
-def along(whole, real, vector, row):
+def row_times(whole, real, vector, row):
     """J of one row times the vector of columns that stands at `vector`."""
     end, record = whole[ENDS] + 6 * row, whole[ROW_AT] + ROW * row
     one, other = vector + whole[record], vector + whole[record + 1]
@@ -179,41 +179,41 @@ def along(whole, real, vector, row):
 
 
 @inner
-def missed(whole, real, vector, right, out):
+def residual(whole, real, vector, right, out):
     """Fill `out` with what J times the vector of columns lacks of the right side."""
     for row in range(whole[ROWS]):
-        real[out + row] = real[right + row] - along(whole, real, vector, row)
+        real[out + row] = real[right + row] - row_times(whole, real, vector, row)
 
 
 @inner
-def solved(whole, real, small, kept):
+def solve(whole, real, small, kept):
     """Fill the change with the least one, by mass, along which J changes by the right side, and its reactions.
 
     `small`: of a change that is itself a correction, so that a long chain's digits need none. `kept`: with the factor
     of the call before, for rows that have hardly turned since: one correction makes up for it.
     """
-    rows, reaction, left, told = whole[ROWS], whole[REACTION], whole[LEFT], whole[TOLD]
+    rows, reaction, left, status = whole[ROWS], whole[REACTION], whole[LEFT], whole[STATUS]
     right, pivots, some = whole[RIGHT], whole[PIVOT], whole[WHICH] != ALL
     soft_rows = whole[SOFT] > 1 and not some
-    pivot = real[told + PIVOTED]
+    pivot = real[status + PIVOTED]
     if not kept or pivot < EASY:
         if soft_rows:
-            softened(whole, real)
+            assemble_soft(whole, real)
         else:
-            assembled(whole, real)
-        pivot = factorised(whole, real)
-        real[told + PIVOTED] = pivot
-    real[told + SMALLEST] = min(real[told + SMALLEST], pivot)
+            assemble(whole, real)
+        pivot = factorise(whole, real)
+        real[status + PIVOTED] = pivot
+    real[status + SMALLEST] = min(real[status + SMALLEST], pivot)
     for row in range(rows):
         real[reaction + row] = 0.0 if some and left_out(whole, real, row) else real[right + row]
-    substituted(whole, real, reaction)
-    pushed(whole, real)
+    substitute(whole, real, reaction)
+    apply_reactions(whole, real)
     if (pivot > EASY and not kept and (small or rows <= FEW_ROWS)) or soft_rows:
         return  # reactions of soft rows miss the right side on purpose
     before = math.inf
     for _ in range(MOST_CORRECTIONS if pivot < EASY else 1):
         largest = 0.0
-        missed(whole, real, whole[CHANGE], right, left)
+        residual(whole, real, whole[CHANGE], right, left)
         for row in range(rows):
             if some and left_out(whole, real, row):
                 real[left + row] = 0.0
@@ -222,38 +222,38 @@ def solved(whole, real, small, kept):
         if not 0 < largest < 0.25 * before:
             return
         before = largest
-        substituted(whole, real, left)
+        substitute(whole, real, left)
         for row in range(rows):
             real[reaction + row] += real[left + row]
-        pushed(whole, real)
+        apply_reactions(whole, real)
 
 
 @inner
-def softened(whole, real):
+def assemble_soft(whole, real):
     """Assemble, and add to the diagonal of each soft row its compliance, in parts of what the row feels.
 
     That is its inverse inertia while the rigid rows hold: the diagonal of the Schur complement. Of a row that others
     hold already LEAST_FELT is left, since engines take an estimate that knows no others.
     """
     rows, reaction, left = whole[ROWS], whole[REACTION], whole[LEFT]
-    assembled(whole, real)
+    assemble(whole, real)
     whole[WHICH] = RIGID
-    factorised(whole, real)
+    factorise(whole, real)
     for soft in range(rows):
         if left_out(whole, real, soft):
             for row in range(rows):
                 real[reaction + row] = 1.0 if row == soft else 0.0
-            pushed(whole, real)
-            felt = own = along(whole, real, whole[CHANGE], soft)
+            apply_reactions(whole, real)
+            felt = own = row_times(whole, real, whole[CHANGE], soft)
             for row in range(rows):
                 rigid = not left_out(whole, real, row)
-                real[left + row] = along(whole, real, whole[CHANGE], row) if rigid else 0.0
-            substituted(whole, real, left)
+                real[left + row] = row_times(whole, real, whole[CHANGE], row) if rigid else 0.0
+            substitute(whole, real, left)
             for row in range(rows):
-                felt -= real[left + row] * along(whole, real, whole[CHANGE], row)
+                felt -= real[left + row] * row_times(whole, real, whole[CHANGE], row)
             real[whole[FELT] + soft] = max(felt, LEAST_FELT * own)
     whole[WHICH] = ALL
-    assembled(whole, real)
+    assemble(whole, real)
     for row in range(rows):
         record = whole[ROW_AT] + ROW * row
         diagonal = whole[MATRIX] + whole[record + 4] + row - whole[record + 3]
