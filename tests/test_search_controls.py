@@ -7,8 +7,7 @@ step, and MJX to that of one instant.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
@@ -17,76 +16,16 @@ import pytest
 
 from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
 from engines.conformance.same import Isometry
-from reference.joints import Gear
-from reference.mechanism import Mechanism
 from reference.validation import InvalidMechanism
 from reports.gate.nudged import Altered
 from reports.search import instant_mjx, relations
 from reports.search.recipe import build
 from reports.search.renumbered import RUN, SHAPES, of_a_shape
 from reports.search.subjects import Adapted, Told
-from tests.mistakes import Misbuilt, Mistake
+from tests.planted import FORCES, WRONG, plant, planted
 
 SEED = 1
 SMALL = 1e-4
-FORCES = ("spring", "torsion-spring", "damper", "torsion-damper", "force", "torque")
-FIELD = {"spring": "stiffness", "torsion-spring": "stiffness", "force": "second_point"}  # a force's is its lever arm
-FIELD |= {"damper": "damping", "torsion-damper": "damping", "torque": "torque"}
-# Of joints that hold velocities: a kind of Mistake, and its detail.
-WRONG = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "")}
-
-
-@dataclass(frozen=True)
-class Heavier:
-    """Every inertia off by a part."""
-
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        return replace(mechanism, bodies=tuple(_larger(body, "inertia", self.relative) for body in mechanism.bodies))
-
-
-@dataclass(frozen=True)
-class Stronger:
-    """This number of every force element off by a part."""
-
-    name: str
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        return replace(mechanism, forces=tuple(_larger(force, self.name, self.relative) for force in mechanism.forces))
-
-
-@dataclass(frozen=True)
-class Moved:
-    """A number of the last joint of a kind off by a part: its point on the second body, unless WRONG says another."""
-
-    kind: str
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        own = [joint for joint in mechanism.joints if type(joint).__name__.lower() == self.kind]
-        what, detail = WRONG.get(self.kind, ("point", "second_point x"))
-        return Mistake(what, own[-1].name, detail).made(mechanism, self.relative) if own else mechanism
-
-
-@dataclass(frozen=True)
-class Reversed:
-    """Gears turn the wrong way round: a sign of their row."""
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        joints = tuple(
-            replace(joint, ratio=-joint.ratio) if isinstance(joint, Gear) else joint for joint in mechanism.joints
-        )
-        return Misbuilt(mechanism.bodies, joints, mechanism.gravity, mechanism.forces, right=mechanism)
-
-
-def _larger(part: Any, name: str, relative: float) -> Any:
-    if not hasattr(part, name):
-        return part
-    value = getattr(part, name)
-    return replace(part, **{name: tuple((1 + relative) * v for v in value) if isinstance(value, tuple) else
-                            (1 + relative) * value})  # fmt: skip
 
 
 def asked(engine: Engine, kinds: tuple[str, ...], cases: int, oracle: str) -> Iterator[Told]:
@@ -114,14 +53,6 @@ LEAST = {
 PLANTED = [(engine, kind) for engine, kinds in LEAST.values() for kind in kinds]
 
 
-def planted(kind: str, relative: float) -> Callable[[Mechanism], Mechanism]:
-    if kind == "inertia":
-        return Heavier(relative)
-    if kind == "gear":
-        return Reversed()
-    return Stronger(FIELD[kind], relative) if kind in FORCES else Moved(kind, relative)
-
-
 @pytest.mark.parametrize(("engine", "kind"), PLANTED, ids=lambda value: getattr(value, "name", value))
 def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> None:
     if engine.missing:
@@ -144,8 +75,7 @@ def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str,
     right = list(asked(engine, kinds, 40, "instant"))
     assert len(right) >= 4  # of slots, whose bodies seldom have no other joint
     assert not [told for told in right if told.faults]
-    build, change = box2d.Box2D.build, planted(kind, 1e-3)
-    monkeypatch.setattr(box2d.Box2D, "build", lambda self, mechanism, dt: build(self, change(mechanism), dt))
+    plant(monkeypatch, planted(kind, 1e-3))
     assert is_found(engine, kinds, 40, "instant")
 
 
@@ -194,13 +124,7 @@ def test_mjx_lacks_the_velocity_term_of_loops_and_nothing_else() -> None:
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("kind", ["inertia", "force"])
 def test_a_fault_planted_in_mjx_is_found(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right, change = mjx.Mjx.model, planted(kind, SMALL)
-
-    def wrong(self: mjx.Mjx, mechanism: Mechanism, dt: float) -> Any:
-        model, held = right(self, change(mechanism), dt)
-        return replace(model, mechanism=mechanism), held
-
-    monkeypatch.setattr(mjx.Mjx, "model", wrong)
+    plant(monkeypatch, planted(kind, SMALL))
     found = {
         check for number in range(4) for check in Adapted(mjx.TUNED).ask(_shaped(number), number, ("instant",)).faults
     }

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,22 +13,23 @@ import pytest
 
 from engines import Promise, Run
 from engines.lagrange import Lagrange
-from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
+from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco.joints import rod_gear_weld
 from engines.mujoco.joints import slot as mujoco_slot
 from engines.mujoco.running import MuJoCoRun
-from engines.pymunk import LEAPFROG, Pymunk
+from engines.pymunk import LEAPFROG
 from engines.pymunk import model as pymunk_model
-from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reports.gate.nudged import Altered
 from reports.search import instant_mujoco, motions, raw, raw_draw, raw_law, relations
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
 from reports.search.subjects import OURS, Adapted, Alone, Told
-from tests.wrong_adapters import Spoiled
+from tests.planted import Heavier, Stronger, plant
+from tests.wrong_adapters import Spoiled, Wrong
 
 SEED = 1
 
@@ -66,28 +66,9 @@ def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
 # ------------------------------------------------------------------------------------- mistakes put into adapters
 
 
-@dataclass(frozen=True)
-class HeavierToTurn(MuJoCo):
-    """An inertia off by 1e-4."""
-
-    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
-        return super().build(_turning_harder(mechanism), dt)
-
-
-@dataclass(frozen=True)
-class HeavierToTurnThere(Pymunk):
-    """The same in pymunk."""
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
-        return super().swept_model(_turning_harder(mechanism), dt, sweeping)
-
-
-def _turning_harder(mechanism: Mechanism) -> Mechanism:
-    return replace(mechanism, bodies=tuple(replace(body, inertia=1.0001 * body.inertia) for body in mechanism.bodies))
-
-
-@pytest.mark.parametrize("engine", [HeavierToTurn("default"), HeavierToTurnThere("leapfrog", leapfrog=True)])
-def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any) -> None:
+@pytest.mark.parametrize("engine", [DEFAULT, LEAPFROG], ids=lambda engine: engine.name)
+def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    plant(monkeypatch, Heavier(1e-4))
     assert faults(engine, ("pin",), 6) & {"acceleration", "velocity"}
 
 
@@ -134,50 +115,42 @@ def test_a_reaction_read_at_the_wrong_time_is_found(monkeypatch: pytest.MonkeyPa
     assert "reaction" in faults(DEFAULT, ("pin",), 6)
 
 
-@dataclass(frozen=True)
-class Downwards(Pymunk):
-    """Gravity as strong as asked for, and downwards whatever its direction."""
-
-    def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return super().build(replace(mechanism, gravity=(0.0, -math.hypot(*mechanism.gravity))), dt)
-
-
 def test_a_direction_of_the_world_that_is_taken_for_granted_is_found() -> None:
-    subject = Adapted(Downwards("tuned"))
+    subject = Adapted(Wrong("gravity points down"))
     case = next(case for case in (subject.draw(SEED, n, ("pin",), 0) for n in range(20)) if case.gravity[0])
     assert subject.ask(case, NAMES.index("turned"), ("relations",)).faults == ("turned",)
 
 
 @dataclass(frozen=True)
-class InItsUnits(Lagrange):
-    """Takes a fixed mass [kg], or arm [m], for granted on every body beside what it is told."""
+class InItsUnits:
+    """A fixed mass [kg], or arm [m], is taken for granted on every body beside what is told."""
 
     mass: float = 0.0
     arm: float = 0.0
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
         bodies = tuple(
             replace(body, mass=body.mass + self.mass, inertia=body.inertia + body.mass * self.arm**2)
             for body in mechanism.bodies
         )
-        return super().build(replace(mechanism, bodies=bodies), dt)
+        return replace(mechanism, bodies=bodies)
 
 
 @pytest.mark.parametrize(
     ("name", "wrong"),
     [
-        ("in other masses", InItsUnits("rk4", "projection", mass=0.01)),
-        ("in other lengths", InItsUnits("rk4", "projection", arm=0.01)),
+        ("in other masses", InItsUnits(mass=0.01)),
+        ("in other lengths", InItsUnits(arm=0.01)),
     ],
 )
-def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: Lagrange) -> None:
+def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: InItsUnits) -> None:
     def found(engine: Any) -> set[str]:
         subject, number = Adapted(engine), NAMES.index(name)
         cases = [subject.draw(SEED, case, ("pin",), 0) for case in range(8)]
         return {fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults}
 
     assert found(Lagrange("rk4", "projection")) == set()
-    assert found(wrong) == {name}
+    assert found(Altered(Lagrange("rk4", "projection"), wrong)) == {name}
 
 
 @pytest.mark.parametrize("name", ["in other masses", "in other lengths"])
@@ -231,8 +204,7 @@ def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_
         one for one, soft in zip(told(TUNED, kinds, len(cases), "motions"), gives_way(DEFAULT), strict=True) if soft
     ]
     assert any(one.errors for one in loops)
-    harder = HeavierToTurn("tuned", **{f.name: getattr(TUNED, f.name) for f in fields(TUNED) if f.name != "variant"})
-    assert faults(harder, kinds, len(cases), "motions")
+    assert faults(Altered(TUNED, Heavier(1e-4)), kinds, len(cases), "motions")
 
 
 @dataclass(frozen=True)
@@ -248,16 +220,11 @@ def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
     assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
 
 
-@dataclass(frozen=True)
-class Careless(Lagrange):
-    """Gives an exception where it can't go on."""
-
-    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
+    def loses(mechanism: Mechanism) -> Mechanism:
         raise KeyError("body 7")
 
-
-def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
-    [one] = told(Careless(), ALL, 1, "motions")
+    [one] = told(Altered(Lagrange(), loses), ALL, 1, "motions")
     assert one.faults == ("raised",)
     assert "body 7" in one.words
 
@@ -350,43 +317,11 @@ def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("kind", ["rod", "gear", "weld", "spring", "force"])
-def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(kind: str) -> None:
-    assert "velocity" in faults(HeavierToTurnThere("leapfrog", leapfrog=True), ("pin", kind), 12)
-
-
-@dataclass(frozen=True)
-class Otherwise(MuJoCo):
-    """Builds force elements with one number changed."""
-
-    changed: tuple[str, ...] = ()
-    factor: float = 1.0001
-
-    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
-        run = super().build(_with_forces(mechanism, self.changed, self.factor), dt)
-        return replace(run, model=replace(run.model, mechanism=mechanism))
-
-
-@dataclass(frozen=True)
-class OtherwiseThere(Pymunk):
-    """The same in pymunk."""
-
-    changed: tuple[str, ...] = ()
-    factor: float = 1.0001
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
-        return super().swept_model(_with_forces(mechanism, self.changed, self.factor), dt, sweeping)
-
-
-def _with_forces(mechanism: Mechanism, names: tuple[str, ...], factor: float) -> Mechanism:
-    def changed(force: Any) -> Any:
-        for name in names:
-            if hasattr(force, name):
-                value = getattr(force, name)
-                several = isinstance(value, tuple)
-                return replace(force, **{name: tuple(factor * v for v in value) if several else factor * value})
-        return force
-
-    return replace(mechanism, forces=tuple(map(changed, mechanism.forces)))
+def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Heavier(1e-4))
+    assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
 
 
 @pytest.mark.parametrize(
@@ -403,22 +338,23 @@ def _with_forces(mechanism: Mechanism, names: tuple[str, ...], factor: float) ->
         ("second_point", "force"),
     ],
 )
-def test_a_force_element_off_by_one_in_ten_thousand_is_found(name: str, kind: str) -> None:
-    assert "acceleration" in faults(Otherwise("tuned", changed=(name,)), ("pin", kind), 12)
+def test_a_force_element_off_by_one_in_ten_thousand_is_found(
+    name: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Stronger(name, 1e-4))
+    assert "acceleration" in faults(TUNED, ("pin", kind), 12)
     if "damp" not in kind:  # which pymunk takes among its sweeps, so that no law of a step is asked for
-        assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True, changed=(name,)), ("pin", kind), 12)
+        assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
 
 
-def test_a_spring_that_pushes_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
+def test_a_stiffer_spring_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
     """An engine that declares nothing at an instant is held to the judge's motion."""
-
-    @dataclass(frozen=True)
-    class Pushing(Lagrange):
-        def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-            return super().build(_with_forces(mechanism, ("stiffness",), 1.01), dt)
-
-    assert faults(Pushing("rk4", "projection"), ("pin", "spring"), 4, "motions") & {"motion", "reactions"}
-    assert faults(Lagrange("rk4", "projection"), ("pin", "spring"), 4, "motions") == set()
+    right = Lagrange("rk4", "projection")
+    assert faults(Altered(right, Stronger("stiffness", 0.01)), ("pin", "spring"), 4, "motions") & {
+        "motion",
+        "reactions",
+    }
+    assert faults(right, ("pin", "spring"), 4, "motions") == set()
 
 
 # --------------------------------------------------------------------------------------------- faults of MuJoCo's own

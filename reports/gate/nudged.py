@@ -41,6 +41,10 @@ class Altered(Around):
     def variant(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
         return self.engine.variant
 
+    def within(self, mechanism: Mechanism) -> Engine:
+        """Itself: what is inside is not stepped as it is."""
+        return self
+
     def build(self, mechanism: Mechanism, dt: float) -> Run:
         """Raises whatever the change and the engine raise."""
         return self.engine.build(self.change(mechanism), dt)
