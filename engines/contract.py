@@ -244,6 +244,9 @@ class Around(Engine):
     def touches(self) -> bool:
         return self.engine.touches
 
+    def prepare(self) -> None:
+        self.engine.prepare()
+
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         return self.engine.order(mechanism)
 
