@@ -44,6 +44,7 @@ FILES = {
     "theirs/__init__.py": "",
     "theirs/plugin.py": """
 from dataclasses import dataclass, field
+from engines import Engine
 from importlib import import_module
 from pathlib import Path
 
@@ -57,12 +58,11 @@ TABLE = Path(__file__).with_name("table.csv")
 GRID = Path(__file__).parent / "data" / "grid.bin"
 
 @dataclass(frozen=True)
-class Base:
+class Base(Engine):
     variant: str = "default"
     name: str = "theirs"
     packages = ()
-    family = "theirs"
-    order = step_cost = holder = softness = print
+    order = step_cost = holder = print
 
 @dataclass(frozen=True)
 class Plugin(Base):
