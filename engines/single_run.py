@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.contract import Engine, OneShot, Size, Unsupported
-from engines.read_reactions import reactions
 from engines.tree import Tree
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -108,6 +107,24 @@ class Recorded:
     inertias: Array
     gravity: Array
     warnings: tuple[str, ...] = ()
+
+
+def reactions(
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    acceleration: Array,
+    inertias: Array,
+    gravity: Array | tuple[float, float],
+) -> Array:
+    """Reactions from accelerations at samples, with the engine's own masses and gravity; NaN where these are none."""
+    out = np.full((len(pose), mechanism.row_count), np.nan)
+    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
+    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
+    if mechanism.row_count and np.any(sane):
+        with np.errstate(all="ignore"):
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
+    return out
 
 
 def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:

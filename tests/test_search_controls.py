@@ -22,7 +22,7 @@ from reports.search import instant_mjx, relations
 from reports.search.recipe import build
 from reports.search.renumbered import RUN, SHAPES, of_a_shape
 from reports.search.subjects import Adapted, Told
-from tests.planted import FORCES, WRONG, plant, planted
+from tests.mistakes import FORCES, WRONG, plant, planted
 
 SEED = 1
 SMALL = 1e-4

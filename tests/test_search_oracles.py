@@ -28,7 +28,7 @@ from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
 from reports.search.subjects import OURS, Adapted, Alone, Told
-from tests.planted import Heavier, Stronger, plant
+from tests.mistakes import Heavier, Stronger, plant
 from tests.wrong_adapters import Spoiled, Wrong
 
 SEED = 1

@@ -17,7 +17,7 @@ from engines import Size
 from engines.pymunk.batched import Recorder
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
-from engines.read_reactions import reactions
+from engines.single_run import reactions
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
