@@ -11,7 +11,7 @@ Asked = TypeVar("Asked", bound=Callable[..., Any])
 
 
 def by_identity(most: int = 8) -> Callable[[Asked], Asked]:
-    """Keep the last `most` answers of a function whose first argument equals itself alone.
+    """Keep the last `most` answers of a function whose first argument equals itself alone; none to named arguments.
 
     To compare all numbers of two mechanisms, or of two rolling pairs, would take as long as many an answer.
     """
@@ -20,12 +20,15 @@ def by_identity(most: int = 8) -> Callable[[Asked], Asked]:
         known: deque[tuple[tuple[Any, ...], Any]] = deque(maxlen=most)
 
         @wraps(function)
-        def asked(first: Any, *rest: Any) -> Any:
+        def asked(*given: Any, **named: Any) -> Any:
+            if named or not given:
+                return function(*given, **named)
+            first, rest = given[0], given[1:]
             for (before, *others), answer in known:
                 if before is first and tuple(others) == rest:
                     return answer
-            answer = function(first, *rest)
-            known.append(((first, *rest), answer))
+            answer = function(*given)
+            known.append((given, answer))
             return answer
 
         return asked  # type: ignore[return-value]
