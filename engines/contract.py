@@ -139,13 +139,12 @@ class Run(Protocol):
 
 
 class OneShot:
-    """The base of a run that can't be repeated."""
+    """The base of a run: what it has once begun can't begin again."""
 
     _over = False
 
-    def _begin(self, mechanism: Mechanism, samples: int) -> None:
-        """Raises RuntimeError at the second call, InvalidMechanism where so many samples have no room."""
-        mechanism.require_room(samples)
+    def begin(self) -> None:
+        """Raises RuntimeError at the second call."""
         if self._over:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._over = True

@@ -166,7 +166,8 @@ class SingleRun(OneShot):
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
-        self._begin(self._mechanism, samples)
+        self._mechanism.require_room(samples)
+        self.begin()
         found = self._record(samples, every)
         pose, twist = found.pose.copy(), found.twist.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.

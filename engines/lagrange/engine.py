@@ -170,7 +170,8 @@ class _LagrangeRun(OneShot):
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
-        self._begin(self._mechanism, samples)
+        self._mechanism.require_room(samples)
+        self.begin()
         shape = (samples + 1, *self._mechanism.pose.shape)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         started = time.process_time()
