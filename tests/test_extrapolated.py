@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from engines import Run, Size, Unsupported
+from engines import CLAIM, Run, Size, Unsupported
 from engines.extrapolated import Extrapolated, combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.mechanism import Mechanism
@@ -193,14 +193,24 @@ def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_a
     assert np.all(estimate < 30 * error)
 
 
-def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
+def test_runs_that_step_over_a_damper_trust_no_fall_and_are_unresolved_from_the_start():
     # 1 / 3 kg m^2 about the pin, and so strong a damper: what moves is at rest after a third of a millisecond.
     own = replace(pendulum(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
-    exact = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
-    assert exact.build(own, 0.9 * own.time_scale)(10, 1).unresolved_at is None
-    over = exact.build(own, 1.1 * own.time_scale)(10, 1)
+    # Its last difference is 5e-8, and the one before a thousand times as large.
+    falling = Extrapolated(Toy({2: 1e8, 3: 3e9}), "extended", (1, 2, 3), (2, 3))
+    assert falling.build(own, 0.99 * own.time_scale)(10, 1).unresolved_at is None
+    over = falling.build(own, 1.01 * own.time_scale)(10, 1)
     assert over.unresolved_at == 0
     assert any("unresolved from 0 s on" in words for words in over.warnings)
+    exact = Extrapolated(Toy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
+    assert exact.build(own, 1.01 * own.time_scale)(10, 1).unresolved_at is None
+
+
+def test_a_motion_is_unresolved_from_before_its_estimate_is_above_the_claim():
+    method = Extrapolated(Toy({2: 1.0, 3: 300.0, 4: 100.0, 5: 100.0}), "extended", (1, 2, 3, 4), (2, 3, 4))
+    found = method.build(pendulum(), 0.05)(60, 1)
+    above = np.max(present(found.estimate), axis=(1, 2)) > CLAIM
+    assert 0 < present(found.unresolved_at) < found.t[np.argmax(above)]
 
 
 def test_reactions_are_told_by_the_forces_that_act_and_not_by_themselves(monkeypatch):

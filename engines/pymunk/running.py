@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any
@@ -24,9 +24,6 @@ from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
-# Steps at the beginning of a run with sweeps that leave nothing: what the cold start of the impulses leaves otherwise
-# falls by a fifth only in a step, and is felt in the reactions of the first samples.
-SETTLING = 4
 UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
 
 
@@ -47,11 +44,11 @@ def record(
     samples: int,
     every: int,
     raw: bool,
-    settling: int = 0,
+    settling: Sequence[int] = (),
 ) -> Recording:
     """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
 
-    With `settling`, the first SETTLING steps have so many iterations.
+    `settling`: the iterations of the first steps.
     """
     velocities = every > 1
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
@@ -63,20 +60,16 @@ def record(
     steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
-    steps_left = SETTLING if settling else 0
+    first = list(reversed(settling))
 
     def settle(space: Any, dt: float) -> None:
-        nonlocal steps_left
-        if steps_left > 0:
-            lib.cpSpaceSetIterations(pointer, max(settling, own))
+        lib.cpSpaceSetIterations(pointer, first.pop() if first else own)
         step(space, dt)
-        lib.cpSpaceSetIterations(pointer, own)
-        steps_left -= 1
 
     begin = time.process_time()
     try:
         for _ in repeat(None, samples):
-            move = settle if steps_left > 0 else step
+            move = settle if first else step
             if velocities:
                 for _ in steps_between:
                     move(space, dt)
@@ -146,9 +139,12 @@ class PymunkRun:
         make: Callable[[Sweeping], Model],
         swept: Callable[[float], Sweeping],
         leapfrog: bool,
-        settled: bool,
+        settled: int,
     ) -> None:
-        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds."""
+        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds.
+
+        `settled`: see `Sweeping.settling`.
+        """
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
         self._leapfrog, self._settled, self._over = leapfrog, settled, False
         self.size: Size = make(swept(0.0)).size
@@ -178,7 +174,7 @@ class PymunkRun:
         begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
         planning = time.process_time() - begin
-        model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
+        model, settling = self._started(sweeping), sweeping.settling(self._settled)
         recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
