@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
 from engines.finer import Division, Lasting, division, tells_itself
+from engines.single_run import OneShot
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -179,7 +180,7 @@ class Extrapolated(Valid):
         )
 
 
-class ExtrapolatedRun:
+class ExtrapolatedRun(OneShot):
     """The built models of all levels, ready to be stepped once; see `engines.Run`."""
 
     def __init__(
@@ -193,7 +194,7 @@ class ExtrapolatedRun:
         self._method, self._mechanism, self._dt, self._divided = method, mechanism, dt, divided
         # What differences of poses are measured by [m, m, rad].
         self._scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-        self._runs, self._over = self._built(1), False
+        self._runs = self._built(1)
         self.size: Size = self._runs[0].size
 
     def _built(self, finer: int) -> tuple[Run, ...]:
@@ -205,9 +206,7 @@ class ExtrapolatedRun:
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         asked = every
         every = _watched(samples, asked, len(self._mechanism.bodies))
         samples, each = samples * (asked // every), asked // every

@@ -165,21 +165,31 @@ def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
     return out
 
 
-class SingleRun:
+class OneShot:
+    """The base of a run: what it has once begun can't begin again."""
+
+    _over = False
+
+    def begin(self) -> None:
+        """Raises RuntimeError at the second call."""
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+
+
+class SingleRun(OneShot):
     """A model, ready to be stepped once; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
         """`record(samples, every)` steps the model, with steps of dt [s]."""
-        self._mechanism, self._dt, self._record, self._over = mechanism, dt, record, False
+        self._mechanism, self._dt, self._record = mechanism, dt, record
         self.size = size
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         found = self._record(samples, every)
         pose, twist = found.pose.copy(), found.twist.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.

@@ -17,7 +17,9 @@ and begins to grow between two and three times these within 2 s; with all of the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
 from math import ceil, log
 from typing import Annotated
 
@@ -49,15 +51,28 @@ CONTACT_CONVERGED = 1000
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
-_latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
+
+def latest(answer: Callable[..., float]) -> Callable[..., float]:
+    """Keep the latest answer about a mechanism: an extrapolation asks for the same several times in a row.
+
+    It is about that very mechanism, and not an equal one, so that a run that is made again costs as much again.
+    """
+    kept: list[tuple[Mechanism, tuple[float, ...], float]] = []
+
+    @wraps(answer)
+    def asked(mechanism: Mechanism, *rest: float) -> float:
+        if not (kept and kept[0][0] is mechanism and kept[0][1] == rest):
+            kept[:] = [(mechanism, rest, answer(mechanism, *rest))]
+        return kept[0][2]
+
+    return asked
 
 
+@latest
 @validated
 def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
-    if not (_latest and _latest[0][0] is mechanism):
-        _latest[:] = [(mechanism, contraction_at(mechanism, mechanism.pose))]
-    return _latest[0][1]
+    return contraction_at(mechanism, mechanism.pose)
 
 
 @validated

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import pymunk
 from pymunk.constraints import PivotJoint
@@ -59,6 +59,10 @@ class Pymunk(Valid):
     Raises ValueError for other values: the engine would abort the process.
     """
 
+    name: ClassVar[str] = "pymunk"
+    packages: ClassVar[tuple[str, ...]] = ("pymunk",)
+    family: ClassVar[str] = "pymunk"
+
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
     error_bias: Fraction | Literal["contraction"] = SHIPPED_ERROR_BIAS
@@ -72,18 +76,6 @@ class Pymunk(Valid):
     settled: Whole = 0
     fewest: Count = FEWEST
     work: Whole = 0
-
-    @property
-    def name(self) -> str:
-        return "pymunk"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("pymunk",)
-
-    @property
-    def family(self) -> str:
-        return "pymunk"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from engines import Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
@@ -19,21 +20,13 @@ class Extended(Valid):
     others.
     """
 
+    name: ClassVar[str] = "pymunk"
+    packages: ClassVar[tuple[str, ...]] = ("pymunk",)
+    family: ClassVar[str] = "pymunk"
+
     variant: Name
     skates: Extrapolated
     pins: Extrapolated
-
-    @property
-    def name(self) -> str:
-        return "pymunk"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("pymunk",)
-
-    @property
-    def family(self) -> str:
-        return "pymunk"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:

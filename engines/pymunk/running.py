@@ -11,20 +11,68 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import lib
+from pymunk._chipmunk_cffi import ffi, lib
+from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import Size
-from engines.pymunk.batched import Recorder
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.read_reactions import reactions
+from engines.single_run import OneShot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
+VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
+# C grows an array a little before it is full, and ours are not its own to grow.
+SPARE = 64
 UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
+
+
+class Recorder:
+    """Copies the bodies of a space, in C, to the end of an array that is allocated before.
+
+    `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record.
+    """
+
+    def __init__(self, space: pymunk.Space, bodies: tuple[pymunk.Body, ...], states: int, velocities: int) -> None:
+        visited = visited_bodies(space)
+        self._order = [visited.index(body.id) for body in bodies]
+        self._count = len(visited)
+        length = (6 * states + 3 * velocities) * self._count
+        room = np.full(length + SPARE, np.nan)
+        self.values = room[:length]
+        floats = ffi.from_buffer("double[]", room)
+        integers = ffi.new("pmIntArray *")
+        target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
+        self._owned = (floats, integers, target)  # C holds bare pointers to these
+        self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
+        self.states, self.velocities = (
+            ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
+            for fields in (STATES, VELOCITIES)
+        )
+
+    def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
+        """States (samples + 1, bodies, 6) and the velocities one step before each (samples, bodies, 3).
+
+        In the array stands a state, then for every sample, if `with_velocities`, velocities and a state, else a state.
+        """
+        first, rest = np.split(self.values, [6 * self._count])
+        rest = rest.reshape(samples, -1)
+        split = 3 * self._count if with_velocities else 0
+        states = np.concatenate([first[None], rest[:, split:]]).reshape(samples + 1, self._count, 6)
+        before = rest[:, :split].reshape(samples, self._count, 3) if with_velocities else states[:-1, :, 3:]
+        return states[:, self._order], before[:, self._order]
+
+
+def visited_bodies(space: pymunk.Space) -> list[int]:
+    """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
+    buffer = Buffer()
+    get_space_bodies(space, BodyFields.BODY_ID, buffer)
+    return list(memoryview(buffer.int_buf()).cast("P"))
 
 
 @dataclass(frozen=True)
@@ -129,7 +177,7 @@ def loads(model: Model) -> tuple[Array, tuple[float, float]]:
     return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # a unit squared may overflow
 
 
-class PymunkRun:
+class PymunkRun(OneShot):
     """One model, ready to be stepped once; see `engines.Run`."""
 
     def __init__(
@@ -146,7 +194,7 @@ class PymunkRun:
         `settled`: see `Sweeping.settling`.
         """
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
-        self._leapfrog, self._settled, self._over = leapfrog, settled, False
+        self._leapfrog, self._settled = leapfrog, settled
         self.size: Size = make(swept(0.0)).size
 
     def _started(self, sweeping: Sweeping) -> Model:
@@ -168,9 +216,7 @@ class PymunkRun:
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory:
         """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
         self._mechanism.require_room(samples)
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
         planning = time.process_time() - begin
