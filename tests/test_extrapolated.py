@@ -129,7 +129,10 @@ def test_runs_that_are_no_series_in_the_step_give_the_finest_and_say_from_when_o
     turned = Extrapolated(Toy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(pendulum(), 0.1)(10, 3)
     finest = Toy(turned_above=0.03).build(pendulum(), 0.025)(10, 12)
     assert turned.unresolved_at == pytest.approx(2.1)
-    assert turned.warnings == ("ours: unresolved from 2.1 s on, the runs are no series in the step",)
+    assert turned.warnings == (
+        "ours: reactions are resolved to 5e-01 of the largest force",  # those of the other runs are of their poses
+        "ours: unresolved from 2.1 s on, the runs are no series in the step",
+    )
     late = turned.t > 2
     for name in ("pose", "twist", "reaction"):
         assert np.array_equal(getattr(turned, name)[late], getattr(finest, name)[late])
@@ -190,7 +193,11 @@ def test_the_estimate_is_near_the_error_of_a_series_also_where_it_is_no_longer_a
     error = np.abs(combine(values, extrapolation_weights(levels, powers)) - np.arange(1, 4))
     estimate = expected_error(values, levels, powers)
     assert np.all(estimate > error)
-    assert np.all(estimate < 30 * error)
+    # Where differences fall by more than a hundredfold, the last one counts all the same, in part.
+    last = np.abs(
+        np.subtract(*(combine(values[i:], extrapolation_weights(levels[i:], powers[: 4 - i])) for i in (0, 1)))
+    )
+    assert np.all(estimate < np.maximum(30 * error, last))
 
 
 def test_runs_that_step_over_a_damper_trust_no_fall_and_are_unresolved_from_the_start():
