@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from typing import Literal
 
 import pymunk
 from pymunk.constraints import PivotJoint
@@ -40,8 +40,24 @@ CONTRACTION = "contraction"
 STEP_COST, SWEEP_COST = 2e-6, 13e-9
 
 
+class Named(Valid):
+    """The base of all of pymunk's methods."""
+
+    @property
+    def name(self) -> str:
+        return "pymunk"
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        return ("pymunk",)
+
+    @property
+    def family(self) -> str:
+        return "pymunk"
+
+
 @dataclass(frozen=True)
-class Pymunk(Valid):
+class Pymunk(Named):
     """An engine in the sense of `engines.Engine`.
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
@@ -58,10 +74,6 @@ class Pymunk(Valid):
 
     Raises ValueError for other values: the engine would abort the process.
     """
-
-    name: ClassVar[str] = "pymunk"
-    packages: ClassVar[tuple[str, ...]] = ("pymunk",)
-    family: ClassVar[str] = "pymunk"
 
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from engines import Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
+from engines.pymunk.engine import Named
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
-from reference.validation import Name, Positive, Valid, validated
+from reference.validation import Name, Positive, validated
 
 
 @dataclass(frozen=True)
-class Extended(Valid):
+class Extended(Named):
     """An engine in the sense of `engines.Engine` that takes one of two others, by the mechanism's joints and forces.
 
     `skates`: skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`: all
     others.
     """
-
-    name: ClassVar[str] = "pymunk"
-    packages: ClassVar[tuple[str, ...]] = ("pymunk",)
-    family: ClassVar[str] = "pymunk"
 
     variant: Name
     skates: Extrapolated
