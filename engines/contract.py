@@ -136,6 +136,18 @@ class Run(Protocol):
     def __call__(self, samples: Count, every: Count) -> Trajectory: ...
 
 
+class OneShot:
+    """The base of a run: what it has once begun can't begin again."""
+
+    _over = False
+
+    def begin(self) -> None:
+        """Raises RuntimeError at the second call."""
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+
+
 @runtime_checkable
 class Engine(Protocol):
     """See the module's numbered contract."""

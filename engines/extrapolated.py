@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
+from engines.contract import OneShot
 from engines.finer import Division, Lasting, division, tells_itself
-from engines.single_run import OneShot
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory

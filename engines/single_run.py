@@ -16,7 +16,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Holder, Size, Softness, Unsupported
+from engines.contract import Holder, OneShot, Size, Softness, Unsupported
 from engines.read_reactions import reactions
 from engines.tree import Tree
 from reference.mechanism import Mechanism
@@ -163,18 +163,6 @@ def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
             expected = out[sample - 1] + (rate[sample - 1] + rate[sample]) / 2 * spacing
             out[sample] += 2 * np.pi * np.round((expected - out[sample]) / (2 * np.pi))
     return out
-
-
-class OneShot:
-    """The base of a run: what it has once begun can't begin again."""
-
-    _over = False
-
-    def begin(self) -> None:
-        """Raises RuntimeError at the second call."""
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
 
 
 class SingleRun(OneShot):

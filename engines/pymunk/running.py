@@ -15,10 +15,10 @@ from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from engines import Size
+from engines.contract import OneShot
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.read_reactions import reactions
-from engines.single_run import OneShot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validation import Count, validated
