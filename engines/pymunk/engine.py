@@ -47,7 +47,8 @@ class Pymunk(Engine, Valid):
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
-    more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
+    more `work`, sweeps times joints. `settled`: how many steps has each stage at the beginning of a run, in which
+    sweeps become fewer, from as many as leave nothing; 0 for none.
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -71,7 +72,7 @@ class Pymunk(Engine, Valid):
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
-    settled: bool = False
+    settled: Whole = 0
     fewest: Count = FEWEST
     work: Whole = 0
 
@@ -124,6 +125,11 @@ class Pymunk(Engine, Valid):
             self.leapfrog,
             self.settled,
         )
+
+    @validated
+    def settled_for(self, steps: Count) -> Pymunk:
+        """The same with stages of so many steps, if it settles: see `engines.extrapolated.Settling`."""
+        return replace(self, settled=steps) if self.settled else self
 
     @validated
     def iterations_of(self, mechanism: Mechanism) -> int:

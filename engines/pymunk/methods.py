@@ -22,7 +22,7 @@ LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate
 # What is extrapolated has to be smooth in the step from the first sample on, and stable: about two milliseconds a step
 # for the few mechanisms whose rows nearly depend on each other, where 300 sweeps leave nearly all.
 WORK = 200_000
-SETTLED = replace(LEAPFROG, settled=True, work=WORK)
+SETTLED = replace(LEAPFROG, settled=1, work=WORK)
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
 # To aim a groove takes as long as these forty.
 AIMED = Pymunk(
@@ -31,7 +31,7 @@ AIMED = Pymunk(
     "contraction",
     skate="groove",
     roll="pivot",
-    settled=True,
+    settled=1,
     fewest=40,
     work=WORK,
 )
