@@ -25,7 +25,7 @@ REFERRING = ("name", "body", "body1", "body2")
 def as_text(model: Model, softening: float) -> str:
     """The file's text. Raises Unsupported for a model that our code helps while it is stepped."""
     hooks = model.hooks
-    if hooks.control or hooks.passive or hooks.before or hooks.start or model.written or model.drive == "overwrite":
+    if hooks.control or hooks.before or model.drive == "overwrite":
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
     if softening != 1:
         raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
