@@ -66,7 +66,7 @@ NOT_MADE_BY_USERS = {
         "engines.reading.Reading",
     ),
     *("engines.mujoco.reading.frame.Frame", "engines.mujoco.reading.frame.Groups", "engines.mujoco.writers.Mjcf"),
-    *("engines.mujoco.reading.joints.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
+    *("engines.mujoco.reading.elements.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
     "engines.mujoco.writers.Urdf",
     *("engines.pymunk.reading.joints.Described", "engines.pymunk.reading.own_model.OwnPymunk"),
     *("engines.single_run.Recorded", "engines.conformance.changes.Isometry"),

@@ -39,12 +39,12 @@ Binder = Callable[[Any, Sequence[int]], Hooks]
 class WrittenJoint:
     """A joint held by rows of ours: a law of `engines.mujoco.user_rows`, and the numbers that it asks for.
 
-    `first` and `second` are indices of bodies, None for the ground; `rolled` is where rolling puts the second.
+    `first` and `second` are names of bodies, None for the ground; `rolled` is where rolling puts the second.
     """
 
     law: Law
-    first: int | None
-    second: int | None
+    first: str | None
+    second: str | None
     numbers: tuple[float, ...]
     rolled: Rolled | None = None
 
@@ -119,8 +119,17 @@ class Building:
 
     def write(self, law: Law, joint: Any, numbers: Sequence[float], rolled: Rolled | None = None) -> None:
         """Rows of ours for this joint."""
-        first, second = self.index(joint.first), self.index(joint.second)
-        self.written.append(WrittenJoint(law, first, second, tuple(numbers), rolled))
+        self.written.append(WrittenJoint(law, joint.first, joint.second, tuple(numbers), rolled))
+
+    def chain(self, joint: WrittenJoint) -> list[int]:
+        """The tree coordinates that can move a joint, ascending."""
+        links, columns = {link.body: link for link in self.tree.links}, set[int]()
+        for name in (joint.first, joint.second):
+            body = self.index(name)
+            while body is not None:
+                columns.update(links[body].columns)
+                body = links[body].parent
+        return sorted(columns)
 
     @property
     def gains(self) -> tuple[float, float]:

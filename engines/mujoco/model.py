@@ -142,7 +142,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     add_rolls(building, of(Roll), settings.rolls)
     if building.written:
         # The placeholders come last: what stands before them in the solver is then known.
-        user_rows().add_placeholders(spec, tree, building.written, settings.stiffness.impedance)
+        user_rows().add_placeholders(building)
     compiled = _compiled(building)
     places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
     steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]

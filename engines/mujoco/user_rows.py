@@ -24,7 +24,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.construction import Callback, WrittenJoint
+from engines.mujoco.construction import Building, Callback, WrittenJoint
 from engines.tree import Tree
 
 try:
@@ -39,8 +39,8 @@ State = tuple[float, float, float, float, float, float]
 Row = tuple[float, float, float, float, float, float, float]
 
 PLACEHOLDER = "written row {}"
-SKATE, SLOT, ROD, ROLL = range(4)
-LAWS = {"skate": SKATE, "slot": SLOT, "rod": ROD, "roll": ROLL}
+LAWS = ("skate", "slot", "rod", "roll")
+SKATE, SLOT, _, ROLL = range(len(LAWS))
 # A plan is one array: how many links and joints there are, the first row in MuJoCo's arrays, how far ahead [s] of the
 # present pose rows are asked for; then links, joints, and room for the links' motions. Of a link: its parent, the
 # columns of its slides and its rotation (minus one for none), the body's start, and its arm, anchor and direction in
@@ -197,11 +197,6 @@ def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
 
 
 @_compiled
-def _state(plan: Any, m: int) -> State:
-    return plan[m], plan[m + 1], plan[m + 12], plan[m + 3], plan[m + 4], plan[m + 5]
-
-
-@_compiled
 def _take(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian: Any, line: int, width: int) -> float:
     """Write a row of two bodies as one of the tree's coordinates, from this place on; what J a is to be there."""
     links, right = int(plan[0]), row[6]
@@ -238,7 +233,9 @@ def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None
         _move(plan, HEADER + LINK * own, moving, moving + MOVING * own, q, v)
     for at in range(all_joints, moving, JOINT):
         law, ends = int(plan[at]), (int(plan[at + 1]), int(plan[at + 2]))
-        first, second = _state(plan, moving + MOVING * ends[0]), _state(plan, moving + MOVING * ends[1])
+        m, n = moving + MOVING * ends[0], moving + MOVING * ends[1]
+        first = plan[m], plan[m + 1], plan[m + 12], plan[m + 3], plan[m + 4], plan[m + 5]
+        second = plan[n], plan[n + 1], plan[n + 12], plan[n + 3], plan[n + 4], plan[n + 5]
         numbers = plan[at + 3 : at + JOINT]
         if law == ROLL:
             across, own_row = roll_rows(numbers, first, second)
@@ -252,12 +249,14 @@ def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None
             own_row = rod_row(numbers, first, second)
         reference[row] = _take(plan, moving, ends, own_row, jacobian, row * width, width)
         row += 1
+    total = 0.0
     for written in range(first_row, row):
-        if not math.isfinite(reference[written]):
-            for place in range(first_row * width, row * width):
-                jacobian[place] = 0.0
-            for lost in range(first_row, row):
-                reference[lost] = math.nan
+        total += reference[written]
+    if not math.isfinite(total):
+        for place in range(first_row * width, row * width):
+            jacobian[place] = 0.0
+        for written in range(first_row, row):
+            reference[written] = math.nan
 
 
 class RowWriter:
@@ -267,29 +266,28 @@ class RowWriter:
     """
 
     def __init__(
-        self,
-        tree: Tree,
-        address: Sequence[int],
-        joints: Sequence[WrittenJoint],
-        width: int,
-        first_row: int = 0,
-        ahead: float = 0.0,
+        self, tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], first_row: int = 0, ahead: float = 0.0
     ) -> None:
-        self.size, self._width = sum(joint.size for joint in joints), width
-        place = {None: len(tree.links)} | {link.body: own for own, link in enumerate(tree.links)}
+        bodies, self.size = tree.mechanism.bodies, sum(joint.size for joint in joints)
+        of_body = {link.body: own for own, link in enumerate(tree.links)}
+        place = {None: len(tree.links)} | {bodies[body].name: own for body, own in of_body.items()}
         plan: list[float] = [len(tree.links), len(joints), first_row, ahead]
         for link in tree.links:
             columns = [float(address[column]) for column in link.columns]
             turning = columns.pop() if link.turns else -1.0
             slide, across, *_ = *columns, -1.0, -1.0
-            parent = FREE if link.kind == "free" else place[link.parent]
-            plan += [parent, slide, across, turning, *tree.mechanism.bodies[link.body].pose]
-            plan += [*link.arm, *link.anchor, *link.direction]
+            parent = FREE if link.kind == "free" else place[None] if link.parent is None else of_body[link.parent]
+            plan += [parent, slide, across, turning, *bodies[link.body].pose, *link.arm, *link.anchor, *link.direction]
+        angle = {None: 0.0} | {body.name: body.pose[2] for body in bodies}
         rolls = []
         for joint in joints:
             if joint.rolled is not None:
-                rolls.append((len(plan) + 5, joint.rolled.place, *_turning(tree, address, joint)))
-            plan += [LAWS[joint.law], place[joint.first], place[joint.second], *joint.numbers]
+                start = angle[joint.second] - angle[joint.first]
+                signs = tree.turning(joint.first, joint.second).items()
+                rolls.append(
+                    (len(plan) + 5, joint.rolled.place, start, [(address[each], sign) for each, sign in signs])
+                )
+            plan += [LAWS.index(joint.law), place[joint.first], place[joint.second], *joint.numbers]
             plan += [0.0] * (JOINT - 3 - len(joint.numbers))
         self._plan = np.array([*plan, *[0.0] * (MOVING * (len(tree.links) + 1))])
         self._rolls = [(self._plan[at : at + 6].view(complex), *others) for at, *others in rolls]
@@ -304,71 +302,48 @@ class RowWriter:
             write_rows(self._plan, q, v, jacobian, reference)
             return
         # Python reads and writes lists faster than arrays.
-        plan, own, right = self._plan.tolist(), [0.0] * (self.size * self._width), [0.0] * self.size
+        plan, own, right = self._plan.tolist(), [0.0] * (self.size * len(v)), [0.0] * self.size
         first_row, plan[2] = int(plan[2]), 0
         try:
             write_rows(plan, q.tolist(), v.tolist(), own, right)
         except (ValueError, OverflowError, ZeroDivisionError):  # of what numba makes an infinity or NaN
             own, right = [0.0] * len(own), [math.nan] * len(right)
         if len(reference):
-            jacobian[first_row * self._width :][: len(own)] = own
+            jacobian[first_row * len(v) :][: len(own)] = own
             reference[first_row:][: len(right)] = right
 
     def rows(self, q: Array, v: Array) -> tuple[Array, Array]:
         """J (rows, width) and J a (rows,) at q + ahead v, both (width,), of a writer from row 0 on."""
-        jacobian, reference = np.zeros(self.size * self._width), np.zeros(self.size)
+        jacobian, reference = np.zeros(self.size * len(v)), np.zeros(self.size)
         self.write(q, v, jacobian, reference)
-        return jacobian.reshape(self.size, self._width), reference
+        return jacobian.reshape(self.size, len(v)), reference
 
 
-def _turning(tree: Tree, address: Sequence[int], joint: WrittenJoint) -> tuple[float, list[tuple[int, float]]]:
-    """The angle of the second body against the first: that at the start, and the coordinates that turn it."""
-    bodies = tree.mechanism.bodies
-    first, second = (None if index is None else bodies[index] for index in (joint.first, joint.second))
-    start = sum(sign * body.pose[2] for body, sign in ((second, 1.0), (first, -1.0)) if body is not None)
-    signs = tree.turning(first and first.name, second and second.name)
-    return start, [(address[column], sign) for column, sign in signs.items()]
-
-
-def chain(tree: Tree, joint: WrittenJoint) -> list[int]:
-    """The tree coordinates that can move the joint, ascending."""
-    links, columns = {link.body: link for link in tree.links}, set[int]()
-    for end in (joint.first, joint.second):
-        body = end
-        while body is not None:
-            columns.update(links[body].columns)
-            body = links[body].parent
-    return sorted(columns)
-
-
-def add_placeholders(spec: Any, tree: Tree, joints: Sequence[WrittenJoint], impedance: Sequence[float]) -> None:
+def add_placeholders(building: Building) -> None:
     """Reserve the joints' rows; to be called after every other equality, so that theirs come last.
 
     Tendons, because each has an inverse inertia of its own (`tendon_invweight0`) that can be written.
     """
-    own = [chain(tree, joint)[0] for joint in joints for _ in range(joint.size)]
+    own = [building.chain(joint)[0] for joint in building.written for _ in range(joint.size)]
     for number, column in enumerate(own):
-        name, tendon = PLACEHOLDER.format(number), mujoco.mjtObj.mjOBJ_TENDON
-        spec.add_tendon(name=name).wrap_joint(f"coordinate {column}", 1.0)
-        spec.add_equality(type=mujoco.mjtEq.mjEQ_TENDON, objtype=tendon, name1=name, solimp=list(impedance))
+        name, impedance = PLACEHOLDER.format(number), list(building.stiffness.impedance)
+        building.add_sum(name, {column: 1.0})
+        tendon, kind = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtEq.mjEQ_TENDON
+        building.spec.add_equality(type=kind, objtype=tendon, name1=name, solimp=impedance)
 
 
 def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], softening: float
 ) -> Callback:
-    """What writes the joints' rows, the last of the model's equalities.
-
-    Each is made as soft as its own inverse inertia at the start says, times `softening`; the placeholder's knows
-    nothing of it.
-    """
+    """What writes the joints' rows, the model's last equalities, each as soft as its own inverse inertia says."""
     data = mujoco.MjData(compiled)
     mujoco.mj_fwdPosition(compiled, data)
-    jacobian, _ = RowWriter(tree, address, joints, compiled.nv).rows(data.qpos, data.qvel)
+    jacobian, _ = RowWriter(tree, address, joints).rows(data.qpos, data.qvel)
     moved = np.empty_like(jacobian)
     mujoco.mj_solveM(compiled, data, moved, jacobian)
     for number, inverse in enumerate(np.sum(jacobian * moved, axis=1)):
         compiled.tendon_invweight0[compiled.tendon(PLACEHOLDER.format(number)).id] = softening * inverse
     sizes = {int(mujoco.mjtEq.mjEQ_CONNECT): 3, int(mujoco.mjtEq.mjEQ_WELD): 6}
     first_row = sum(sizes.get(int(kind), 1) for kind in compiled.eq_type) - len(jacobian)
-    write = RowWriter(tree, address, joints, compiled.nv, first_row).write
+    write = RowWriter(tree, address, joints, first_row).write
     return lambda _model, data: write(data.qpos, data.qvel, data.efc_J, data.efc_aref)

@@ -1,8 +1,8 @@
 """A Pin, a Weld, a Rod and a Gear in MuJoCo, where no coordinate of the tree stands for them.
 
 A pin or a weld that closes a loop is a `connect`. It has three rows; out of the plane nothing can move, so the third
-row is empty and harmless. The angles of a weld, and of a gear, are sums of tree coordinates with constant coefficients: a
-fixed tendon, held by an equality that has no velocity term and needs none.
+row is empty and harmless. The angles of a weld, and of a gear, are sums of tree coordinates with constant coefficients:
+a fixed tendon, held by an equality that has no velocity term and needs none.
 
 `RodBy` names what holds a rod:
 

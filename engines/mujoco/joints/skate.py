@@ -74,7 +74,7 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint], by: SkateBy
     MuJoCo holds a tendon's length. Here the stiffness is next to none and only the damping acts, so the length that the
     changing coefficients pretend does nothing, and need not be reset.
     """
-    from engines.mujoco.user_rows import RowWriter, chain
+    from engines.mujoco.user_rows import RowWriter
 
     mechanism, tree, spec = building.mechanism, building.tree, building.spec
     direct, options = [NO_STIFFNESS, -STIFFEST[1] / building.dt], dict[str, Any]()
@@ -84,8 +84,8 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint], by: SkateBy
         options = {"frictionloss": 1e4 * weight, "solref_friction": direct, "solimp_friction": list(STIFFEST)}
     # The coefficients at the start set the scale of the compliance when the model is compiled.
     width = tree.coordinates
-    start, _ = RowWriter(tree, range(width), joints, width).rows(np.zeros(width), np.zeros(width))
-    chains = [chain(tree, joint) for joint in joints]
+    start, _ = RowWriter(tree, range(width), joints).rows(np.zeros(width), np.zeros(width))
+    chains = [building.chain(joint) for joint in joints]
     for number, columns in enumerate(chains):
         tendon = spec.add_tendon(name=f"skate {number}", **options)
         for column in columns:
@@ -102,7 +102,7 @@ def _add_tendons(building: Building, joints: Sequence[WrittenJoint], by: SkateBy
     ahead = building.dt if by == "predicted tendon" else 0.0
 
     def bind(compiled: Any, address: Sequence[int]) -> Hooks:
-        writer = RowWriter(tree, address, joints, compiled.nv, ahead=ahead)
+        writer = RowWriter(tree, address, joints, ahead=ahead)
         own = np.array([row * compiled.nv + address[column] for row, each in enumerate(chains) for column in each])
         first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
         coefficients = compiled.wrap_prm[first : first + len(own)]
