@@ -16,6 +16,7 @@ from reference.mechanism import Mechanism
 from reference.validation import Positive, validated
 
 DEFAULT = MuJoCo("default")
+CONTACT = RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic")
 TUNED = MuJoCo(
     "tuned",
     "RK4",
@@ -25,7 +26,7 @@ TUNED = MuJoCo(
     jacobian="dense",
     islands=False,
     skates="predicted tendon",
-    rolls=RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic"),
+    rolls=CONTACT,
 )
 EXTENDED = MuJoCo(
     "extended",
