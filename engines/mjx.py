@@ -107,8 +107,7 @@ class Mjx(Optional):
                 raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
         self.require()
         model = self.settings.model(mechanism, dt)
-        hooks = model.hooks
-        if any((hooks.control, hooks.passive, hooks.before, hooks.start, hooks.read)) or model.written:
+        if model.hooks.control or model.hooks.before:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:
             return model, _programs()[0].put_model(model.compiled)

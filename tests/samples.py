@@ -9,9 +9,8 @@ import numpy as np
 from engines import Size, registry
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
-from engines.mujoco.joints.roll.contact import CompletedContact, RollContact
-from engines.mujoco.joints.roll.rows import RollEquality, RollRows
-from engines.mujoco.limited import limited_tendon
+from engines.mujoco.joints.roll import RollContact
+from engines.mujoco.methods import limited_tendon
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 from engines.pymunk.engine import Pymunk, limited_groove
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
@@ -91,7 +90,7 @@ INSTANCES: tuple[Any, ...] = (
     *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
     *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,))),
-    *(Pymunk("mine"), SHIPPED_CONTACT, RollContact(), CompletedContact(), RollRows(), RollEquality()),
+    *(Pymunk("mine"), SHIPPED_CONTACT, RollContact()),
     *(limited_groove(5.0), limited_tendon(5.0)),
     *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
     Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),

@@ -53,8 +53,7 @@ NOT_MADE_BY_USERS = {
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
     *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.tree.Link"),
-    *("engines.tree.Tree", "engines.mujoco.written_rows.WrittenJoint", "engines.mujoco.written_rows.Law"),
-    "engines.mujoco.row_callback.Native",
+    *("engines.tree.Tree", "engines.mujoco.construction.WrittenJoint"),
     *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
     *(
         "engines.reading.Note",
@@ -64,7 +63,7 @@ NOT_MADE_BY_USERS = {
         "engines.reading.Reading",
     ),
     *("engines.mujoco.reading.frame.Frame", "engines.mujoco.reading.frame.Groups", "engines.mujoco.writers.Mjcf"),
-    *("engines.mujoco.reading.joints.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
+    *("engines.mujoco.reading.elements.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
     "engines.mujoco.writers.Urdf",
     *("engines.pymunk.reading.joints.Described", "engines.pymunk.reading.own_model.OwnPymunk"),
     *("engines.single_run.Recorded", "engines.conformance.same.Isometry"),

@@ -11,7 +11,7 @@ import pytest
 from pymunk import Space
 
 from engines import Unsupported
-from engines.mujoco.reading.other_settings import switch_off as of_mujoco
+from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check import settings
 from reports.check.request import Answer, Refused, Request, answered

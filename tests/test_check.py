@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engines.mujoco import TUNED
-from engines.mujoco.written_urdf import urdf
+from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
 from engines.reading import Give

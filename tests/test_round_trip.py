@@ -15,7 +15,7 @@ from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
 from engines.mujoco.model import Model
 from engines.mujoco.reading import read as read_mujoco
-from engines.mujoco.written_urdf import urdf
+from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.joints.drive import find_cranks
 from engines.pymunk.reading import read as read_pymunk

@@ -14,9 +14,8 @@ import pytest
 from engines import Promise, Run
 from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
-from engines.mujoco.joints import rod_gear_weld
-from engines.mujoco.joints import slot as mujoco_slot
 from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.user_rows import RowWriter
 from engines.pymunk import LEAPFROG
 from engines.pymunk import model as pymunk_model
 from reference.mechanism import Mechanism
@@ -73,24 +72,24 @@ def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any, monkeypatch
 
 
 def test_a_sign_flipped_in_a_row_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    right: Callable[..., Any] = mujoco_slot.slot_rows
+    right = RowWriter.write
 
-    def flipped(*given: Any) -> Any:
-        rows = right(*given)
-        return lambda t, first, second: [(*row[:2], -row[2], *row[3:]) for row in rows(t, first, second)]
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        jacobian[-self.size * len(v) :: len(v)] *= -1.0  # of the first coordinate
 
-    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    monkeypatch.setattr(RowWriter, "write", flipped)
     assert "instant" in faults(EXTENDED, ("slot",), 8)  # MuJoCo then has a row that is none of the mechanism's
 
 
 def test_a_velocity_term_of_the_wrong_sign_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    right: Callable[..., Any] = mujoco_slot.slot_rows
+    right = RowWriter.write
 
-    def flipped(*given: Any) -> Any:
-        rows = right(*given)
-        return lambda t, first, second: [(*row[:6], -row[6]) for row in rows(t, first, second)]
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        reference[-self.size :] *= -1.0
 
-    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    monkeypatch.setattr(RowWriter, "write", flipped)
     assert "acceleration" in faults(EXTENDED, ("slot",), 8)
 
 
@@ -260,18 +259,8 @@ def test_adapters_obey_the_law_with_rods_gears_welds_and_forces(engine: Any, kin
 
 def test_a_rods_velocity_term_that_is_left_out_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """As MuJoCo's own equality of a tendon leaves it out; here with the damping of slip, which is rounding."""
-    right = rod_gear_weld.rod_rows
-
-    def without(*given: Any) -> Any:
-        rows = right(*given)
-
-        def still(t: float, first: Any, second: Any) -> Any:
-            resting = rows(t, (*first[:3], 0.0, 0.0, 0.0), (*second[:3], 0.0, 0.0, 0.0))
-            return [(*row[:6], rest[6]) for row, rest in zip(rows(t, first, second), resting, strict=True)]
-
-        return still
-
-    monkeypatch.setattr(rod_gear_weld, "rod_rows", without)
+    right = RowWriter.write
+    monkeypatch.setattr(RowWriter, "write", lambda self, q, v, *arrays: right(self, q, 0.0 * v, *arrays))
     assert "acceleration" in faults(EXTENDED, ("pin", "rod"), 12)
 
 

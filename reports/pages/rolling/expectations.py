@@ -1,21 +1,13 @@
-"""Where a method is known to fall short of theory in rolling, and where a motion asks for another promise."""
+"""Where a method is known to fall short of theory in rolling."""
 
 from __future__ import annotations
 
-from engines import Promise
 from reports.gate.checks import Deviation
 from reports.grid.outcomes import Outcome
-
-# Where nothing but the contact turns the body, its velocities' error of first order alternates and leaves no pose.
-ORDERS = {
-    (scene, "mujoco joint equality, rewritten"): Promise(2, rate=1, slip=1, energy=1, reaction=1)
-    for scene in ("rolling_ellipse", "rolling_in_ring")
-}
 
 POLYGON = "by design: a body that is not round is a polygon here, and rolls from corner to corner in blows"
 SOFT = "by design: as shipped the contact is a spring of 0.02 s, whatever the step"
 CHATTER = "upstream: a contact without the velocity term is let go and caught again; its force is right on average"
-STANDING = "upstream: a row without the velocity term; at the start it carries the weight of a body at rest"
 BARELY = "by design: pins already hold the gears apart, so that only softness lets them press and rub"
 
 
@@ -26,11 +18,9 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_ellipse", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("rolling_ellipse", "mujoco tuned", "reaction"): Deviation(CHATTER, 3.8),
     ("rolling_ellipse", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 4.9),
-    ("rolling_ellipse", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 3.8),
     ("rolling_disc", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("rolling_disc", "mujoco tuned", "reaction"): Deviation(CHATTER, 44),
     ("rolling_disc", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 60),
-    ("rolling_disc", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.9),
     ("rolling_cam", "pymunk default", "outcome"): Deviation(POLYGON, outcome=Outcome.SATURATED),
     ("rolling_cam", "pymunk tuned", "error"): Deviation(POLYGON, 11),
     ("rolling_cam", "pymunk tuned", "rate"): Deviation(POLYGON, 4.8),
@@ -49,8 +39,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_incline", "mujoco default", "order"): Deviation(CHATTER, 2.5),
     ("rolling_incline", "mujoco tuned", "reaction"): Deviation(CHATTER, 31),
     ("rolling_incline", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 37),
-    ("rolling_incline", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.5),
-    ("rolling_in_ring", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 1.1),
     ("rolling_on_circle", "pymunk default", "reaction"): Deviation(CHATTER, 16),
     ("rolling_on_circle", "pymunk tuned", "reaction"): Deviation(CHATTER, 16),
     ("rolling_on_circle", "mujoco default", "reaction"): Deviation(CHATTER, 2.8),

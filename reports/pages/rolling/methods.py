@@ -5,18 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from engines import Engine, mujoco, pymunk
-from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from reference.scene import Scene
 from reports.grid.cells import Cell
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-
-
-EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
-
-
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, EQUALITY)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
 
 
 def cells(

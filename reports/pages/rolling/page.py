@@ -23,7 +23,7 @@ from reports.charts.theme import svg
 from reports.pages.page import Material, Page
 from reports.pages.rolling import charts as rolling_charts
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling.expectations import KNOWN, ORDERS
+from reports.pages.rolling.expectations import KNOWN
 from reports.pages.rolling.experiments import FAILURES, MAPS, polygon_cells, softness_cells
 from reports.text.lookups import nearest_step, told
 from reports.text.unmeasured import UNMEASURED, Known
@@ -97,6 +97,5 @@ PAGE = Page(
     compared=compared,
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
 )

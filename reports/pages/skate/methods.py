@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from engines import Engine
 from engines.mujoco import methods as mujoco_methods
-from engines.mujoco.limited import limited_tendon
+from engines.mujoco.methods import limited_tendon
 from engines.pymunk import methods as pymunk_methods
 from engines.pymunk.engine import limited_groove
 from engines.registry import VARIANTS

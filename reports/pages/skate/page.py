@@ -24,7 +24,7 @@ from reports.grid.convergence import best_of, by_method, groups, sweeps
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome
 from reports.grid.tasks import Motion
-from reports.pages.page import FEATURED, Material, Page
+from reports.pages.page import Material, Page, usual_series
 from reports.pages.skate import pictures as skate_pictures
 from reports.pages.skate.expectations import KNOWN, ORDERS
 from reports.pages.skate.experiments import FAILURES, MAPS
@@ -54,18 +54,9 @@ CHARTED = (
     "pymunk skate: groove, predicted heading",
     "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
-    "mujoco thin wheel",
-    "mujoco tendon",
-    "mujoco leapfrog",
-    "mujoco passive force",
 )
 # Beside the variants: "pymunk default" is the centre's velocity zeroed, "tuned" the groove that is predicted.
 LISTED = {*CHARTED, "pymunk skate: point's velocity zeroed"} - {"pymunk skate: groove, predicted heading"}
-
-
-def featured(row: Measurement) -> bool:
-    """The variants of every scene, and the cheap construction of second order."""
-    return row.variant in FEATURED or row.method == "mujoco leapfrog"
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
@@ -192,7 +183,7 @@ def words(material: Material) -> Mapping[str, Any]:
     commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
-        "constructions": constructions([row for row in rows if featured(row) or row.method in LISTED], held),
+        "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
         "all_constructions": constructions(rows, held),
         "counted": counted(SCENES),
         "at": at,
@@ -214,7 +205,6 @@ PAGE = Page(
     maps=MAPS,
     compared=compared,
     quantity="position",
-    featured=featured,
     figures=figures,
     words=words,
     orders=ORDERS,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from engines import mujoco, pymunk
 from engines.pymunk.methods import SKATE_GROOVE
 from reference.skate.sleigh import ChaplyginSleigh
@@ -15,10 +13,7 @@ NAIVE = (
     ("the centre's sideways velocity set to zero", pymunk.DEFAULT),
     ("a groove under the blade, aimed in each step", SKATE_GROOVE),
 )
-TOUCHING = (
-    ("a capsule that touches the ground, with friction across", mujoco.DEFAULT),
-    ("a thin wheel that touches the ground", replace(mujoco.DEFAULT, skates="wheel")),
-)
+TOUCHING = (("a capsule that touches the ground, with friction across", mujoco.DEFAULT),)
 SKATE = (
     Live(
         "the sleigh",
@@ -59,7 +54,7 @@ WHEELS = (
             Slider("bend", "bend of the trailer at the start [rad]", (0.3, 0.8, 1.2)),
         ),
         munk=(NAIVE[0],),
-        mujoco=(TOUCHING[0],),
+        mujoco=TOUCHING,
         traps=(COARSE,),
         traces=tuple((body.name, (0.0, 0.0)) for body in CAR.mechanism().bodies),
     ),
@@ -71,7 +66,7 @@ WHEELS = (
         3,
         (Slider("bend", "bend of the trailer at the start [rad]", (0.0125, 0.025, 0.05, 0.1, 0.2)),),
         munk=(NAIVE[0],),
-        mujoco=(TOUCHING[0],),
+        mujoco=TOUCHING,
         traps=(COARSE,),
         traces=tuple((body.name, (0.0, 0.0)) for body in CAR.mechanism().bodies),
     ),
