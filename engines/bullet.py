@@ -35,10 +35,10 @@ from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_lacking, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from reference.checks import Count, Fraction, Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Fraction, Name, Positive, validated
 
 ENOUGH = 1e10  # N or N m, of a point that closes a loop and of a motor
 FAST = 1e9  # rad/s, beyond what a joint reaches

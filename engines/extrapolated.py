@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
 from engines.finer import Division, division, tells_itself
+from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 

@@ -41,11 +41,11 @@ from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
 from engines.single_run import Optional, Recorded, SingleRun, quiet
+from reference.checks import Name, Positive, validated
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, Positive, validated
 
 Integrator = Literal["GeneralizedAlpha", "TrapezoidalIndex2"]
 AXIS = [0.0, 0.0, 1.0]  # out of the plane

@@ -35,10 +35,10 @@ from engines.contract import EXACT, Holder, Promise, Size, Unpromised
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.single_run import Optional, Recorded, SingleRun, refuse_lacking, tree_states
 from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from reference.checks import Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, NonNegative, Positive, validated
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]

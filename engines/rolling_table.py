@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.remembered import by_identity
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve, Placed
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from engines.contract import Engine, OneShot, Size, Unsupported
 from engines.tree import Tree
+from reference.checks import Count, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Valid, validated
 
 Array = NDArray[np.float64]
 

@@ -18,9 +18,10 @@ from engines.box2d import Box2D
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
-from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
 from reference.joints import Drive, Gear, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reports.gate.judge import projected
 from reports.gate.nudged import Altered

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from reference.andrews import Moving
 
 from engines.lagrange import TRUTH
-from reference.andrews import Andrews, Dyad, Moving
+from reference.checks import InvalidMechanism
+from reference.scenes.andrews import Andrews, Dyad
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 SCENE = Andrews()
 # The test set's coordinates are beta, Theta, gamma, Phi, delta, Omega, epsilon: angles of one body against another.

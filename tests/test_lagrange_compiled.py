@@ -18,12 +18,12 @@ from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, ar
 from engines.lagrange.dynamics import RK4, Dynamics
 from engines.lagrange.machine import Machine
 from reference.forces import Damper, Spring, TorsionDamper, TorsionSpring
-from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Roll, Skate, Slot
 from reference.mechanism import Mechanism
-from reference.pendulum.many_links import LongPendulum
-from reference.pendulum.scenes import HundredLinks
-from reference.rolling.scenes import RollingEllipse
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import HundredLinks
+from reference.scenes.rolling.scenes import RollingEllipse
 from reference.trajectory import joint_gap, slip
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism

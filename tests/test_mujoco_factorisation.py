@@ -16,7 +16,7 @@ import pytest
 from engines import Unsupported
 from engines import mujoco as adapter
 from engines.mujoco.methods import SKATES
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 from tests import mujoco_factorisation as factorisation
 from tests.mujoco_factorisation import AGREEMENT, disagreement
 

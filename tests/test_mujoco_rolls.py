@@ -16,13 +16,12 @@ from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.joints.roll import RollContact
 from engines.mujoco.methods import ROLLS
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Placed
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import (
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

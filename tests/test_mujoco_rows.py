@@ -22,9 +22,9 @@ from engines.rolling_table import rolled
 from engines.tree import spanning_tree
 from reference.joints import Joint, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
 from reference.rolling.roll import Roll
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.trajectory import energy
 from tests.mechanisms import bar, four_bar
 
@@ -133,8 +133,8 @@ if sys.argv[1] == "without":
 from engines.mujoco import EXTENDED
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes import CarAndTrailer, RollingEllipse
-from reference.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.catalogue import CarAndTrailer, RollingEllipse
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 found = []
 for scene in (CarAndTrailer(), RollingEllipse(), SlottedLever()):
     motion = EXTENDED.build(scene.mechanism(), 1e-3)(3, 20)

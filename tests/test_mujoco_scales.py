@@ -11,7 +11,7 @@ import pytest
 from engines.mujoco import DEFAULT, METHODS, MuJoCo, Shipped
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scenes import scene
+from reference.scenes.catalogue import scene
 
 POINTS = ("first_point", "second_point")
 

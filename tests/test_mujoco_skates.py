@@ -11,9 +11,9 @@ import pytest
 from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo
 from engines.mujoco.methods import SKATES
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory
-from reference.wheels.cart import Cart
 from tests.test_mujoco_rows import ridden
 
 SLEIGH = ChaplyginSleigh()

@@ -15,11 +15,11 @@ from engines.pymunk.methods import SKATE_PROJECTED
 from reference.forces import Torque
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.pendulum.link import BarPendulum
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.gate.nudged import Altered
 from tests.mechanisms import four_bar
 

@@ -10,7 +10,7 @@ import pytest
 
 import reference
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 
 PACKAGES = [module.name for module in pkgutil.iter_modules(reference.__path__, "reference.") if module.ispkg]
 
@@ -45,8 +45,8 @@ def test_every_scene_of_the_list_is_imported_from_its_package():
 
 
 def test_the_two_problems_and_parking_are_where_a_first_user_looks():
-    from reference.pendulum import accelerations, velocities
-    from reference.skate import Move, park
+    from reference.chapter.errata.linkages import accelerations, velocities
+    from reference.chapter.parking import Move, park
 
     assert velocities(1.0, (0.0, 0.0), (2.0, 1.0)).b == pytest.approx([3.0, 0.0])
     assert accelerations(1.0, (0.0, 0.0), (2.0, 0.0), (0.0, 0.0)).a == pytest.approx([0.0, 4.0])

@@ -16,7 +16,7 @@ import pytest
 
 from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
 from engines.conformance.same import Isometry
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.gate.nudged import Altered
 from reports.search import instant_mjx, relations
 from reports.search.recipe import build

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from engines.tree import pushes, spanning_tree
-from reference.andrews.scene import Andrews
-from reference.scenes import SCENES
+from reference.scenes.andrews import Andrews
+from reference.scenes.catalogue import SCENES
 from reports.search.mechanisms import EVERY
 from reports.search.mechanisms import mechanism as random_mechanism
 

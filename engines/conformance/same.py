@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 from engines import Unsupported
 from engines.conformance.check import Check, Fails, Subject, finite
 from engines.conformance.worlds import MOVING, World
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve, Placed
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory

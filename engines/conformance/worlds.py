@@ -24,8 +24,8 @@ from engines.conformance.world import (
     swing,
     world,
 )
-from reference.curves.circles_lines import Circle, Line, Ring
 from reference.joints import Drive, Pin, Skate, Slot
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 

@@ -11,7 +11,7 @@ from scipy.integrate import DOP853
 from scipy.linalg import get_lapack_funcs
 
 from reference.mechanism import Mechanism
-from reference.row_system import rank, solve_symmetric
+from reference.rows import rank, solve_symmetric
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from engines.mujoco.engine import MuJoCo
 from engines.mujoco.joints.roll import RollContact
 from engines.mujoco.model import Model
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
+from reference.checks import Positive, validated
 from reference.mechanism import Mechanism
-from reference.validation import Positive, validated
 
 DEFAULT = MuJoCo("default")
 CONTACT = RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic")

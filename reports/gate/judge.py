@@ -23,9 +23,9 @@ from engines.lagrange.arrays import SMALLEST
 from engines.lagrange.dynamics import Tableau
 from engines.lagrange.loading import installed
 from engines.lagrange.machine import Machine
-from reference.kept import fixed
+from reference.checks import fixed
 from reference.mechanism import Mechanism
-from reference.row_system import RANK_TOLERANCE
+from reference.rows import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.grid.errors import constraint_errors, motion_errors

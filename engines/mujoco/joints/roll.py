@@ -24,12 +24,11 @@ from engines import Unsupported
 from engines.mujoco.construction import Building
 from engines.mujoco.stiffness import STIFFEST, Shipped
 from engines.rolling_table import rolled, unplaced
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve
-from reference.curves.ellipse import Ellipse
+from reference.checks import InvalidMechanism, Positive, Valid
 from reference.mechanism import Mechanism
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Ring
 from reference.rolling.roll import Roll
-from reference.validation import InvalidMechanism, Positive, Valid
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
