@@ -45,10 +45,10 @@ import numpy as np
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
 from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_all_but, unwrapped
+from reference.checks import Count, Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Name, NonNegative, Positive, validated
 
 STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s

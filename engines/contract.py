@@ -3,7 +3,7 @@
 1. An engine is a frozen dataclass; its fields are its settings, printed in the report. `name` and `variant` together
    name a method there; a variant is a label of the user's choice: any string that is not empty and can be printed.
    Settings, steps and counts that can't be are refused by a ValueError, not by the engine's own abort:
-   `reference.validation` does it for what inherits from `Valid`, and for `build` and `run` with `validated`.
+   `reference.checks` does it for what inherits from `Valid`, and for `build` and `run` with `validated`.
 2. `packages` are the installed distributions whose versions its numbers depend on; they are printed under the numbers.
    Engines of one `family` share a colour and a mark in charts: the variants of an engine are one family.
 3. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
@@ -38,10 +38,10 @@ from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
+from reference.checks import Count, Positive
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
 from engines.finer import Division, Lasting, division, tells_itself
+from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 

@@ -18,9 +18,9 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from engines.contract import Engine
+from reference.checks import Count, Positive, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive, validated
 
 # All of these numbers are fitted: chosen by what random mechanisms of the seeds 1 and 22 needed (pins, slots, skates,
 # drives), MOST and DEAREST by what rough runs cost. They have not been changed since they were tried on 372 others of

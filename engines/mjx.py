@@ -42,10 +42,10 @@ from engines.mujoco.model import Model
 from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
 from engines.tree import Tree, spanning_tree
 from engines.user_cache import cache_folder
+from reference.checks import Name, Positive, validated
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, Positive, validated
 
 Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled

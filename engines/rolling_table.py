@@ -19,8 +19,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve, Placed
+from reference.rolling.circles_lines import Circle, Line, Ring
+from reference.rolling.curves import Curve, Placed
 from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so

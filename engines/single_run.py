@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from engines.contract import Holder, Size, Softness, Unsupported
 from engines.read_reactions import reactions
 from engines.tree import Tree
+from reference.checks import Count, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Valid, validated
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from reference.validation import Name, Positive, Valid
+from reference.checks import Name, Positive, Valid
 
 Triple = tuple[float, float, float]
 

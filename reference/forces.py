@@ -16,9 +16,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.checks import Name, NonNegative, Positive, Valid
 from reference.distance import apart, distance, length_of, point_rows
 from reference.plane import from_body
-from reference.validation import Name, NonNegative, Positive, Valid
 
 Vector = tuple[float, float]
 AnyArray = NDArray[Any]

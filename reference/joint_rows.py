@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.checks import InvalidMechanism
 from reference.joints import Joint
 from reference.memory import require_room
-from reference.validation import InvalidMechanism
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.checks import Name, Valid
 from reference.distance import apart, point_rows
 from reference.links import Gear, Rod, Vector, Weld
 from reference.plane import from_body
 from reference.rolling.roll import Roll
-from reference.validation import Name, Valid
 
 
 @dataclass(frozen=True)

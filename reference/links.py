@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.checks import Name, Positive, Valid
 from reference.distance import apart, distance, point_rows
 from reference.kinds import Rule
-from reference.validation import Name, Positive, Valid
 
 Vector = tuple[float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]

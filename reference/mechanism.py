@@ -17,16 +17,16 @@ from numpy.typing import ArrayLike, NDArray
 from reference.applied_forces import AppliedForces
 from reference.banded_reactions import MANY_ROWS, banded_reaction
 from reference.body import Body
+from reference.checks import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 from reference.forces import ForceElement
 from reference.joint_rows import JointRows
 from reference.joints import Joint, Vector
 from reference.kept import kept
 from reference.kinds import Floats, of_shape
 from reference.memory import require_room
-from reference.row_system import rank, reactions
+from reference.rows import rank, reactions
 from reference.scales import length_scale, time_scale
 from reference.start import refuse_a_bad_start
-from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]

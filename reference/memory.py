@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 
 # Far above what the scenes of this suite need, and what a machine of 8 GB still has room for together with the copies
 # that linear algebra makes.

@@ -11,20 +11,10 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.checks import Count, InvalidMechanism, Numbers, Positive, Valid, sample_times, shown, take, validated
 from reference.kinds import Floats, of_shape
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import (
-    Count,
-    InvalidMechanism,
-    Numbers,
-    Positive,
-    Valid,
-    sample_times,
-    shown,
-    take,
-    validated,
-)
 
 # Samples stand about this far apart [s]; every step of a sweep divides the distance: all steps meet the same instants.
 SAMPLE_SPACING = 1e-2

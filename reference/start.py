@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 
 if TYPE_CHECKING:
     from reference.mechanism import Mechanism

@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.checks import Numbers, Valid, validated
 from reference.kinds import NOT_FINITE, of_shape
 from reference.mechanism import Mechanism
-from reference.validation import Numbers, Valid, validated
 
 Array = NDArray[np.float64]
 

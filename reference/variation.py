@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
+from reference.checks import InvalidMechanism, refusal
 from reference.kinds import NOT_TAKEN, kind_of
 from reference.scene import Scene
-from reference.validation import InvalidMechanism, refusal
 
 
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 
 from engines import Engine
 from engines.altered import Altered
-from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
 from reference.joints import Drive, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.rolling.cam import Cam
+from reference.rolling.circles_lines import Circle, Line, Ring
+from reference.rolling.curves import Curve, Placed
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
 from reports.gate.judge import projected
 

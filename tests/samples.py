@@ -17,32 +17,39 @@ from engines.pymunk.engine import Pymunk
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.limited import limited_groove
 from engines.single_run import Recorded, SingleRun
-from reference import centrodes, shapes
-from reference.andrews import Dyad
-from reference.curves import Cam, Catenary, Circle, Ellipse, Line, LogSpiral, Parabola, Placed, Ring, Side, Traced
+from reference.chapter import centrodes, shapes
+from reference.chapter.parking import Move
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.four_bar import OverdrivenFourBar, Parallelogram
-from reference.four_bar.free_motion import CurveMotion
-from reference.four_bar.linkage import FourBar
-from reference.four_bar.moving import MovingFourBar
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body
-from reference.pendulum.chain import Chain
-from reference.pendulum.link import Pendulum
-from reference.pendulum.many_links import LongPendulum, OpenChain
-from reference.person.segments import THIGH
+from reference.rolling.cam import Cam
+from reference.rolling.circles_lines import Circle, Line, Ring, Side
+from reference.rolling.curves import Placed
+from reference.rolling.ellipse import Ellipse
+from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import RollingDisc
-from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
-from reference.rolling.spinning_ring import SpinningRing
-from reference.scenes import SCENES
-from reference.skate.parking import Move
-from reference.skate.path import SkatePath
-from reference.skate.slopes import HeldBySkates, SkateOnSlope
-from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
-from reference.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
-from reference.slider_crank.slotted_lever import SlottedLever
-from reference.wheels import CarWithTrailers, Casters, Tow, Tricycle
+from reference.rolling.traced import Traced
+from reference.scenes.andrews_dyad import Dyad
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.free_motion import CurveMotion
+from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.four_bar.moving import MovingFourBar
+from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
+from reference.scenes.many_links import LongPendulum, OpenChain
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.link import Pendulum
+from reference.scenes.person_segments import THIGH
+from reference.scenes.rolling.scenes import RollingDisc
+from reference.scenes.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.skates.path import SkatePath
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.scenes.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.spinning_ring import SpinningRing
+from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers, Tricycle
 from reports.grid.cells import Cell
 from tests.mechanisms import four_bar
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
-from reference.andrews import Andrews, Dyad, Moving
+from reference.checks import InvalidMechanism
+from reference.scenes.andrews import Andrews
+from reference.scenes.andrews_dyad import Dyad, Moving
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 SCENE = Andrews()
 # The test set's coordinates are beta, Theta, gamma, Phi, delta, Omega, epsilon: angles of one body against another.

@@ -15,7 +15,7 @@ from matplotlib.patches import PathPatch
 
 from engines import Softness
 from engines.registry import VARIANTS
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.charts.stability import outcome_colour
 from reports.charts.theme import LIGHT
 from reports.grid.cells import Cell

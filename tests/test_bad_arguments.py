@@ -18,13 +18,13 @@ import pytest
 
 from engines import registry
 from engines.extrapolated import Extrapolated
-from reference.four_bar import FourBar, OverdrivenFourBar
-from reference.four_bar.linkage import Unreachable
+from reference.chapter.parking import park
+from reference.checks import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated
 from reference.mechanism import Body
 from reference.scene import Scene
-from reference.scenes import SCENES
-from reference.skate.parking import park
-from reference.validation import Count, Fraction, InvalidMechanism, NonNegative, Positive, Valid, take, validated
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.scenes.four_bar.singular_cases import OverdrivenFourBar
 from reports.grid.cells import Cell
 from tests.arguments import Trial, dataclasses_of_the_suite, functions_of_the_suite, trials
 from tests.mechanisms import four_bar
@@ -33,13 +33,21 @@ from tests.samples import INSTANCES, SCENES_OF_LIMITS
 TRIED = 2000
 # Dataclasses that users don't make: what the suite gives back or uses inside, and the catalogue of errata.
 NOT_MADE_BY_USERS = {
-    *("reference.errata.catalogue.WordSlip", "reference.errata.erratum.Values", "reference.errata.erratum.Erratum"),
-    *("reference.errata.pendulum.BarState", "reference.four_bar.closed_form.Constants", "reference.kinds.Rule"),
+    *(
+        "reference.chapter.errata.catalogue.WordSlip",
+        "reference.chapter.errata.erratum.Values",
+        "reference.chapter.errata.erratum.Erratum",
+    ),
+    *(
+        "reference.chapter.errata.pendulum.BarState",
+        "reference.scenes.four_bar.closed_form.Constants",
+        "reference.kinds.Rule",
+    ),
     *("reference.joint_rows.JointGroup", "reference.joint_rows.JointRows"),
     *("reference.applied_forces.ForceGroup", "reference.applied_forces.AppliedForces"),
     *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.numerics.windows.Windows"),
     "reference.numerics.windows.InDouble",
-    *("reference.pendulum.double_pendulum.TwoPoints", "reference.pendulum.joint_forces.JointForces"),
+    *("reference.scenes.pendulum.double_pendulum.TwoPoints", "reference.scenes.pendulum.joint_forces.JointForces"),
     *("engines.altered.Altered", "engines.contract.Size"),
     "engines.pymunk.contraction.Sweeping",
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
@@ -52,7 +60,7 @@ NOT_MADE_BY_USERS = {
     ),
     *("engines.lagrange.compiled_run.Machine", "engines.lagrange.flat.Flat"),
     *("engines.lagrange.differing.Differing", "engines.lagrange.differing.Part"),
-    *("reference.rolling.contact.Contact", "reference.wheels.trailers.Convoy"),
+    *("reference.rolling.contact.Contact", "reference.scenes.wheels.trailers.Convoy"),
     *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
     *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
     *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.tree.Link"),
@@ -74,7 +82,7 @@ NOT_MADE_BY_USERS = {
     *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
     *("engines.conformance.worlds.world.Motion", "engines.conformance.worlds.world.World"),
 }
-ABSTRACT = {"reference.four_bar.scenes.FourBarScene", "reference.rolling.scenes.RollingScene"}
+ABSTRACT = {"reference.scenes.four_bar.scenes.FourBarScene", "reference.scenes.rolling.scenes.RollingScene"}
 
 
 LONGEST = 300.0  # s of the processor's time, since a loaded machine may take any time

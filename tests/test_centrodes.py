@@ -11,14 +11,22 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from reference.centrodes import Centrodes, _assembled, _halved, centrode_error, centrodes, from_poses, instant_centre
-from reference.curves.ellipse import Ellipse
-from reference.four_bar.linkage import FourBar
+from reference.chapter.centrodes import (
+    Centrodes,
+    _assembled,
+    _halved,
+    centrode_error,
+    centrodes,
+    from_poses,
+    instant_centre,
+)
+from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
+from reference.checks import InvalidMechanism
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
-from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
-from reference.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
+from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from engines.registry import VARIANTS
-from reference.four_bar.scenes import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.grid import cluster as clusters
 from reports.grid import fingerprint
 from reports.grid.cells import Cell

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reference.errata.catalogue import ERRATA, WORD_SLIPS
-from reference.errata.erratum import Values
-from reference.errata.rolling import rolling_acceleration
+from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
+from reference.chapter.errata.erratum import Values
+from reference.chapter.errata.rolling import rolling_acceleration
 from reference.joints import Pin
 from reports import __main__ as command_line
 from reports.grid.tasks import answered

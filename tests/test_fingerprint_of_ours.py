@@ -13,7 +13,7 @@ import pytest
 
 from engines import lagrange, mujoco, pymunk
 from engines.extrapolated import Extrapolated
-from reference.four_bar.scenes import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.grid.cells import Cell
 from reports.grid.fingerprint import fingerprint
 from reports.grid.measure import blank
@@ -55,8 +55,8 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     files = needed(FreeFourBar(), engine)
     assert any(name.startswith(own) for name in files)
     assert {
-        "reference/four_bar/scenes",
-        "reference/four_bar/linkage",
+        "reference/scenes/four_bar/scenes",
+        "reference/scenes/four_bar/linkage",
         "reference/mechanism",
         "engines/__init__",
     } <= files
@@ -64,7 +64,9 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     # Compiled code is imported by name, and only to step.
     assert ("engines/lagrange/compiled/rows" in files) == (own == "engines/lagrange")
     assert not [
-        name for name in files if name.startswith(("reference/pendulum", "reference/skate", "reference/wheels"))
+        name
+        for name in files
+        if name.startswith(tuple(f"reference/scenes/{part}" for part in ("pendulum", "skates", "wheels")))
     ]
     # What only prints or draws can't change a row.
     assert {name for name in files if name.startswith("reports/")} == {
@@ -101,7 +103,7 @@ def test_the_file_of_a_wrapped_engine_counts():
         ("tests/toys.py", Disc(), Toy()),
         ("engines/mujoco/model.py", Disc(), mujoco.TUNED),
         ("engines/pymunk/model.py", Disc(), Extrapolated(pymunk.TUNED, "x", (1, 2), (2,))),
-        ("reference/four_bar/free_motion.py", FreeFourBar(), Toy()),
+        ("reference/scenes/four_bar/free_motion.py", FreeFourBar(), Toy()),
     ],
 )
 def test_a_changed_source_makes_a_stored_cell_run_again(tmp_path, touch, name, scene, engine):

@@ -11,11 +11,11 @@ import pytest
 from engines import EXACT, Promise, Unsupported, registry
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco.methods import SKATES
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy
-from reference.validation import InvalidMechanism
 from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS
 
 TINY = 1e-100  # a complex step: no difference is taken, so no digit is lost

@@ -7,8 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from reference.four_bar.linkage import FourBar
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.linkage import FourBar
 from tests.present import present
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from reference.four_bar import DrivenFourBar, FourBar, FreeFourBar, MovingFourBar, Unreachable
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.scenes.four_bar.moving import MovingFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from tests.present import present
 
 CHAPTER = DrivenFourBar().four_bar

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reference.four_bar.linkage import FourBar, Unreachable
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
 from tests.present import present
 from tests.test_four_bar import CHAPTER, ROCKING, gap, random_linkages, wrapped
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference.four_bar.linkage import Unreachable
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.scenes import SCENES, scene
+from reference.checks import InvalidMechanism
+from reference.scenes.catalogue import SCENES, scene
+from reference.scenes.four_bar.linkage import Unreachable
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from tests.present import present
 
 # No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.four_bar.linkage import Unreachable
-from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.linkage import Unreachable
+from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from tests.present import present
 
 

@@ -12,8 +12,8 @@ import pytest
 from engines import Promise
 from engines.altered import Altered
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar
 from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate.baseline import BadBaseline, Baseline, Old, identity, mixed, read_baseline
 from reports.gate.change import change, cost, drift, growth, known_by_now
 from reports.gate.nudged import Nudge, nudged_cells

@@ -8,7 +8,7 @@ from typing import cast
 import pytest
 
 from engines import Engine, box2d, mujoco, pymunk, registry
-from reference.four_bar.scenes import DrivenFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate.checks import Check
 from reports.gate.prediction import prediction
 from reports.gate.verdicts import Case, checks, kinds

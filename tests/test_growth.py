@@ -13,10 +13,10 @@ import pytest
 from engines import mujoco, pymunk
 from engines.mujoco import methods as mujoco_methods
 from engines.registry import VARIANTS
-from reference.centrodes import Centrodes
-from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import HundredLinks, TenLinks
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.chapter.centrodes import Centrodes
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, TenLinks
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.grid import timing
 from reports.grid.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells

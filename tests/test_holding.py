@@ -10,14 +10,14 @@ from engines import Holder, Unpromised, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Drive, Joint, Slot
 from reference.mechanism import Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.grid.holding import held_by
 from tests.mechanisms import four_bar
 from tests.toys import Toy

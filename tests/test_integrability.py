@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reference.joints import Pin, Skate
-from reference.mechanism import Body, Mechanism
-from reference.skate.integrability import (
+from reference.chapter.integrability import (
     curl_along,
     exterior_derivatives,
     freedoms_by_brackets,
@@ -16,11 +14,13 @@ from reference.skate.integrability import (
     mechanism_is_integrable,
     obstruction,
 )
-from reference.skate.pinned_body import PinnedBody
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.validation import InvalidMechanism
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
+from reference.checks import InvalidMechanism
+from reference.joints import Pin, Skate
+from reference.mechanism import Body, Mechanism
+from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
 from tests.mechanisms import four_bar
 
 POINT = (0.4, -0.7)

@@ -18,14 +18,14 @@ from engines.lagrange.compiled_run import Machine
 from engines.lagrange.dynamics import Dynamics
 from engines.lagrange.flat import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, flat
 from engines.lagrange.tableaus import RK4
-from reference.four_bar.scenes import FreeFourBar
+from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin, Roll, Skate, Slot
 from reference.mechanism import Mechanism
-from reference.pendulum.many_links import LongPendulum
-from reference.pendulum.scenes import HundredLinks
-from reference.rolling.scenes import RollingEllipse
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import HundredLinks
+from reference.scenes.rolling.scenes import RollingEllipse
 from reference.trajectory import joint_gap, slip
-from reference.validation import InvalidMechanism
 from reports.gate.judge import in_numpy, integrate
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY

@@ -9,8 +9,8 @@ import pytest
 
 from engines.lagrange import Lagrange
 from reference.forces import Damper, Spring, TorsionDamper, TorsionSpring
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.search.mechanisms import mechanism as random_mechanism
 
 HOLONOMIC = ("pin", "slot", "rod", "gear", "weld", "spring", "torsion-spring")

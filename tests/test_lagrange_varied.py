@@ -11,13 +11,13 @@ import pytest
 
 from engines import Unsupported
 from engines.lagrange import Lagrange, batch, differing, loading, stacked, varied
+from reference.checks import InvalidMechanism
 from reference.forces import Spring
-from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Roll, Slot
 from reference.mechanism import Body, Mechanism
-from reference.pendulum.link import BarPendulum
-from reference.rolling.scenes import RollingEllipse
-from reference.validation import InvalidMechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.rolling.scenes import RollingEllipse
 from reports.bench.judge import four_bars
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY

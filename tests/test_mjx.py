@@ -52,7 +52,7 @@ def test_an_order_is_promised_of_trees_alone():
 NO_DEVICE = """
 from engines import Unsupported
 from engines.mjx import DEFAULT
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 scene = next(each for each in SCENES if each.name == "pendulum_2")
 try:
     DEFAULT.build(scene.mechanism(), 1e-2)
@@ -110,7 +110,7 @@ def test_programs_are_kept_in_the_users_cache_and_nothing_is_printed(tmp_path):
 
 RUNNING = """
 from engines.mjx import DEFAULT
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 scene = next(each for each in SCENES if each.name == "pendulum_1")
 DEFAULT.build(scene.mechanism(), 1e-2)(2, 1)
 """

@@ -17,7 +17,7 @@ from engines.mujoco.row_callback import Native
 from engines.mujoco.written_rows import Law
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes import CarAndTrailer, ChaplyginSleigh, RollingEllipse
+from reference.scenes.catalogue import CarAndTrailer, ChaplyginSleigh, RollingEllipse
 from reference.trajectory import Trajectory
 from reports.search.mechanisms import mechanism
 

@@ -18,14 +18,14 @@ from engines.mujoco.joints.roll import CompletedContact, RollContact, RollEquali
 from engines.mujoco.joints.roll.rows import roll_rows
 from engines.mujoco.methods import ROLLS
 from engines.rolling_table import rolled
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Curve, Placed
-from reference.curves.ellipse import Ellipse
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.circles_lines import Circle, Line, Ring, Side
+from reference.rolling.curves import Curve, Placed
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import (
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,

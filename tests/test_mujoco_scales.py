@@ -12,7 +12,7 @@ from engines.mujoco import DEFAULT, METHODS, MuJoCo, Shipped
 from engines.mujoco.methods import SKATES
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scenes import scene
+from reference.scenes.catalogue import scene
 
 POINTS = ("first_point", "second_point")
 

@@ -22,10 +22,10 @@ from engines.mujoco.written_rows import GROUND, WrittenJoint, installed, row_wri
 from engines.tree import spanning_tree
 from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
 from reference.trajectory import Trajectory, energy
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
 from tests.mechanisms import bar, four_bar
 
 SLEIGH = ChaplyginSleigh()

@@ -10,9 +10,9 @@ import pytest
 
 from engines import entry_points, registry
 from engines.loading import load
-from reference.four_bar.scenes import FreeFourBar
 from reference.scene import Scene
-from reference.scenes import SCENES, scene
+from reference.scenes.catalogue import SCENES, scene
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.variation import told_apart, with_settings
 from reports.cli.terminal import PULSE, Terminal, progress
 from reports.grid.ending import FINE, REFUSED
@@ -25,7 +25,7 @@ FALLING = """
 from dataclasses import dataclass
 from typing import ClassVar
 
-from reference.pendulum.link import BarPendulum
+from reference.scenes.pendulum.link import BarPendulum
 from engines.lagrange import Lagrange
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reference.person.one_foot import OneFoot
-from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
-from reference.person.swaying import UPRIGHT, SwayingOnOneFoot, modes_upright
-from reference.person.two_feet import TwoFeet
+from reference.checks import InvalidMechanism
+from reference.scenes.person import OneFoot
+from reference.scenes.person_segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
+from reference.scenes.person_swaying import UPRIGHT, SwayingOnOneFoot, modes_upright
+from reference.scenes.person_two_feet import TwoFeet
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 SCENES = [
     OneFoot(),

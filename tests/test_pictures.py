@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from reference import outlines
-from reference.centrodes import Centrodes
+from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse, RollingOnCircle
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.charts import drawings
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 from reports.charts.stroboscope import PALEST, Strip, outline, path, stroboscope

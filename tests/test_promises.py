@@ -16,11 +16,11 @@ from engines.pymunk.methods import ROLL_STALE_PIVOT, SKATE_PROJECTED
 from reference.forces import Torque
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.pendulum.link import BarPendulum
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from tests.mechanisms import four_bar
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(crank_rate=2.0), four_bar(crank_rate=2.0, drive=2.0)

@@ -7,8 +7,8 @@ import pytest
 
 from engines.pushes import instant, pushes
 from engines.tree import spanning_tree
-from reference.andrews.scene import Andrews
-from reference.scenes import SCENES
+from reference.scenes.andrews import Andrews
+from reference.scenes.catalogue import SCENES
 from reports.search.mechanisms import EVERY
 from reports.search.mechanisms import mechanism as random_mechanism
 

@@ -17,9 +17,9 @@ from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
 from engines.pymunk.batched import Recorder
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.trajectory import Trajectory, energy
 from tests.mechanisms import bar, four_bar, pendulum
 

@@ -10,11 +10,11 @@ import pytest
 from engines import CLAIM, Engine, Unsupported
 from engines.lagrange import TRUTH
 from engines.pymunk import DEFAULT, EXTENDED, METHODS, TUNED
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import FreeSliderCrank
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import FreeSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.search.mechanisms import mechanism
 from tests.claims import EVERIES, judged, rows
 

@@ -11,13 +11,14 @@ import pytest
 
 from engines import Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
-from reference.curves.circles_lines import Circle, Line, Side
-from reference.curves.curve import Placed
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.circles_lines import Circle, Line, Side
+from reference.rolling.curves import Placed
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import (
+from reference.scene import Scene
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -25,7 +26,6 @@ from reference.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scene import Scene
 from reference.trajectory import Trajectory
 
 ELLIPSE, DISC, RING, HILL = RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle()

@@ -13,9 +13,9 @@ from engines.lagrange import Lagrange
 from engines.pymunk import EXTENDED, TUNED, Pymunk, methods
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory, energy
-from reference.wheels.car_and_trailer import CarAndTrailer
 from tests.present import present
 
 SLEIGH, CAR = ChaplyginSleigh(), CarAndTrailer()

@@ -16,16 +16,16 @@ from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk, methods
 from engines.pymunk.contraction import contraction, contraction_at, contractions, gain, sweeps
 from engines.pymunk.expected import worst_contraction
-from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.n_four_bar import NFourBar
-from reference.pendulum.scenes import LinkPendulum, TenLinks
-from reference.person.one_foot import OneFoot
 from reference.scene import Scene
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
+from reference.scenes.person import OneFoot
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import Trajectory, energy, joint_gap
-from reference.wheels.car_and_trailer import CarAndTrailer
 from tests.mechanisms import four_bar
 
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)

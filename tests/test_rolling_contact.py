@@ -8,15 +8,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.curves.cam import Cam
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Placed
-from reference.curves.ellipse import Ellipse
+from reference.checks import InvalidMechanism
 from reference.mechanism import Body, Mechanism
+from reference.rolling.cam import Cam
+from reference.rolling.circles_lines import Circle, Line, Ring, Side
+from reference.rolling.curves import Placed
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.fitting import NEAR_CONFORMAL
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.validation import InvalidMechanism
 from tests.test_rolling import ROUNDING, unit
 
 PAIRS = {

@@ -13,9 +13,9 @@ from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
-from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
+from reference.scenes.rolling.singular_cases import DiscInHole, SquareOnCatenaries
 from reports.grid.cells import Cell
 from reports.grid.measure import measure, stopped_where_it_ends
 from reports.grid.outcomes import Outcome

@@ -21,11 +21,11 @@ from engines.pymunk.joints.drive import find_cranks
 from engines.pymunk.reading import read as read_pymunk
 from engines.pymunk.written_script import script
 from reference import outlines
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Roll, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
-from reference.scenes import SCENES
-from reference.validation import InvalidMechanism
+from reference.scenes.catalogue import SCENES
 from reports.check.law import accelerations
 from reports.search.mechanisms import mechanism as random_mechanism
 

@@ -18,9 +18,9 @@ import pytest
 from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio, registry
 from engines.altered import Altered
 from engines.conformance.changes import Isometry
+from reference.checks import InvalidMechanism
 from reference.joints import Gear
 from reference.mechanism import Mechanism
-from reference.validation import InvalidMechanism
 from reports.search import instant_mjx, relations
 from reports.search.recipe import build
 from reports.search.renumbered import RUN, SHAPES, of_a_shape

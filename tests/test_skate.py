@@ -8,11 +8,11 @@ import mpmath
 import numpy as np
 import pytest
 
+from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.checks import InvalidMechanism
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.skate.path import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
-from reference.validation import InvalidMechanism
+from reference.scenes.skates.path import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
 
 # ---------------------------------------------------------------------------------------------------------- rows
 

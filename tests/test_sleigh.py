@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference.skate.path import pin_constants
-from reference.skate.pinned_body import FreelyPinnedBody, PinnedBody
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.checks import InvalidMechanism
+from reference.scenes.skates.path import pin_constants
+from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from tests.multipliers import TIGHT, multipliers
 
 SLEIGHS = [

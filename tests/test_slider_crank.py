@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from reference.checks import InvalidMechanism
 from reference.joints import Slot
-from reference.slider_crank.linkage import SliderCrank
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.slider_crank.singular_cases import SliderAtDeadCentre
+from reference.scenes.slider_crank.linkage import SliderCrank
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank.singular_cases import SliderAtDeadCentre
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 STEP = 1e-30
 THETA = np.linspace(0, 2 * math.pi, 37)

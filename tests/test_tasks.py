@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported, mujoco, pymunk, registry
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.grid import fingerprint, stored_text

@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from reference.wheels import Tow
+from reference.scenes.wheels.tractrix import Tow
 
 # (length, angle, radius): straight, wide and tight circles to both sides, R = L, folded and nearly so.
 TOWS = [

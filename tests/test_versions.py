@@ -15,8 +15,8 @@ from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco import model as mujoco_model
 from engines.mujoco.written_model import Written
-from reference.four_bar import FreeFourBar
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli import compare
 from reports.cli.commands import invoke
 from reports.cli.terminal import Terminal

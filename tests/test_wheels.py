@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers, Tricycle
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
-from reference.wheels.casters import Casters
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import CarWithTrailers, Tricycle
 from tests.multipliers import TIGHT, multipliers
 from tests.present import present
 

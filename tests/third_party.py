@@ -40,7 +40,7 @@ import numpy as np
 
 from engines import Promise, Size, refuse_forces
 from reference.trajectory import Trajectory
-from reference.validation import Count, Fraction, Name, Positive, Valid, validated
+from reference.checks import Count, Fraction, Name, Positive, Valid, validated
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import Positive
+from reference.checks import Positive
 
 
 @dataclass(frozen=True)

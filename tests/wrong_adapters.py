@@ -11,10 +11,10 @@ import numpy as np
 
 from engines import Engine, Run, Unsupported
 from engines.pymunk import LEAPFROG
+from reference.checks import Count, validated
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 from tests.mistakes import Mistake
 
 Build = Callable[[Mechanism, float], Any]

@@ -14,10 +14,10 @@ from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.single_run import Optional, SingleRun, refuse_all_but
 from engines.tree import Tree, refuse_slots_in_loops, spanning_tree
+from reference.checks import Count, Fraction, Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Fraction, Name, Positive, validated
 
 STEP_COST = 9e-6  # s of a step of three bodies, as shipped
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy

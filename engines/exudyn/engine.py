@@ -14,9 +14,9 @@ from engines.extrapolated import Extrapolated
 from engines.exudyn.system import Integrator, Solving, System, holds_velocities
 from engines.motions import is_prescribed, over_three
 from engines.single_run import Optional, SingleRun
+from reference.checks import Name, Positive, validated
 from reference.joints import Joint
 from reference.mechanism import Mechanism
-from reference.validation import Name, Positive, validated
 
 STEP_COST = 19e-6  # s, with three bodies
 

@@ -25,10 +25,10 @@ from engines.lagrange.flat import START_POSE, START_TWIST, Flat, flat
 from engines.lagrange.loading import compiled, installed
 from engines.lagrange.rolls import ON_LINE, ON_ROUND, Windows
 from engines.lagrange.tableaus import RK4
+from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Roll
 from reference.kinds import Floats, of_shape
 from reference.mechanism import Mechanism
-from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 

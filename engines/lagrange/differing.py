@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.lagrange.flat import MOST_ROWS
+from reference.checks import InvalidMechanism, shown
 from reference.joint_rows import JointRows
 from reference.kinds import NOT_TAKEN, Floats, kind_of, of_shape
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.row_system import ranks
+from reference.rows import ranks
 from reference.scales import length_scale, time_scale
 from reference.start import open_joint
-from reference.validation import InvalidMechanism, shown
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from scipy.linalg import get_lapack_funcs
 
 from engines.lagrange.tableaus import Tableau
 from reference.mechanism import Mechanism
-from reference.row_system import rank, solve_symmetric
+from reference.rows import rank, solve_symmetric
 
 Array = NDArray[np.float64]
 

@@ -15,11 +15,11 @@ from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, ada
 from engines.lagrange.loading import compiled, installed
 from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
 from engines.motions import is_prescribed, over_three
+from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4", "dop853"]

@@ -23,7 +23,7 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.row_system import rank
+from reference.rows import rank
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

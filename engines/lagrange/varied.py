@@ -28,9 +28,9 @@ from engines.lagrange.flat import (
     force_parameters,
     parameters,
 )
+from reference.checks import InvalidMechanism, shown, validated
 from reference.kinds import Floats, Rule, of_shape
 from reference.mechanism import Mechanism
-from reference.validation import InvalidMechanism, shown, validated
 
 Array = NDArray[np.float64]
 Triples = Annotated[Floats, of_shape("mechanisms", "bodies", 3)]

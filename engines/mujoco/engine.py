@@ -27,10 +27,10 @@ from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.mujoco.written_file import as_text
 from engines.tree import Tree, spanning_tree
+from reference.checks import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 Solver = Literal["Newton", "CG", "PGS"]

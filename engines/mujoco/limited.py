@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import SKATES
 from engines.mujoco.model import Model
+from reference.checks import Positive, validated
 from reference.mechanism import Mechanism
-from reference.validation import Positive, validated
 
 _FRICTION = next(engine for engine in SKATES if engine.variant == "tendon friction")
 

@@ -23,8 +23,8 @@ from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
 from engines.mujoco.theory import ORDER
+from reference.checks import Count, validated
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int_]  # of steps since the start, rising, or places in such an array

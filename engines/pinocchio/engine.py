@@ -13,10 +13,10 @@ from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.pinocchio.model import Integrator, Model
 from engines.single_run import Optional, SingleRun, refuse_all_but
 from engines.tree import refuse_slots_in_loops, spanning_tree
+from reference.checks import Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, NonNegative, Positive, validated
 
 EVALUATION_COST = 6e-6  # s, with three bodies
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy

@@ -27,11 +27,11 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from reference.checks import LARGEST_COUNT, Count, Numbers, validated
 from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
-from reference.row_system import RANK_TOLERANCE
-from reference.validation import LARGEST_COUNT, Count, Numbers, validated
+from reference.rows import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 

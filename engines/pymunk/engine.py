@@ -18,10 +18,10 @@ from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
+from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 
 
 def _shipped() -> tuple[int, float]:

@@ -18,9 +18,9 @@ from engines.pymunk.contraction import DENSE, contraction, contraction_at, contr
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.model import Settings, build_model
 from engines.pymunk.running import record
+from reference.checks import NonNegative, validated
 from reference.joints import Roll
 from reference.mechanism import Mechanism
-from reference.validation import NonNegative, validated
 
 POSES, FEW_POSES = 16, 2  # for up to DENSE rows, and beyond
 ROUGH = 20  # steps in one radian of the fastest motion that is promised

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from engines import Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
+from reference.checks import Name, Positive, Valid, validated
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
-from reference.validation import Name, Positive, Valid, validated
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import Any
 
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import Pymunk
+from reference.checks import Positive, validated
 from reference.mechanism import Mechanism
-from reference.validation import Positive, validated
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ from engines.pymunk.batched import Recorder
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
 from engines.read_reactions import reactions
+from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 

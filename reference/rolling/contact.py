@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.curves.curve import Array
+from reference.rolling.curves import Array
 
 
 @dataclass(frozen=True)

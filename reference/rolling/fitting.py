@@ -7,11 +7,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.curves.circles_lines import Ring
-from reference.curves.curve import Array, Curve, Placed
+from reference.checks import InvalidMechanism
 from reference.plane import rotated
+from reference.rolling.circles_lines import Ring
 from reference.rolling.contact import Contact
-from reference.validation import InvalidMechanism
+from reference.rolling.curves import Array, Curve, Placed
 
 # The contact is lost as the inverse of (curvature_A + curvature_B) / max(|curvature|): at this fraction about seven
 # of a double's sixteen digits are left in it, and a truth of fewer would be none.

@@ -10,14 +10,14 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Array, Curve, Placed, Vector
+from reference.checks import InvalidMechanism, Valid, validated
 from reference.kinds import of_shape
-from reference.numerics.monotone import solve_increasing
+from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
+from reference.rolling.circles_lines import Circle, Line, Ring, Side
 from reference.rolling.contact import Contact
+from reference.rolling.curves import Array, Curve, Placed, Vector
 from reference.rolling.fitting import first_fit, refuse_conformal, refuse_overlap
-from reference.validation import InvalidMechanism, Valid, validated
 
 
 def _round(curve: Curve) -> float | None:
@@ -32,7 +32,7 @@ Place = Annotated[ArrayLike, of_shape("...", 2)]
 
 @dataclass(frozen=True)
 class Rolling(Valid):
-    """The curve `body` rolls without slip on the fixed curve `ground`; see `reference.curves.curve` for the convention.
+    """The curve `body` rolls without slip on the fixed curve `ground`; convention: `reference.rolling.curves`.
 
     At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]; make one with `Rolling.at_angle` or
     `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.

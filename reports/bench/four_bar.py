@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from reference.four_bar.linkage import FourBar
-from reference.four_bar.scenes import DrivenFourBar
+from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar
 
 REPEATS = 5
 # Without numba pylinkage's path is interpreted, some 30 us an angle: then fewer angles are timed, and the time scaled.

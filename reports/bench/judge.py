@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from engines import Engine
 from engines.lagrange import Lagrange, Stack, batch, varied
 from engines.lagrange.compiled_run import Machine
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
-from reference.pendulum.many_links import LongPendulum
 from reference.scene import Scene
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
 from reports.grid.cells import FULL, Cell, estimated_cost
 from reports.grid.measure import measure
 

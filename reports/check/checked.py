@@ -9,8 +9,8 @@ import numpy as np
 
 from engines import Unsupported
 from engines.reading import Reading
+from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 from reports.check.comparing import Errors, Opening, errors, opening, refuse_disagreement
 from reports.check.facts import Facts, facts_of
 from reports.check.judging import Judged, judged, often

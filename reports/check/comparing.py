@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from engines import Unsupported
 from engines.reading import Reading
 from reference.mechanism import Mechanism
-from reference.row_system import undetermined
+from reference.rows import undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.judging import apart
 from reports.check.law import accelerations

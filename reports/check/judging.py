@@ -10,9 +10,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from engines.lagrange import TRUTH
 from engines.lagrange.dynamics import Dynamics
+from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 
 Array = NDArray[np.float64]
 LOOSER = replace(TRUTH, tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes

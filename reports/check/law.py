@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from engines.reading import Give
 from reference.mechanism import Mechanism
-from reference.row_system import solve_symmetric
+from reference.rows import solve_symmetric
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding

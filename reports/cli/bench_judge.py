@@ -13,7 +13,7 @@ WIDTH = 100  # characters of a scene's numbers
 def bench_judge(full: bool) -> None:
     """Print the judge's figures beside what is asked for and beside other engines. Raises BadInput without numba."""
     from engines.registry import ENGINES
-    from reference.four_bar.scenes import FreeFourBar
+    from reference.scenes.four_bar.scenes import FreeFourBar
     from reports.bench.judge import batch_figures, beside_others, figures, truth_costs
     from reports.cli.known import registered
     from reports.cli.selection import choose_cells

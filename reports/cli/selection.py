@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from engines import Engine
+from reference.checks import LARGEST_COUNT
 from reference.scene import Scene
-from reference.validation import LARGEST_COUNT
 from reports.grid.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
 from reports.grid.ending import BadInput
 from reports.grid.tasks import Task

@@ -25,7 +25,7 @@ from engines.lagrange.loading import installed
 from engines.lagrange.tableaus import Tableau
 from reference.kept import fixed
 from reference.mechanism import Mechanism
-from reference.row_system import RANK_TOLERANCE
+from reference.rows import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.grid.errors import constraint_errors, motion_errors

@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 from typing import Literal
 
 from engines import Engine
+from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reference.validation import Count, Valid
 from reports.grid.ending import BadInput
 from reports.grid.fingerprint import digest_of, modules_behind, modules_of
 from reports.grid.worker import describe

@@ -10,13 +10,15 @@ from decimal import Decimal
 import numpy as np
 
 from reference.body import Body
-from reference.curves import Circle, Curve, Ellipse, Line, Placed, Ring
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.plane import components, rotated
+from reference.rolling.circles_lines import Circle, Line, Ring
+from reference.rolling.curves import Curve, Placed
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.validation import InvalidMechanism
 from reports.search.parts import ANGLE, EVERY, RATE, SHAPES, Link, Rim, ladder
 
 Point = tuple[Decimal, Decimal]

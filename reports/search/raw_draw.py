@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.search.raw import Equality, Link, Model, coordinates
 from reports.search.raw_law import judged
 

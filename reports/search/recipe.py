@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.body import Body, Triple
+from reference.checks import InvalidMechanism
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.scales import length_scale
-from reference.validation import InvalidMechanism
 from reports.search.joining import Joining, beside
 from reports.search.parts import ANGLE, FORCES, RATE, Link, Recipe, ladder
 

@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from engines import Engine, Unsupported
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.search.mechanisms import recipe
 from reports.search.parts import FORCES, Link, Part, Recipe
 from reports.search.recipe import build

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from engines import Engine
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.grid.tasks import Answer, Task, Values
 from reports.search.chunk import Asked
 from reports.search.scripts import script

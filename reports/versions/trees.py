@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
+from reference.checks import Count, InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.row_system import solve_symmetric
-from reference.validation import Count, InvalidMechanism
+from reference.rows import solve_symmetric
 from reports.grid.tasks import Task, Values
 from reports.search.parts import Link, Part, Recipe
 from reports.search.recipe import build

@@ -4,7 +4,7 @@
 tests that are named beside it. The lists are the `.toml` files beside this one, one table a mistake:
 
     [trailer-turns-the-wrong-way]           # the mistake's name, once in all lists
-    file = "reference/wheels/trailers.py"
+    file = "reference/scenes/wheels/trailers.py"
     mistake = "what is wrong, in one sentence"
     old = "text that stands exactly once in the file"
     new = "what stands there instead"

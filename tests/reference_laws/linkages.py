@@ -8,8 +8,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.four_bar.linkage import FourBar
-from reference.slider_crank.linkage import MovingSliderCrank, SliderCrank
+from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.slider_crank.linkage import MovingSliderCrank, SliderCrank
 from tests.reference_laws.law import Law, Outside, angle, decades
 
 

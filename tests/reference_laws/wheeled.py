@@ -8,14 +8,14 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.centrodes import instant_centre
-from reference.skate.parking import commutator_displacement, park, stops
-from reference.skate.pinned_body import PinnedBody
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.skate.slopes import SkateOnSlope
-from reference.wheels.casters import Casters
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import towed
+from reference.chapter.centrodes import instant_centre
+from reference.chapter.parking import commutator_displacement, park, stops
+from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.skates.slopes import SkateOnSlope
+from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import towed
 from tests.reference_laws.law import DIGITS, Law, Outside, angle, decades
 from tests.reference_laws.pendulums import swung
 

@@ -40,7 +40,7 @@ from engines.lagrange.ordering import TERM
 
 # Pivots below which a row follows from others. Where rows are independent at the start: the rounding of the product,
 # times a thousand. Where some are not: their dependence is blurred by as much, squared, as joints are open in a step,
-# so this is RANK_TOLERANCE of `reference.row_system`.
+# so this is RANK_TOLERANCE of `reference.rows`.
 ROUNDING, BLURRED = 1e-13, 1e-9
 EASY = 1e-2  # above, rounding costs less than two digits, and nothing is corrected
 FEW_ROWS = 24  # the condition of a long chain shows in no pivot, so more rows than this are always corrected once

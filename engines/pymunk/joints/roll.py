@@ -23,12 +23,12 @@ from pymunk.constraints import PivotJoint
 
 from engines import Unsupported
 from engines.rolling_table import rolled, unplaced
-from reference.curves.circles_lines import Circle, Line
-from reference.curves.curve import Curve, Vector
+from reference.checks import Fraction, NonNegative, Valid
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
+from reference.rolling.circles_lines import Circle, Line
+from reference.rolling.curves import Curve, Vector
 from reference.rolling.roll import Roll
-from reference.validation import Fraction, NonNegative, Valid
 
 RollConstruction = Literal["contact", "pivot", "stale pivot"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.centrodes import Centrodes
-from reference.curves.curve import Array
-from reference.validation import InvalidMechanism
+from reference.chapter.centrodes import Centrodes
+from reference.checks import InvalidMechanism
+from reference.rolling.curves import Array
 
 CHECKED = 101  # places looked at: enough to meet the largest error of smooth curves, few enough to wait for
 

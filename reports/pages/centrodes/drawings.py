@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from reference.centrodes import Centrodes
-from reference.curves.curve import Array
+from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reference.plane import rotated
+from reference.rolling.curves import Array
 from reports.charts.drawings import draw_ground, draw_pose
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 

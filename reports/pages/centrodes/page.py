@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from engines.registry import VARIANTS
-from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
-from reference.four_bar.scenes import DrivenFourBar
+from reference.chapter.centrodes import Centrodes, centrode_error, centrodes, from_poses
 from reference.kept import fixed
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
 from reports.charts.theme import svg
 from reports.grid.cells import Cell

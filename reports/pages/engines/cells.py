@@ -13,10 +13,10 @@ from engines.pinocchio import Pinocchio
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
 from engines.pymunk.model import Model
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.grid.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
 
 FREE = FreeFourBar()

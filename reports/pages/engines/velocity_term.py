@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.tree import spanning_tree
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.grid.tasks import Values
 from reports.pages.engines.asked import Asked
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.pages.faults.equalities import KINDS, Bead, Equalities
 from reports.pages.faults.groove import CASES, WRONG, Grooves, Offsets, across, beside, wrong

@@ -9,7 +9,7 @@ import numpy as np
 
 from engines import mujoco, pymunk
 from engines.registry import ENGINES
-from reference.four_bar import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reports.charts import drawings
 from reports.charts.theme import svg
 from reports.grid.cells import Cell

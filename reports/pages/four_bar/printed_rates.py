@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.four_bar.scenes import DrivenFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.grid.tasks import Task, Values
 
 SAMPLES = 50  # a revolution

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.grid.outcomes import Outcome

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.pages.page import Material, Observation
 from reports.pages.pendulum.neighbours import Neighbours
 from reports.text.tables import number

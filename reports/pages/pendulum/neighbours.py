@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.grid.tasks import Task, Values
 
 

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
-from reference.person.one_foot import OneFoot
-from reference.person.swaying import SwayingOnOneFoot, modes_upright
-from reference.person.two_feet import TwoFeet
+from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.validation import InvalidMechanism
+from reference.scenes.person import OneFoot
+from reference.scenes.person_swaying import SwayingOnOneFoot, modes_upright
+from reference.scenes.person_two_feet import TwoFeet
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 

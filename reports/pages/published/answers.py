@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.andrews import Andrews
+from reference.scenes.andrews import Andrews
 
 # Angles of one body against another, as the test set has them, by the names of the bodies.
 ANGLES = ("K1", "K2 - K1", "K3", "K4 - K5", "K5", "K6 - K7", "K7")

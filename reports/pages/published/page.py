@@ -9,10 +9,10 @@ from typing import Any
 
 from engines import Engine
 from engines.registry import VARIANTS, method
-from reference.andrews import Andrews
-from reference.n_four_bar import NFourBar
-from reference.pendulum.link import PointPendulum
 from reference.scene import Scene
+from reference.scenes.andrews import Andrews
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.link import PointPendulum
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.grid.cells import FULL, sweep_cells

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from reference.curves.circles_lines import Line
-from reference.curves.ellipse import Ellipse
+from reference.rolling.circles_lines import Line
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
-from reference.rolling.scenes import RollingScene
+from reference.scenes.rolling.scenes import RollingScene
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 from reports.grid.measure import Measurement
 from reports.grid.outcomes import Outcome

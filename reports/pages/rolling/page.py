@@ -9,8 +9,9 @@ from engines import Engine
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from engines.registry import VARIANTS
-from reference.rolling import (
-    EllipticGears,
+from reference.scene import Scene
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -18,7 +19,6 @@ from reference.rolling import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scene import Scene
 from reports.charts.theme import svg
 from reports.pages.page import Material, Page
 from reports.pages.rolling import charts as rolling_charts

@@ -10,7 +10,7 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.mujoco import methods as mujoco_methods
-from reference.rolling.scenes import RollingOnCircle
+from reference.scenes.rolling.scenes import RollingOnCircle
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.pages.observing import observe

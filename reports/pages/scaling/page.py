@@ -11,7 +11,7 @@ from typing import Any
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
-from reference.pendulum.many_links import LongPendulum
+from reference.scenes.many_links import LongPendulum
 from reports.charts.theme import svg
 from reports.grid.cells import Cell
 from reports.grid.scaling_fit import Series, cost_exponent, error_exponent, series_of

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
-from reference.pendulum.chain import Array, Chain
+from reference.scenes.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive, validated
 
 ROUNDING = 1e-9  # relative: numbers that were made from one another
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from reference.pendulum.many_links import LongPendulum
+from reference.scenes.many_links import LongPendulum
 from reports.grid.tasks import Task, Values
 
 

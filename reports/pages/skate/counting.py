@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.slopes import HeldBySkates
+from reference.scenes.skates.slopes import HeldBySkates
 from reports.pages.page import Material, Observation
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from engines import Engine
 from engines.registry import VARIANTS
 from reference.scene import Scene
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.skate.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
 from reports.pages.page import Failure, StabilityMap

@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 
 from engines import Engine
 from engines.registry import VARIANTS
+from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.chapter.parking import commutator_displacement
 from reference.scene import Scene
-from reference.skate import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
-from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.parking import commutator_displacement
+from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.charts import work_precision as charts
 from reports.charts.plane_panels import Blades, Panel, Path, paths

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from reference.body import Triple
-from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.skate.slopes import SkateOnSlope
+from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.scenes.skates.slopes import SkateOnSlope
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 
 BLADE = 0.35  # m

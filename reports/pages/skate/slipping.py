@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory
 from reports.grid.cells import Cell
 from reports.pages.observing import observe

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.skate.sleigh import SleighBackwards
+from reference.scenes.skates.sleigh import SleighBackwards
 from reports.grid.cells import Cell
 from reports.pages.observing import observe
 from reports.pages.page import Material, Observation

@@ -10,11 +10,11 @@ from typing import Any
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
+from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
-from reference.slider_crank.slotted_lever import SlottedLever
-from reference.validation import InvalidMechanism
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 from reports.pages.slider_crank.leaving import Leaving

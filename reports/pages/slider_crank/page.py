@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.charts.stroboscope import Strip, stroboscope
 from reports.charts.theme import svg
 from reports.pages.page import Material, Page

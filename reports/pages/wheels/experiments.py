@@ -11,9 +11,9 @@ import numpy as np
 from engines import Engine, pymunk
 from engines.registry import VARIANTS
 from reference.scene import Scene
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
-from reference.wheels.tractrix import Tow
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.tractrix import Tow
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
 from reports.pages.observing import observe

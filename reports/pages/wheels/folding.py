@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.grid.tasks import Task, Values
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from engines.registry import VARIANTS
-from reference.wheels import CarAndTrailer, Cart
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
 from reports.charts.plane_panels import paths
 from reports.charts.theme import svg
 from reports.grid.cells import Cell

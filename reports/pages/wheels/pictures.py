@@ -7,9 +7,9 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.wheels.casters import Casters
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.charts.plane_panels import Blades, Panel, Path, paths
 
 # The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].

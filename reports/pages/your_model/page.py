@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from reference.four_bar import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.pictures import pictures
 from reports.check.shown import from_text
 from reports.pages.page import Material, Page

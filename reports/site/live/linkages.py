@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.site.live.sliders import COARSE, ONE_SWEEP, Live, Slider, Trap
 
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)

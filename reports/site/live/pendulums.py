@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import LinkPendulum, TenLinks
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reports.site.live.sliders import COARSE, Live, Slider, Trap
 
 TIP = ((0.5, 0.0), (-0.5, 0.0))

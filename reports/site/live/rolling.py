@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from engines import pymunk
 from engines.pymunk.joints.roll import Contact
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.live.sliders import COARSE, Live, Slider, Trap
 
 CORNERS = tuple(

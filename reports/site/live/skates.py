@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from engines import mujoco, pymunk
 from engines.pymunk.methods import SKATE_GROOVE
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.site.live.sliders import COARSE, Live, Slider, Trap
 
 SLEIGH = ChaplyginSleigh()

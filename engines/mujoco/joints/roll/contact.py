@@ -23,8 +23,8 @@ from engines.mujoco.construction import Building, Callback, Hooks
 from engines.mujoco.joints.roll.shapes import RoundShape, add_shapes
 from engines.mujoco.stiffness import STIFFEST, Shipped
 from engines.rolling_table import rolled
+from reference.checks import InvalidMechanism, Positive, Valid
 from reference.rolling.roll import Roll
-from reference.validation import InvalidMechanism, Positive, Valid
 
 Cone = Literal["pyramidal", "elliptic"]
 # A pair that just touches must collide whatever its distance is rounded to: this part of the mechanism's length.

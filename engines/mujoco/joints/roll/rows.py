@@ -20,8 +20,8 @@ from engines.mujoco.construction import Binder, Building, Hooks
 from engines.mujoco.written_rows import Row, State, WrittenJoint, equality_rows
 from engines.rolling_table import Rolled, rolled
 from engines.tree import Link
+from reference.checks import Valid
 from reference.rolling.roll import Roll
-from reference.validation import Valid
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ import mujoco
 from engines import Unsupported
 from engines.mujoco.construction import Building
 from engines.rolling_table import unplaced
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve
-from reference.curves.ellipse import Ellipse
+from reference.rolling.circles_lines import Circle, Line, Ring
+from reference.rolling.curves import Curve
+from reference.rolling.ellipse import Ellipse
 from reference.rolling.roll import Roll
 
 RoundShape = Literal["sphere", "cylinder"]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from engines import Unsupported
 from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.written_rows import Rows, WrittenJoint, row_writer
-from reference.row_system import solve_symmetric
+from reference.rows import solve_symmetric
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,224 @@
+"""The four-bar as scenes: its crank driven at a constant rate, or the whole linkage left to its weight."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import InvalidMechanism, Positive, Sign
+from reference.joints import Drive, Joint, Pin, Vector
+from reference.kinds import Floats
+from reference.mechanism import Body, Mechanism
+from reference.numerics.collocation import STAGES
+from reference.scene import Scene
+from reference.scenes.four_bar.forces import Densities
+from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.scenes.four_bar.moving import MovingFourBar
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+# The free motion's steps are at most this part of the mechanism's time scale; they are halved where that is too long.
+LONGEST_STEP = 0.25
+
+
+@dataclass(frozen=True)
+class FourBarScene(Scene):
+    """Uniform bars as bodies "crank", "coupler", "rocker", pins "A", "B", "C", "D" between them in that order.
+
+    Body frames have their x axis along the bar (A -> B, B -> C, D -> C) and their origin at its middle; body angles are
+    theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] of all bars or of
+    the three, gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
+    """
+
+    crank: Positive = 0.4
+    coupler: Positive = 0.4 * math.sqrt(2)
+    rocker: Positive = 0.8 * math.sqrt(2)
+    ground: Vector = (1.2, 0.0)
+    branch: Sign = 1
+    start: float = math.pi / 2
+    rate: float = 0.0
+    density: Densities = 1.0
+    gravity: Vector = (0.0, -9.81)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.four_bar.angles(self.start, self.branch)
+
+    @property
+    def four_bar(self) -> FourBar:
+        """The linkage's equations."""
+        return FourBar(self.crank, self.coupler, self.rocker, self.ground)
+
+    @property
+    def moving(self) -> MovingFourBar:
+        """The bars in the crank's angle: reduced inertia, potential, free acceleration."""
+        return MovingFourBar(self.four_bar, self.density, self.gravity)
+
+    @property
+    def masses(self) -> tuple[float, float, float]:
+        """Of crank, coupler and rocker [kg]."""
+        return self.moving.masses
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
+        angle = pose[..., 2]
+        return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)
+
+    def _mechanism(self, motion: BarAngles, *drives: Joint) -> Mechanism:
+        pose, twist, _ = self._bodies(motion)
+        names, lengths = ("crank", "coupler", "rocker"), self.four_bar.lengths
+        bodies = tuple(
+            Body(name, mass, mass * length**2 / 12, tuple(where.tolist()), tuple(moving.tolist()))
+            for name, mass, length, where, moving in zip(names, self.masses, lengths, pose[0], twist[0], strict=True)
+        )
+        crank, coupler, rocker = (length / 2 for length in lengths)
+        pins = (
+            Pin("A", None, "crank", (0.0, 0.0), (-crank, 0.0)),
+            Pin("B", "crank", "coupler", (crank, 0.0), (-coupler, 0.0)),
+            Pin("C", "coupler", "rocker", (coupler, 0.0), (rocker, 0.0)),
+            Pin("D", None, "rocker", self.ground, (-rocker, 0.0)),
+        )
+        return Mechanism(bodies, pins + drives, self.gravity)
+
+    def _bodies(self, motion: BarAngles) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 3 bodies, 3) of the bars in a motion of their angles."""
+        bars = np.array(self.four_bar.lengths) * np.exp(1j * motion.angle)
+        velocities = 1j * motion.rate * bars
+        accelerations = (1j * motion.acceleration - motion.rate**2) * bars
+        pose, twist, acceleration = (np.empty((*motion.angle.shape, 3)) for _ in range(3))
+        for out, ends, origin, angle in (
+            (pose, bars, complex(*self.ground), motion.angle),
+            (twist, velocities, 0j, motion.rate),
+            (acceleration, accelerations, 0j, motion.acceleration),
+        ):
+            middles = (ends[:, 0] / 2, ends[:, 0] + ends[:, 1] / 2, origin + ends[:, 2] / 2)
+            centre = np.stack(middles, axis=-1)
+            out[..., 0], out[..., 1], out[..., 2] = centre.real, centre.imag, angle
+        return pose, twist, acceleration
+
+
+@dataclass(frozen=True)
+class DrivenFourBar(FourBarScene):
+    """The chapter's sample: the crank turns at a constant rate. Closed form throughout; `revolutions` of the crank.
+
+    An error of a stepping method has no freedom to grow in, so the horizon is the whole duration. `motion` raises
+    Unreachable if the crank can't turn that far.
+    """
+
+    name: ClassVar[str] = "driven_four_bar"
+    source: ClassVar[str] = "sample 18.15, eqs. 18.67-18.71, fig. 18.66"
+
+    rate: float = 10.0
+    revolutions: Positive = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.rate == 0:
+            raise InvalidMechanism(f"scene {self.name!r}: rate is 0; a driven crank needs a rate other than zero")
+
+    @property
+    def duration(self) -> float:  # type: ignore[override]
+        return self.revolutions * 2 * math.pi / abs(self.rate)
+
+    @property
+    def horizon(self) -> float:  # type: ignore[override]
+        return self.duration
+
+    def mechanism(self) -> Mechanism:
+        drive = Drive("drive", None, "crank", self.rate, self.start)
+        return self._mechanism(self._angles(np.zeros(1)), drive)
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, _ = self._bodies(self._angles(times))
+        forces = self.four_bar.forces(
+            self.start + self.rate * times, self.rate, 0.0, self.branch, self.density, self.gravity
+        )
+        return Trajectory(times, pose, twist, np.concatenate([*forces[:4], forces.torque[:, None]], axis=-1))
+
+    def _angles(self, times: Array) -> BarAngles:
+        theta = self.start + self.rate * times
+        motion = self.four_bar.kinematics(theta, self.rate, 0.0, self.branch)
+        return BarAngles(
+            np.stack([theta, motion.beta, motion.phi], axis=-1),
+            np.stack([np.full_like(theta, self.rate), motion.beta_dot, motion.phi_dot], axis=-1),
+            np.stack([np.zeros_like(theta), motion.beta_ddot, motion.phi_ddot], axis=-1),
+        )
+
+
+@dataclass(frozen=True)
+class FreeFourBar(FourBarScene):
+    """The linkage under its weight, from rest or with a crank rate, through crank limits if it meets them.
+
+    One freedom and a constant energy fix the path of the motion, so that an error can only be a drift of energy and of
+    time, which grow about linearly: the horizon is the whole duration. (Not so if the energy just suffices to reach a
+    position of rest, or at a change point.)
+    """
+
+    name: ClassVar[str] = "free_four_bar"
+    source: ClassVar[str] = "sample 18.15 with the drive removed; truth by eqs. 18.70-18.71 with Lagrange's equation"
+
+    duration: Positive = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._curve.start(self.start, self.rate, self.branch)
+
+    @property
+    def horizon(self) -> float:  # type: ignore[override]
+        return self.duration
+
+    @property
+    def _curve(self) -> CurveMotion:
+        return CurveMotion(self.four_bar, self.masses, self.gravity)
+
+    def mechanism(self) -> Mechanism:
+        return self._mechanism(self._angles(np.zeros(1)))
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._bodies(self._angles(times))
+        return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """The truth's own error (times,): the largest change [m, rad, m/s, rad/s] of a pose or twist when it is
+        computed again with steps half as long and stages of another number; rounding to double is a part of it."""
+        times = self.times(t)
+        first, second = self._angles(times), self._angles(times, LONGEST_STEP / 2, STAGES - 2)
+        pairs = zip(self._bodies(first)[:2], self._bodies(second)[:2], strict=True)
+        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in pairs], axis=0)
+
+    def _angles(self, times: Array, longest: float = LONGEST_STEP, stages: int = STAGES) -> BarAngles:
+        curve = self._curve
+        start = curve.start(self.start, self.rate, self.branch)
+        order, where = np.unique(times, return_inverse=True)
+        try:
+            states = curve.states(start, order, longest * self._time_scale, stages)
+        except ArithmeticError as failure:
+            if self.four_bar.grashof() != "change-point":
+                raise
+            raise Unreachable(
+                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that "
+                f"change point, beyond which two motions are possible and none is the truth ({failure})"
+            ) from None
+        return curve.bar_angles(states[where])
+
+    @property
+    def _time_scale(self) -> float:
+        """One radian of the crank's rate or of a pendulum of the shortest bar [s]: a first step, no more."""
+        pendulum = math.sqrt(math.hypot(*self.gravity) / min(self.four_bar.lengths))
+        fastest = max(pendulum, abs(self.rate))
+        return 1 / fastest if fastest > 0 else 1.0
+
+
+@dataclass(frozen=True)
+class SpinningFourBar(FreeFourBar):
+    """The free linkage with a crank rate at which its bars' own inertia outweighs gravity."""
+
+    name: ClassVar[str] = "spinning_four_bar"
+
+    rate: float = 10.0
