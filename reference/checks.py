@@ -4,22 +4,23 @@ A frozen dataclass that inherits from `Valid` has its fields checked when it is 
 arguments when it is called. Either raises InvalidMechanism, a ValueError, in a sentence that says which value, why, and
 what would be valid. What is taken is made plain: numpy's numbers become Python's, lists and arrays become tuples where
 a tuple is declared and arrays of floats where an array is; so equal settings have equal reprs. Relations between values
-(lengths that assemble) are checked by hand afterwards. How annotations are read is in `reference.kinds`.
+(lengths that assemble) are checked by hand afterwards. How annotations are read is in `reference.kinds`. What is worked
+out once and handed to everybody can't be written (`fixed`), and arrays that can't fit are refused before they are made.
 """
 
 from __future__ import annotations
 
 import inspect
+import math
 import typing
-from collections.abc import Callable
-from dataclasses import fields
-from functools import wraps
+from collections.abc import Callable, Sequence
+from dataclasses import fields, is_dataclass
+from functools import cached_property, wraps
 from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.kept import fixed
 from reference.kinds import COMPLEX, NOT_FINITE, NOT_TAKEN, Floats, Kind, Rule, from_to, kind_of
 
 MOST_LETTERS = 80  # of a value in a message
@@ -168,3 +169,44 @@ def take(owner: str, name: str, value: Any, annotation: Any) -> Any:
     if taken is NOT_TAKEN:
         raise refusal(owner, name, value, kind.words)
     return taken
+
+
+Value = TypeVar("Value")
+
+
+def fixed(value: Value) -> Value:
+    """The same value, no array of which can be written any more: numpy refuses it as "read-only".
+
+    An engine that changed a mechanism's arrays would falsify the rows of the engines after it.
+    """
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    elif isinstance(value, tuple):
+        for each in value:
+            fixed(each)
+    elif is_dataclass(value):
+        for field in fields(value):
+            fixed(getattr(value, field.name))
+    return value
+
+
+class kept(cached_property[Value]):
+    """A cached property whose arrays are `fixed`."""
+
+    def __init__(self, function: Callable[[Any], Value]) -> None:
+        super().__init__(lambda owner: fixed(function(owner)))
+        self.__doc__ = function.__doc__
+
+
+# Far above what the scenes of this suite need, and what a machine of 8 GB still has room for together with the copies
+# that linear algebra makes.
+LARGEST = 2 * 2**30  # bytes
+
+
+def require_room(what: str, shape: Sequence[int], size: int = 8, largest: int = LARGEST) -> None:
+    """Raise InvalidMechanism if an array of this shape, with elements of `size` bytes, takes more than `largest`."""
+    wanted = math.prod(shape) * size
+    if wanted > largest:
+        raise InvalidMechanism(
+            f"{what} of the shape {tuple(shape)} would take {wanted:.3g} bytes; more than {largest:.3g} are refused"
+        )

@@ -16,10 +16,8 @@ from engines import Engine
 from engines.altered import Altered
 from reference.joints import Drive, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.curves import Curve, Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reports.gate.judge import projected
 

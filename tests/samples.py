@@ -22,32 +22,27 @@ from reference.chapter.parking import Move
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from reference.rolling.roll import Roll
 from reference.rolling.traced import Traced
-from reference.scenes.andrews_dyad import Dyad
+from reference.scenes.andrews import Dyad
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.free_motion import CurveMotion
+from reference.scenes.four_bar.free_motion import CurveMotion, MovingFourBar
 from reference.scenes.four_bar.linkage import FourBar
-from reference.scenes.four_bar.moving import MovingFourBar
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
-from reference.scenes.many_links import LongPendulum, OpenChain
+from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
+from reference.scenes.many_links import LongPendulum, OpenChain, SpinningRing
 from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.link import Pendulum
-from reference.scenes.person_segments import THIGH
-from reference.scenes.rolling.scenes import RollingDisc
-from reference.scenes.rolling.singular_cases import DiscInHole, SquareOnCatenaries
-from reference.scenes.skates.path import SkatePath
+from reference.scenes.person import THIGH
+from reference.scenes.rolling.scenes import DiscInHole, RollingDisc, SquareOnCatenaries
+from reference.scenes.skates.pin_and_skate import SkatePath
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reference.scenes.slider_crank.linkage import MovingSliderCrank, SliderCrank
-from reference.scenes.slider_crank.singular_cases import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.scenes import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
-from reference.scenes.spinning_ring import SpinningRing
-from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.cart import Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers, Tricycle
 from reports.grid.cells import Cell

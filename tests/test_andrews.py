@@ -9,8 +9,7 @@ import pytest
 
 from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
-from reference.scenes.andrews import Andrews
-from reference.scenes.andrews_dyad import Dyad, Moving
+from reference.scenes.andrews import Andrews, Dyad, Moving
 from reference.trajectory import energy, joint_gap, slip
 
 SCENE = Andrews()

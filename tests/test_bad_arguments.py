@@ -24,7 +24,7 @@ from reference.mechanism import Body
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar
+from reference.scenes.four_bar.scenes import OverdrivenFourBar
 from reports.grid.cells import Cell
 from tests.arguments import Trial, dataclasses_of_the_suite, functions_of_the_suite, trials
 from tests.mechanisms import four_bar
@@ -39,15 +39,15 @@ NOT_MADE_BY_USERS = {
         "reference.chapter.errata.erratum.Erratum",
     ),
     *(
-        "reference.chapter.errata.pendulum.BarState",
+        "reference.chapter.errata.linkages.BarState",
         "reference.scenes.four_bar.closed_form.Constants",
         "reference.kinds.Rule",
     ),
-    *("reference.joint_rows.JointGroup", "reference.joint_rows.JointRows"),
-    *("reference.applied_forces.ForceGroup", "reference.applied_forces.AppliedForces"),
+    *("reference.rows.JointGroup", "reference.rows.JointRows"),
+    *("reference.forces.ForceGroup", "reference.forces.AppliedForces"),
     *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.numerics.windows.Windows"),
     "reference.numerics.windows.InDouble",
-    *("reference.scenes.pendulum.double_pendulum.TwoPoints", "reference.scenes.pendulum.joint_forces.JointForces"),
+    *("reference.chapter.errata.linkages.TwoPoints", "reference.scenes.pendulum.joint_forces.JointForces"),
     *("engines.altered.Altered", "engines.contract.Size"),
     "engines.pymunk.contraction.Sweeping",
     *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reference.banded_reactions import banded_reaction
 from reference.joints import Pin
 from reference.mechanism import Mechanism
+from reference.rows import banded_reaction
 from reference.scenes.n_four_bar import TenFourBars
 from reference.scenes.pendulum.scenes import HundredLinks, TenLinks
 

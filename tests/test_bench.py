@@ -10,7 +10,7 @@ from engines import mujoco, pymunk
 from engines.lagrange import Lagrange, loading
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
-from reference.scenes.rolling.singular_cases import SquareOnCatenaries
+from reference.scenes.rolling.scenes import SquareOnCatenaries
 from reports.bench import judge
 from reports.bench.four_bar import floor_ratio, pylinkage_ratio
 from reports.bench.loops import loop_costs

@@ -22,7 +22,7 @@ from reference.chapter.centrodes import (
 )
 from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
 from reference.checks import InvalidMechanism
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
 from reference.rolling.kinematics import Rolling
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing

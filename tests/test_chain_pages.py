@@ -12,13 +12,12 @@ import pytest
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
+from reference.scenes.many_links import SpinningRing
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.scenes import LinkPendulum
-from reference.scenes.person_two_feet import TwoFeet
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reference.scenes.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.person import TwoFeet
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
-from reference.scenes.spinning_ring import SpinningRing
 from reference.trajectory import energy, joint_gap, slip
 from reports.charts.stroboscope import Strip, outline, stroboscope
 from reports.charts.theme import svg

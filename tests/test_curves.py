@@ -12,10 +12,8 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.numerics.roots import solve_increasing
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from reference.rolling.traced import Traced
 

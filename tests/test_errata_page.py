@@ -12,7 +12,7 @@ import pytest
 
 from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
 from reference.chapter.errata.erratum import Values
-from reference.chapter.errata.rolling import rolling_acceleration
+from reference.chapter.errata.rolling_and_skates import rolling_acceleration
 from reference.joints import Pin
 from reports import __main__ as command_line
 from reports.grid.tasks import answered

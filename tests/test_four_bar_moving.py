@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from reference.scenes.four_bar.free_motion import MovingFourBar
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
-from reference.scenes.four_bar.moving import MovingFourBar
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from tests.present import present
 

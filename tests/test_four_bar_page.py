@@ -8,8 +8,7 @@ from itertools import pairwise
 import pytest
 
 from engines import mujoco, pymunk
-from reference.scenes.four_bar.scenes import DrivenFourBar, SpinningFourBar
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
+from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
 from reports.grid.cells import Cell
 from reports.grid.measure import Measurement, measure
 from reports.grid.outcomes import Outcome

@@ -7,7 +7,7 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.scenes.four_bar.linkage import Unreachable
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
+from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
 from tests.present import present
 
 

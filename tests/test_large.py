@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from engines.registry import ENGINES
-from reference.checks import InvalidMechanism
-from reference.memory import LARGEST, require_room
+from reference.checks import LARGEST, InvalidMechanism, require_room
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.chain import Chain

@@ -11,10 +11,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import jn_zeros
 
+from reference.chapter.errata.linkages import accelerations, velocities
 from reference.checks import InvalidMechanism
 from reference.numerics.integration import IntegrationFailed, integrate
 from reference.scenes.pendulum.chain import Chain
-from reference.scenes.pendulum.double_pendulum import accelerations, velocities
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.trajectory import energy, joint_gap, slip

@@ -19,9 +19,8 @@ from engines.mujoco.joints.roll.rows import roll_rows
 from engines.mujoco.methods import ROLLS
 from engines.rolling_table import rolled
 from reference.mechanism import Body, Mechanism
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Curve, Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears

@@ -17,8 +17,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.scenes.person import OneFoot
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import OneFoot, TwoFeet
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy

@@ -10,10 +10,9 @@ import pytest
 
 from engines import entry_points, registry
 from engines.loading import load
-from reference.scene import Scene
+from reference.scene import Scene, told_apart, with_settings
 from reference.scenes.catalogue import SCENES, scene
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.variation import told_apart, with_settings
 from reports.cli.terminal import PULSE, Terminal, progress
 from reports.grid.ending import FINE, REFUSED
 from reports.pages import catalogue

@@ -12,10 +12,17 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.scenes.person import OneFoot
-from reference.scenes.person_segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
-from reference.scenes.person_swaying import UPRIGHT, SwayingOnOneFoot, modes_upright
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import (
+    HEAD_ARMS_TRUNK,
+    SHANK,
+    SHANK_AND_FOOT,
+    THIGH,
+    UPRIGHT,
+    OneFoot,
+    SwayingOnOneFoot,
+    TwoFeet,
+    modes_upright,
+)
 from reference.trajectory import energy, joint_gap, slip
 
 SCENES = [

@@ -7,8 +7,8 @@ import pytest
 
 
 def test_the_two_problems_and_parking_are_where_a_first_user_looks():
+    from reference.chapter.errata.linkages import accelerations, velocities
     from reference.chapter.parking import Move, park
-    from reference.scenes.pendulum.double_pendulum import accelerations, velocities
 
     assert velocities(1.0, (0.0, 0.0), (2.0, 1.0)).b == pytest.approx([3.0, 0.0])
     assert accelerations(1.0, (0.0, 0.0), (2.0, 0.0), (0.0, 0.0)).a == pytest.approx([0.0, 4.0])

@@ -12,8 +12,7 @@ import pytest
 from engines import Unsupported
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Contact, Pymunk, methods
 from reference.mechanism import Body, Mechanism
-from reference.rolling.circles_lines import Circle, Line, Side
-from reference.rolling.curves import Placed
+from reference.rolling.curves import Circle, Line, Placed, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene

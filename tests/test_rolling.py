@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 

@@ -10,11 +10,9 @@ import pytest
 
 from reference.checks import InvalidMechanism
 from reference.mechanism import Body, Mechanism
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Placed
-from reference.rolling.ellipse import Ellipse
-from reference.rolling.fitting import NEAR_CONFORMAL
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.contact import NEAR_CONFORMAL
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from tests.test_rolling import ROUNDING, unit

@@ -14,8 +14,7 @@ from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from reference.scenes.rolling.elliptic_gears import EllipticGears
-from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
-from reference.scenes.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.rolling.scenes import DiscInHole, RollingDisc, RollingEllipse, RollingOnCircle, SquareOnCatenaries
 from reports.grid.cells import Cell
 from reports.grid.measure import measure, stopped_where_it_ends
 from reports.grid.outcomes import Outcome

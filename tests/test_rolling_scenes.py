@@ -12,9 +12,8 @@ import pytest
 
 from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.scenes.rolling.body import GRAVITY, RollingBody
 from reference.scenes.rolling.elliptic_gears import EllipticGears

@@ -11,14 +11,14 @@ import pytest
 
 from engines import rolling_table
 from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import (
+    DiscInHole,
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -26,7 +26,6 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scenes.rolling.singular_cases import DiscInHole
 
 
 def rolling_of(scene: Scene) -> Rolling:

@@ -20,7 +20,7 @@ from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.joints.drive import find_cranks
 from engines.pymunk.reading import read as read_pymunk
 from engines.pymunk.written_script import script
-from reference import outlines
+from reference import trajectory as outlines
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Roll, Skate, Slot, Weld

@@ -17,7 +17,7 @@ from engines import mujoco as mujoco_engine
 from engines import pymunk as pymunk_engine
 from engines.pymunk.methods import SKATE_GROOVE
 from reference.plane import rotated
-from reference.rolling.circles_lines import Circle
+from reference.rolling.curves import Circle
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene

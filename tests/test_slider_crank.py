@@ -14,8 +14,7 @@ from scipy.integrate import quad
 from reference.checks import InvalidMechanism
 from reference.joints import Slot
 from reference.scenes.slider_crank.linkage import SliderCrank
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.scenes.slider_crank.singular_cases import SliderAtDeadCentre
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, SliderAtDeadCentre
 from reference.trajectory import energy, joint_gap, slip
 
 STEP = 1e-30

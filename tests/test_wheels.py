@@ -14,8 +14,7 @@ from scipy.integrate import solve_ivp
 from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reference.scenes.wheels.cart import Cart
-from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers, Tricycle
 from reference.trajectory import energy, joint_gap, slip

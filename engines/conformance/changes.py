@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.curves import Curve, Placed
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory

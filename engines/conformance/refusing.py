@@ -13,7 +13,7 @@ from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
 from engines.conformance.worlds.rolls import rolling
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.circles_lines import Circle, Line
+from reference.rolling.curves import Circle, Line
 from reference.rolling.roll import Roll
 
 BAD_STEPS: tuple[Any, ...] = (0.0, -0.01, math.nan, math.inf, "0.01", None, True)

@@ -13,13 +13,11 @@ from numpy.typing import NDArray
 
 from engines.lagrange.flat import MOST_ROWS
 from reference.checks import InvalidMechanism, shown
-from reference.joint_rows import JointRows
 from reference.kinds import NOT_TAKEN, Floats, kind_of, of_shape
-from reference.mechanism import Mechanism
+from reference.mechanism import Mechanism, open_joint
 from reference.rolling.roll import Roll
-from reference.rows import ranks
+from reference.rows import JointRows, ranks
 from reference.scales import length_scale, time_scale
-from reference.start import open_joint
 
 Array = NDArray[np.float64]
 
@@ -147,7 +145,7 @@ class Differing:
         )
 
     def refuse_bad_starts(self, lengths: Array, dependent: bool, begin: int) -> None:
-        """Raise InvalidMechanism for what `reference.start` refuses, and for rows whose dependence is another one.
+        """Raise InvalidMechanism for what `reference.mechanism` refuses, and for rows whose dependence is another one.
 
         lengths (mechanisms,) [m]; dependent: whether some rows of the first mechanism follow from others; begin: which
         mechanism the first one here is.

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.body import Triple
 from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
+from reference.joints import Triple
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,11 @@
-"""The integral of a known function of time from zero, at any time, to rounding: adaptive panels of Chebyshev series."""
+"""The integral of a known function of time to rounding, and the derivative of an analytic one.
+
+Integrals: adaptive panels of Chebyshev series. Derivatives: Cauchy's integral over a circle in the complex plane.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any
@@ -91,3 +95,13 @@ class Antiderivative:
         place = 2 * (flat - self._edges[which]) / width - 1
         out = (self._starts[which] + _series_at(self._series[which], place)).reshape(times.shape)
         return np.real(out) if self._real else out
+
+
+CIRCLE_POINTS = 64  # errors fall like (radius / distance to the next singularity)^points
+
+
+def derivative(position: Callable[[Any], Any], t: float, order: int = 1, radius: float = 0.25) -> NDArray[np.float64]:
+    """The derivative (...) of an analytic position at time t [s], from its values on a circle of `radius` [s]."""
+    circle = radius * np.exp(2j * math.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
+    terms = [np.asarray(position(t + z)) / z**order for z in circle]
+    return math.factorial(order) * np.mean(terms, axis=0).real

@@ -14,10 +14,8 @@ from reference.checks import InvalidMechanism, Valid, validated
 from reference.kinds import of_shape
 from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.contact import Contact
-from reference.rolling.curves import Array, Curve, Placed, Vector
-from reference.rolling.fitting import first_fit, refuse_conformal, refuse_overlap
+from reference.rolling.contact import Contact, first_fit, refuse_conformal, refuse_overlap
+from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 
 
 def _round(curve: Curve) -> float | None:

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
-from reference.checks import InvalidMechanism
-from reference.kept import kept
+from reference.checks import InvalidMechanism, kept
 from reference.kinds import of_shape
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along, within

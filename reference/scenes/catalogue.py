@@ -11,9 +11,7 @@ from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, Spinnin
 from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.scenes.person import OneFoot
-from reference.scenes.person_swaying import SwayingOnOneFoot
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import (
     RollingCam,
@@ -23,7 +21,7 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.scenes.skates.pin_and_skate import FreelyPinnedBody, PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer

@@ -1,19 +1,28 @@
-"""A pendulum of any number of links, made for counting costs: what is known of a chain is not found by linear algebra.
+"""Mechanisms of any number of links, made for counting costs: a hanging chain, and a ring that turns like a wheel.
 
-Freedoms by the rank of 2000 rows, or reactions by solving for them, would cost far more than what is to be measured.
+What is known of a chain is not found by linear algebra: freedoms by the rank of 2000 rows, or reactions by solving for
+them, would cost far more than what is to be measured. In the ring every link is a chord of a circle; its centre of mass
+goes round at a constant rate, and what its two pins give together is m w^2 times the distance to the middle, inwards.
+In a tree of joints one pin of the ring is left over, and closes it.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import Positive, validated
-from reference.mechanism import Mechanism
+from reference.checks import LARGEST_COUNT, Positive, validated
+from reference.joints import Pin
+from reference.kinds import from_to
+from reference.mechanism import Body, Mechanism
+from reference.scene import Scene
 from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -46,3 +55,58 @@ class LongPendulum(LinkPendulum):
     def mechanism(self) -> Mechanism:
         chain = super().mechanism()
         return OpenChain(chain.bodies, chain.joints, chain.gravity)
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SpinningRing(Scene):
+    """`links` uniform bars of `length` [m] and `mass` [kg] in a ring, turning at `rate` [rad/s]; no gravity.
+
+    Raises InvalidMechanism for fewer than three links. The horizon is the duration: a ring under tension is stable.
+    """
+
+    name: ClassVar[str] = "spinning_ring"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: the simplest with many links"
+    links: Annotated[int, from_to(3, LARGEST_COUNT)] = 100
+    length: Positive = 0.1
+    mass: Positive = 0.1
+    rate: float = 2.0
+    duration: Positive = 1.0
+    horizon: Positive = 1.0
+
+    def _placement(self, t: Array) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, links, 3)."""
+        inner = self.length / (2 * math.tan(math.pi / self.links))  # from the middle to the middle of a chord
+        where = 2 * math.pi * np.arange(self.links) / self.links + self.rate * t[:, None]
+        outwards = np.stack([np.cos(where), np.sin(where)], axis=-1)
+        onwards = np.stack([-np.sin(where), np.cos(where)], axis=-1)
+        zero = np.zeros_like(where)[..., None]
+        return (
+            np.concatenate([inner * outwards, where[..., None] + math.pi / 2], axis=-1),
+            np.concatenate([inner * self.rate * onwards, zero + self.rate], axis=-1),
+            np.concatenate([-inner * self.rate**2 * outwards, zero], axis=-1),
+        )
+
+    @cached_property
+    def _mechanism(self) -> Mechanism:
+        pose, twist, _ = self._placement(np.zeros(1))
+        inertia = self.mass * self.length**2 / 12
+        bodies = tuple(
+            Body(f"link {i + 1}", self.mass, inertia, tuple(place), tuple(speed))
+            for i, (place, speed) in enumerate(zip(pose[0].tolist(), twist[0].tolist(), strict=True))
+        )
+        half = self.length / 2
+        joints = tuple(
+            Pin(f"joint {i + 1}", bodies[i - 1].name, bodies[i].name, (half, 0.0), (-half, 0.0))
+            for i in [*range(1, self.links), 0]  # the one that closes the ring comes last
+        )
+        return Mechanism(bodies, joints)
+
+    def mechanism(self) -> Mechanism:
+        return self._mechanism
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._placement(times)
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))

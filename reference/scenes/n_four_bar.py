@@ -22,11 +22,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.checks import Count, NonNegative, Positive, validated
+from reference.checks import Count, NonNegative, Positive, require_room, validated
 from reference.joints import Joint, Pin
 from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
-from reference.memory import require_room
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum, direction_of

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
-from reference.outlines import body_points
 from reference.scene import Scene
+from reference.trajectory import body_points
 from reports.charts.drawings import draw_ground
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes
 

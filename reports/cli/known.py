@@ -12,8 +12,7 @@ from typing import Any
 
 from engines import Engine, registry
 from engines.loading import is_reference, load
-from reference.scene import Scene
-from reference.variation import told_apart, with_settings
+from reference.scene import Scene, told_apart, with_settings
 from reports.cli.selection import known_engines, nearest
 from reports.grid.ending import BadInput
 from reports.pages import catalogue

@@ -23,7 +23,7 @@ from engines.lagrange.compiled_run import Machine
 from engines.lagrange.flat import SMALLEST
 from engines.lagrange.loading import installed
 from engines.lagrange.tableaus import Tableau
-from reference.kept import fixed
+from reference.checks import fixed
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE
 from reference.scene import Scene

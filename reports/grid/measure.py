@@ -11,7 +11,7 @@ import numpy as np
 
 from engines import Unsupported
 from engines.contract import flaw
-from reference.kept import fixed
+from reference.checks import fixed
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.scene import Scene

@@ -9,14 +9,12 @@ from decimal import Decimal
 
 import numpy as np
 
-from reference.body import Body
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
+from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
 from reference.plane import components, rotated
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.curves import Curve, Placed
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reports.search.parts import ANGLE, EVERY, RATE, SHAPES, Link, Rim, ladder

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.body import Body, Triple
 from reference.checks import InvalidMechanism
-from reference.joints import Joint
+from reference.joints import Body, Joint, Triple
 from reference.mechanism import Mechanism
 from reference.scales import length_scale
 from reports.search.joining import Joining, beside

@@ -12,9 +12,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.scenes.person import OneFoot
-from reference.scenes.person_segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH, OneFoot, TwoFeet
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from tests.reference_laws.law import Law, Outside, angle, decades
 

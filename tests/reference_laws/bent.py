@@ -10,10 +10,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.rolling.cam import Cam
-from reference.rolling.circles_lines import Circle, Ring
-from reference.rolling.curves import Curve
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Curve, Ring
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from tests.reference_laws.law import Law, Outside, decades
 
@@ -30,7 +28,7 @@ class Exact:
 
 
 def ellipse(a: Any, b: Any) -> Exact:
-    """As in `reference.rolling.ellipse`, by Legendre's integral."""
+    """As in `reference.rolling.closed_curves`, by Legendre's integral."""
     if max(a / b, b / a) > 999:
         raise Outside
 

@@ -13,8 +13,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from tests.reference_laws.bent import catenary, ellipse, line, parabola, round_curve, spiral

@@ -10,10 +10,10 @@ import numpy as np
 
 from reference.chapter.centrodes import instant_centre
 from reference.chapter.parking import commutator_displacement, park, stops
-from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.pin_and_skate import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.skates.slopes import SkateOnSlope
-from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.cart import Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import towed
 from tests.reference_laws.law import DIGITS, Law, Outside, angle, decades

@@ -18,7 +18,7 @@ from engines.conformance.worlds.world import (
     swing,
     world,
 )
-from reference.rolling.circles_lines import Circle, Line, Ring
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 

@@ -91,7 +91,7 @@ def _hold(building: Building, name: str) -> None:
 
 
 def rod_rows(rod: Rod, stiffness: float, damping: float) -> Law:
-    """The rod's row and -(dJ/dt) v - damping slip - stiffness gap, see `reference.links.Rod`."""
+    """The rod's row and -(dJ/dt) v - damping slip - stiffness gap, see `reference.joints.Rod`."""
     return Law(rod_row, (*rod.first_point, *rod.second_point, rod.length, stiffness, damping))
 
 

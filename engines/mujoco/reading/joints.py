@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from engines.mujoco.reading.frame import FREE, HINGE, PLANAR, SLIDE, Frame, Groups, name_of, plain_name
 from engines.reading import Names, Note, refuse
-from reference.body import Body
-from reference.joints import Drive, Joint, Pin, Slot, Vector
+from reference.joints import Body, Drive, Joint, Pin, Slot, Vector
 
 Array = NDArray[np.float64]
 JOINT, EQUALITY, BODY = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_BODY

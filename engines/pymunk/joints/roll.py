@@ -26,8 +26,7 @@ from engines.rolling_table import rolled, unplaced
 from reference.checks import Fraction, NonNegative, Valid
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
-from reference.rolling.circles_lines import Circle, Line
-from reference.rolling.curves import Curve, Vector
+from reference.rolling.curves import Circle, Curve, Line, Vector
 from reference.rolling.roll import Roll
 
 RollConstruction = Literal["contact", "pivot", "stale pivot"]

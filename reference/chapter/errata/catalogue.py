@@ -1,7 +1,7 @@
 """The chapter's printed slips as computations: the printed formula taken literally, the right one, and what decides.
 
 Nothing is left to opinion: what decides is the derivative of a position (for a skate, of a velocity), taken
-numerically without any of the formulas in question (`reference.numerics.cauchy`).
+numerically without any of the formulas in question (`reference.numerics.calculus`).
 """
 
 from __future__ import annotations
@@ -9,11 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reference.chapter.errata.erratum import Erratum, Values
-from reference.chapter.errata.four_bar import FOUR_BAR_ERRATA
-from reference.chapter.errata.pendulum import PENDULUM_ERRATA
-from reference.chapter.errata.rolling import ROLLING_ERRATA
-from reference.chapter.errata.skate import SKATE_ERRATA
-from reference.numerics.cauchy import derivative
+from reference.chapter.errata.linkages import FOUR_BAR_ERRATA, PENDULUM_ERRATA
+from reference.chapter.errata.rolling_and_skates import ROLLING_ERRATA, SKATE_ERRATA
+from reference.numerics.calculus import derivative
 
 ERRATA: tuple[Erratum, ...] = (*ROLLING_ERRATA, *SKATE_ERRATA, *FOUR_BAR_ERRATA, *PENDULUM_ERRATA)
 

@@ -34,6 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Interval = tuple[float, float]
 
 # All arrays of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
 BLOCK = 8192
@@ -95,6 +96,27 @@ class Constants:
             inner_near=difference(l1, -d, -l2, l3) * difference(l1, -d, l2, -l3),
             inner_far=difference(l1, d, -l2, l3) * difference(l1, d, l2, -l3),
         )
+
+    def crank_limits(self) -> tuple[Interval, ...] | None:
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        # theta' = 2 atan(sqrt(ratio)) where U or W vanishes; exact differences keep the digits near a change point.
+        outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
+        inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None
+        if outer is None and inner is None:
+            return None
+        if inner is None:
+            assert outer is not None
+            return ((self.heading - outer, self.heading + outer),)
+        if outer is None:
+            return ((self.heading + inner, self.heading + 2 * math.pi - inner),)
+        return ((self.heading - outer, self.heading - inner), (self.heading + inner, self.heading + outer))
+
+    def transmission_extremes(self) -> tuple[float, float]:
+        """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
+        # tan^2 of the half angle is W / U, and grows with the distance from B to D.
+        low = 2 * math.atan2(math.sqrt(max(self.inner_near, 0)), math.sqrt(self.outer_near))
+        high = 2 * math.atan2(math.sqrt(self.inner_far), math.sqrt(max(self.outer_far, 0)))
+        return low, high
 
 
 class Triangles(NamedTuple):
@@ -229,3 +251,21 @@ def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Arra
     if c.l1 == c.d and float(np.min(square)) == 0:
         raise OutOfReach(int(np.argmin(square)), undetermined=True)
     return u, w
+
+
+def grashof(crank: float, coupler: float, rocker: float, ground: float) -> str:
+    """The class by name, from the shortest bar s, the longest l and the others p, q; lengths [m].
+
+    s + l > p + q: triple-rocker (no bar turns fully). Equal up to the rounding of the lengths: change-point. Below:
+    double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; when that is
+    the rocker, it is the rocker that turns and the crank that swings.
+    """
+    bars = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
+    shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)
+    s, p, q, longest = (bars[name] for name in ranked)
+    excess = difference(s, longest, -p, -q)
+    if excess > 0:
+        return "triple-rocker"
+    if excess == 0:
+        return "change-point"
+    return {"ground": "double-crank", "coupler": "double-rocker"}.get(shortest, "crank-rocker")

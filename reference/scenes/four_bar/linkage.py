@@ -18,10 +18,8 @@ from numpy.typing import ArrayLike
 from reference.checks import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 from reference.joints import Vector
 from reference.plane import from_complex
-from reference.scenes.four_bar import ranges
-from reference.scenes.four_bar.closed_form import Constants, Kinematics, OutOfReach, closed_form
+from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
 from reference.scenes.four_bar.forces import Densities, Forces, bar_forces
-from reference.scenes.four_bar.ranges import Interval
 from reference.scenes.four_bar.rate_integration import RateIntegration, integrate_rates
 
 
@@ -145,7 +143,7 @@ class FourBar(Valid):
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
         """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
-        return ranges.crank_limits(self._constants)
+        return self._constants.crank_limits()
 
     def rocker_limits(self) -> tuple[Interval, ...] | None:
         """The intervals (low, high) of phi [rad] that the rocker reaches, up to whole turns; None if it turns fully.
@@ -157,8 +155,8 @@ class FourBar(Valid):
         return FourBar(self.rocker, self.coupler, self.crank, (-x, -y)).crank_limits()
 
     def grashof(self) -> str:
-        """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point; see `ranges`."""
-        return ranges.grashof(*self.lengths, self.ground_length)
+        """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point."""
+        return grashof(*self.lengths, self.ground_length)
 
     @validated
     def transmission_angle(self, theta: ArrayLike, branch: Signs = 1) -> Any:
@@ -168,7 +166,7 @@ class FourBar(Valid):
 
     def transmission_extremes(self) -> tuple[float, float]:
         """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
-        return ranges.transmission_extremes(self._constants)
+        return self._constants.transmission_extremes()
 
     @validated
     def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:

@@ -15,9 +15,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
-from reference.checks import Count, InvalidMechanism, Positive, Times, Valid, sample_times, validated
-from reference.kept import kept
-from reference.memory import require_room
+from reference.checks import (
+    Count,
+    InvalidMechanism,
+    Positive,
+    Times,
+    Valid,
+    kept,
+    require_room,
+    sample_times,
+    validated,
+)
 from reference.numerics import windows
 from reference.numerics.integration import error_of, integrate, units_of_motion
 from reference.plane import perpendicular, rotation_acceleration, rotation_velocity

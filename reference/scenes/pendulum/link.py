@@ -18,10 +18,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import NonNegative, Positive, Valid, validated
+from reference.checks import LARGEST, NonNegative, Positive, Valid, require_room, validated
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.memory import LARGEST, require_room
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene

@@ -10,10 +10,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import Count, Positive
+from reference.checks import Count, Positive, require_room
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.memory import require_room
 from reference.scene import Scene
 from reference.scenes.pendulum.chain import Chain, Motion
 from reference.trajectory import Trajectory

@@ -11,11 +11,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import InvalidMechanism, Positive, Valid, sample_times, validated
-from reference.kept import kept
+from reference.checks import InvalidMechanism, Positive, Valid, kept, sample_times, validated
 from reference.numerics import windows
-from reference.numerics.events import first_below, root
 from reference.numerics.integration import IntegrationFailed, units_of_motion
+from reference.numerics.roots import first_below, root
 from reference.plane import rotation_acceleration
 from reference.rolling.contact import Contact
 from reference.rolling.curves import Array, Vector

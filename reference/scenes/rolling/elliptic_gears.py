@@ -9,14 +9,13 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.body import Triple
 from reference.checks import Positive, validated
-from reference.joints import Drive, Pin
+from reference.joints import Drive, Pin, Triple
 from reference.kinds import from_to, of_shape
 from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
+from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Array
-from reference.rolling.ellipse import Ellipse
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.rows import undetermined

@@ -8,9 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from reference.body import Triple
 from reference.checks import InvalidMechanism, Positive
-from reference.joints import Skate, Vector
+from reference.joints import Skate, Triple, Vector
 from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene

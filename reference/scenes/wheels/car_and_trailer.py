@@ -15,9 +15,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.body import Triple
 from reference.checks import InvalidMechanism, Positive, validated
-from reference.joints import Joint, Pin, Skate
+from reference.joints import Joint, Pin, Skate, Triple
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import Antiderivative
 from reference.scene import Scene

@@ -19,8 +19,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.body import Triple
 from reference.checks import Positive, Valid, validated
+from reference.joints import Triple
 from reference.kinds import NOT_FINITE, Rule, from_to
 
 Array = NDArray[np.float64]

@@ -17,12 +17,12 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.body import Triple
 from reference.checks import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
+from reference.joints import Triple
 from reference.kinds import of_shape
-from reference.numerics.events import first_below
 from reference.numerics.integration import Integrated, error_of, integrate
-from reference.scenes.skates.path import SkatePath
+from reference.numerics.roots import first_below
+from reference.scenes.skates.pin_and_skate import SkatePath
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]

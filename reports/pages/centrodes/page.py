@@ -11,7 +11,7 @@ import numpy as np
 
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes, centrode_error, centrodes, from_poses
-from reference.kept import fixed
+from reference.checks import fixed
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
 from reports.charts.theme import svg

@@ -14,11 +14,11 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.chapter.errata import pendulum
+from reference.chapter.errata import linkages as pendulum
 from reference.chapter.errata.erratum import Array, Values
-from reference.chapter.errata.four_bar import closed_form, integrated
-from reference.chapter.errata.four_bar import rates as printed_rates
-from reference.chapter.errata.skate import acceleration_of_g
+from reference.chapter.errata.linkages import closed_form, integrated
+from reference.chapter.errata.linkages import rates as printed_rates
+from reference.chapter.errata.rolling_and_skates import acceleration_of_g
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene

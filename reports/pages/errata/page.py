@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
-from reference.chapter.errata.rolling import rolling_acceleration
+from reference.chapter.errata.rolling_and_skates import rolling_acceleration
 from reports.pages.errata.errata_engines import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
 from reports.pages.page import Material, Page
 from reports.text.tables import markdown, number

@@ -8,8 +8,13 @@ from dataclasses import replace
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from reference.scene import Scene
-from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
+from reference.scenes.four_bar.scenes import (
+    DrivenFourBar,
+    FreeFourBar,
+    OverdrivenFourBar,
+    Parallelogram,
+    SpinningFourBar,
+)
 from reports.grid.cells import Cell
 from reports.pages.four_bar.printed_rates import PrintedRates
 from reports.pages.page import Failure, Material, Observation, StabilityMap

@@ -12,9 +12,9 @@ from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import Hardened
 from reference.scene import Scene
+from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum
-from reference.scenes.spinning_ring import SpinningRing
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, StabilityMap
 from reports.pages.pendulum.divergence import BEYOND, PARTING, divergence

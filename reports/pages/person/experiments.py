@@ -9,9 +9,7 @@ from dataclasses import replace
 from engines import Engine, mujoco, pymunk
 from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.scenes.person import OneFoot
-from reference.scenes.person_swaying import SwayingOnOneFoot, modes_upright
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap
 

@@ -6,9 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.scenes.person import OneFoot
-from reference.scenes.person_swaying import SwayingOnOneFoot, modes_upright
-from reference.scenes.person_two_feet import TwoFeet
+from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.charts.stroboscope import Points, Strip, stroboscope
 from reports.charts.theme import svg
 from reports.pages.page import Material, Page

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from reference.rolling.circles_lines import Line
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Line
 from reference.rolling.kinematics import Rolling
 from reference.scenes.rolling.scenes import RollingScene
 from reports.charts.theme import LIGHT, Theme, new_figure, settings, style_axes

@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reference.plane import rotated
-from reference.rolling.circles_lines import Circle, Line, Ring, Side
-from reference.rolling.curves import Array, Curve, Placed, Vector
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, Parabola
 from reference.rolling.roll import Roll

@@ -12,8 +12,14 @@ import numpy as np
 from engines import Engine, mujoco
 from engines.lagrange import Lagrange
 from engines.pymunk import methods as pymunk_methods
-from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
-from reference.scenes.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.rolling.scenes import (
+    DiscInHole,
+    RollingDisc,
+    RollingEllipse,
+    RollingOnCircle,
+    RollingScene,
+    SquareOnCatenaries,
+)
 from reports.grid.cells import Cell
 from reports.grid.tasks import Motion
 from reports.pages.page import Failure, Material, Observation, StabilityMap

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.body import Triple
 from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.joints import Triple
 from reference.scenes.skates.slopes import SkateOnSlope
 from reports.charts.plane_panels import Blades, Note, Panel, Path, paths
 

@@ -12,8 +12,7 @@ from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
 from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reference.scenes.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reports.grid.cells import Cell
 from reports.pages.page import Failure, Material, Observation, StabilityMap

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.scenes.slider_crank.singular_cases import SliderAtDeadCentre
+from reference.scenes.slider_crank.scenes import SliderAtDeadCentre
 from reports.grid.tasks import Task, Values
 
 FAR = 1.0  # rad

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.scenes.wheels.casters import Casters
+from reference.scenes.wheels.cart import Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.charts.plane_panels import Blades, Panel, Path, paths

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from engines import mujoco, pymunk
-from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.scenes.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
+from reference.scenes.four_bar.scenes import (
+    DrivenFourBar,
+    FreeFourBar,
+    OverdrivenFourBar,
+    Parallelogram,
+    SpinningFourBar,
+)
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank

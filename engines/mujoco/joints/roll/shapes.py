@@ -18,9 +18,8 @@ import mujoco
 from engines import Unsupported
 from engines.mujoco.construction import Building
 from engines.rolling_table import unplaced
-from reference.rolling.circles_lines import Circle, Line, Ring
-from reference.rolling.curves import Curve
-from reference.rolling.ellipse import Ellipse
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Ring
 from reference.rolling.roll import Roll
 
 RoundShape = Literal["sphere", "cylinder"]
