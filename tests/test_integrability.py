@@ -17,7 +17,7 @@ from reference.chapter.integrability import (
 from reference.checks import InvalidMechanism
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes.skates.pin_and_skate import PinnedBody
+from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart

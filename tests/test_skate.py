@@ -12,7 +12,7 @@ from reference.chapter.parking import Move, commutator, commutator_displacement,
 from reference.checks import InvalidMechanism
 from reference.joints import Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes.skates.pin_and_skate import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
+from reference.scenes.skates.pinned_body import SkatePath, pin_constants, pin_rows, pinned_pose, skate_row
 
 # ---------------------------------------------------------------------------------------------------------- rows
 

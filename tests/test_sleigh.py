@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from reference.checks import InvalidMechanism
-from reference.scenes.skates.pin_and_skate import FreelyPinnedBody, PinnedBody, pin_constants
+from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody, pin_constants
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import energy, joint_gap, slip
 from tests.multipliers import TIGHT, multipliers

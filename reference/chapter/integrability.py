@@ -62,16 +62,6 @@ def obstruction(rows: Rows, place: Place) -> Array:
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
 
-@validated
-def curl_along(form: Rows, place: Place) -> float:
-    """w . curl w of a one-form in three coordinates: Frobenius' test for one row; -1 everywhere for a skate (18.64)."""
-    if len(place) != 3:
-        raise InvalidMechanism(f"w . curl w needs three coordinates, not {len(place)}; use obstruction instead")
-    (slope,) = exterior_derivatives(form, place)
-    curl = np.array([slope[1, 2], slope[2, 0], slope[0, 1]])
-    return float(form(place)[0] @ curl)
-
-
 def _around(place: Place) -> list[Array]:
     angles = np.outer(np.arange(1, PLACES), np.arange(1, len(place) + 1)) * np.sqrt(2.0) + np.arange(1, PLACES)[:, None]
     return [place, *(place + SPREAD * np.sin(angles))]

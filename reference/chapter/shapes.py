@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from reference.chapter.centrodes import Centrodes, from_poses
+from reference.chapter.centrodes import Centrodes
 from reference.checks import LARGEST_COUNT, InvalidMechanism, Positive, Valid, index_of, validated
 from reference.kinds import NOT_FINITE, from_to, of_shape
 from reference.plane import rotated
@@ -29,16 +29,6 @@ class Shapes(Valid):
     body: Places  # in the body's frame: the moving part
     pose: Poses  # (n, 3) m, m, rad: where the moving part is at each contact
     error: Annotated[float, NOT_FINITE]  # m, see Centrodes.error
-
-
-@validated
-def shapes_of_motion(t: Annotated[Array, of_shape("n")], pose: Poses, points: Points = 400) -> Shapes:
-    """The two shapes of a table of poses (n, 3) [m, m, rad] at times (n,) [s].
-
-    Raises InvalidMechanism as `centrodes.from_poses` does: where the rotation rate vanishes, nothing rotates, the
-    centre stands still, or a curve has a cusp.
-    """
-    return shapes_of(from_poses(t, pose), points)
 
 
 @validated

@@ -219,12 +219,6 @@ class Rolling(Valid):
         return rotation_velocity(rate, self._arm(self.contact(theta), point))
 
     @validated
-    def contact_velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
-        """v_C = omega / (curvature_A + curvature_B) e_t (..., 2) [m/s]: of no material point."""
-        contact = self.contact(theta)
-        return (np.asarray(rate) * contact.rate)[..., None] * contact.tangent
-
-    @validated
     def pinned_acceleration(
         self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
     ) -> Array:

@@ -19,29 +19,47 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import eig
 
 from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, kept, validated
+from reference.embedding import EmbeddedScene
 from reference.joints import Joint, Pin
 from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
-from reference.numerics import windows
-from reference.numerics.integration import units_of_motion
-from reference.scene import Scene
-from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
 NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
+UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
 
 
 @dataclass(frozen=True)
-class OneFoot(Scene):
+class Segment(Valid):
+    """Fractions: of the body's mass; of its height, the length; of the length, centre from the upper end, and gyration.
+
+    `centre` is measured from the upper joint (for the trunk, whose joint is the hip, from the hip up); `gyration` is
+    the radius of gyration about the centre of mass.
+    """
+
+    mass: Fraction
+    length: Fraction
+    centre: Fraction
+    gyration: Fraction
+
+
+# Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about it) and figure 4.1 (length).
+HEAD_ARMS_TRUNK = Segment(0.678, 0.288, 0.626, 0.496)
+THIGH = Segment(0.100, 0.245, 0.433, 0.323)
+SHANK = Segment(0.0465, 0.246, 0.433, 0.302)
+SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
+
+
+@dataclass(frozen=True)
+class OneFoot(EmbeddedScene):
     """Standing on the left foot: `mass` [kg] of the whole person, `height` [m], gravity [m/s^2].
 
     Angles [rad] at the start, from rest, of the upward lines ankle-knee, knee-hip and hip-shoulder from the upward
@@ -73,16 +91,10 @@ class OneFoot(Scene):
         return None
 
     @property
-    def start(self) -> tuple[float, ...]:
-        """The coordinates u at t = 0: the bodies' angles, of the x axis along the segment away from the left ankle."""
-        up, down = math.pi / 2, -math.pi / 2
-        return (
-            self.left_shank + up,
-            self.left_thigh + up,
-            self.trunk + up,
-            self.right_thigh + down,
-            self.right_shank + down,
-        )
+    def start(self) -> Array:
+        """At rest: the bodies' angles, of the x axis along the segment away from the left ankle, and their rates."""
+        aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
+        return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
     @kept
     def lengths(self) -> Array:
@@ -135,43 +147,8 @@ class OneFoot(Scene):
         )
         return pose, across.reshape((*across.shape[:-3], 15, across.shape[-1]))
 
-    def accelerations(self, coordinates: Array, rates: Array) -> Array:
-        """u'' (..., freedoms), the embedding above; dT/dt is exact by a complex step along the motion."""
-        step = 1e-100
-        _, tangent = self.tangent(coordinates + 1j * step * rates)
-        bias = (tangent.imag @ rates[..., None])[..., 0] / step
-        tangent = tangent.real
-        weights = np.stack([self.masses, self.masses, self.inertias], axis=-1).reshape(-1)
-        applied = np.tile([0.0, -self.gravity, 0.0], 5)
-        left = np.swapaxes(tangent, -1, -2) @ (weights[:, None] * tangent)
-        right = np.swapaxes(tangent, -1, -2) @ (weights * (applied - bias))[..., None]
-        return np.linalg.solve(left, right)[..., 0]
-
-    def rates(self, state: Array) -> Array:
-        """d/dt of (u, u') (..., 2 freedoms): what is integrated."""
-        half = state.shape[-1] // 2
-        rates = state[..., half:]
-        return np.concatenate([rates, self.accelerations(state[..., :half], rates)], axis=-1)
-
-    def states(self, t: ArrayLike) -> tuple[Array, Array]:
-        """u and u' (times, freedoms) at times t >= 0 [s]."""
-        return self._states(self.times(t))
-
-    def _states(self, times: Array) -> tuple[Array, Array]:
-        state = _integrated(self, max(self.duration, float(times.max(initial=0.0))))(times)
-        half = state.shape[-1] // 2
-        return state[:, :half], state[:, half:]
-
-    def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) in u and u', by two rules."""
-        return windows.error_of(self.rates, self._at_rest, self.times(t), units_of_motion(self.rates, self._at_rest))
-
-    @property
-    def _at_rest(self) -> Array:
-        return np.concatenate([self.start, np.zeros(len(self.start))])
-
     def mechanism(self) -> Mechanism:
-        pose, _ = self.tangent(np.array(self.start))
+        pose, _ = self.tangent(self.start[: self.freedoms])
         bodies = tuple(
             Body(name, float(mass), float(inertia), tuple(place))
             for name, mass, inertia, place in zip(NAMES, self.masses, self.inertias, pose.tolist(), strict=True)
@@ -187,54 +164,6 @@ class OneFoot(Scene):
         if self.feet is not None:
             joints.append(Pin("right ankle", None, NAMES[4], (self.feet, 0.0), (ahead[4], 0.0)))
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
-
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self._placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
-
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        return self.mechanism()
-
-    def placement(self, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 5, 3) at times t >= 0 [s]."""
-        return self._placement(self.times(t))
-
-    def _placement(self, times: Array) -> tuple[Array, Array, Array]:
-        coordinates, rates = self._states(times)
-        step = 1e-100
-        pose, tangent = self.tangent(coordinates)
-        _, moved = self.tangent(coordinates + 1j * step * rates)
-        along, bias = self.accelerations(coordinates, rates), moved.imag @ rates[..., None] / step
-        acceleration = tangent @ along[..., None] + bias
-        return pose, (tangent @ rates[..., None]).reshape(pose.shape), acceleration.reshape(pose.shape)
-
-
-@lru_cache(maxsize=8)
-def _integrated(person: OneFoot, until: float) -> windows.Motion:
-    start = person._at_rest
-    return windows.motion(person.rates, start, until, units_of_motion(person.rates, start))
-
-
-@dataclass(frozen=True)
-class Segment(Valid):
-    """Fractions: of the body's mass; of its height, the length; of the length, centre from the upper end, and gyration.
-
-    `centre` is measured from the upper joint (for the trunk, whose joint is the hip, from the hip up); `gyration` is
-    the radius of gyration about the centre of mass.
-    """
-
-    mass: Fraction
-    length: Fraction
-    centre: Fraction
-    gyration: Fraction
-
-
-# Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about it) and figure 4.1 (length).
-HEAD_ARMS_TRUNK = Segment(0.678, 0.288, 0.626, 0.496)
-THIGH = Segment(0.100, 0.245, 0.433, 0.323)
-SHANK = Segment(0.0465, 0.246, 0.433, 0.302)
-SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
 
 
 @dataclass(frozen=True)
@@ -282,9 +211,9 @@ class TwoFeet(OneFoot):
         return self.stance
 
     @property
-    def start(self) -> tuple[float, ...]:
-        """The coordinates u: hip x and y [m], and the trunk's angle [rad]."""
-        return (self.hip_x, self.hip_y, self.trunk + math.pi / 2)
+    def start(self) -> Array:
+        """At rest: hip x and y [m], the trunk's angle [rad], and their rates."""
+        return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
 
     def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
         """Each leg is two circles, about its ankle and about the hip; its rates solve l1 n1 w1 + l2 n2 w2 = v_hip."""
@@ -321,9 +250,6 @@ class TwoFeet(OneFoot):
         left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
         right = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))
         return np.where(left == right, left, 0).astype(int)
-
-
-UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.chapter.centrodes import instant_centre
 from reference.chapter.parking import commutator_displacement, park, stops
-from reference.scenes.skates.pin_and_skate import PinnedBody
+from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.skates.slopes import SkateOnSlope
 from reference.scenes.wheels.cart import Casters

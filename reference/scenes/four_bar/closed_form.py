@@ -111,13 +111,6 @@ class Constants:
             return ((self.heading + inner, self.heading + 2 * math.pi - inner),)
         return ((self.heading - outer, self.heading - inner), (self.heading + inner, self.heading + outer))
 
-    def transmission_extremes(self) -> tuple[float, float]:
-        """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
-        # tan^2 of the half angle is W / U, and grows with the distance from B to D.
-        low = 2 * math.atan2(math.sqrt(max(self.inner_near, 0)), math.sqrt(self.outer_near))
-        high = 2 * math.atan2(math.sqrt(self.inner_far), math.sqrt(max(self.outer_far, 0)))
-        return low, high
-
 
 class Triangles(NamedTuple):
     """A B D and B C D at crank angles (n,), in the letters of the formulas above [m^2]."""

@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Positive, Sign, Signs, Valid, validated
 from reference.joints import Vector
-from reference.plane import from_complex
 from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
 from reference.scenes.four_bar.forces import Densities, Forces, bar_forces
 from reference.scenes.four_bar.rate_integration import RateIntegration, integrate_rates
@@ -25,14 +24,6 @@ from reference.scenes.four_bar.rate_integration import RateIntegration, integrat
 
 class Unreachable(ValueError):
     """A crank angle at which the loop can't close: the message names it and the range that is possible."""
-
-
-class PointMotion(NamedTuple):
-    """Position [m], velocity [m/s] and acceleration [m/s^2] of a point, each (..., 2)."""
-
-    position: Any
-    velocity: Any
-    acceleration: Any
 
 
 @dataclass(frozen=True)
@@ -145,55 +136,9 @@ class FourBar(Valid):
         """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
         return self._constants.crank_limits()
 
-    def rocker_limits(self) -> tuple[Interval, ...] | None:
-        """The intervals (low, high) of phi [rad] that the rocker reaches, up to whole turns; None if it turns fully.
-
-        At their ends crank and coupler are in line. Seen from the rocker, as if it were the crank, these are the limits
-        of the crank. A crank that turns fully swings the rocker through one interval, another on each branch.
-        """
-        x, y = self.ground
-        return FourBar(self.rocker, self.coupler, self.crank, (-x, -y)).crank_limits()
-
     def grashof(self) -> str:
         """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point."""
         return grashof(*self.lengths, self.ground_length)
-
-    @validated
-    def transmission_angle(self, theta: ArrayLike, branch: Signs = 1) -> Any:
-        """The angle B C D between coupler and rocker, in [0, pi] [rad]: branch * (phi - beta) up to whole turns."""
-        beta, phi = self.angles(theta, branch)
-        return np.abs(np.remainder(phi - beta + np.pi, 2 * np.pi) - np.pi)
-
-    def transmission_extremes(self) -> tuple[float, float]:
-        """The smallest and largest transmission angle [rad] over all reachable crank angles; 0 or pi: a limit."""
-        return self._constants.transmission_extremes()
-
-    @validated
-    def coupler_point(self, theta: ArrayLike, along: ArrayLike, across: ArrayLike, branch: Signs = 1) -> Any:
-        """World position (..., 2) [m] of the coupler's point `along` BC from B and `across` to its left [m]."""
-        beta, _ = self.angles(theta, branch)
-        return from_complex(self.crank * np.exp(1j * np.asarray(theta)) + _arm(along, across) * np.exp(1j * beta))
-
-    @validated
-    def coupler_motion(
-        self,
-        theta: ArrayLike,
-        theta_dot: ArrayLike,
-        theta_ddot: ArrayLike,
-        along: ArrayLike,
-        across: ArrayLike,
-        branch: Signs = 1,
-    ) -> PointMotion:
-        """The same point with its velocity and acceleration (18.67)."""
-        motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
-        rate, acceleration = np.asarray(theta_dot), np.asarray(theta_ddot)
-        crank = self.crank * np.exp(1j * np.asarray(theta))
-        arm = _arm(along, across) * np.exp(1j * motion.beta)
-        return PointMotion(
-            from_complex(crank + arm),
-            from_complex(1j * (crank * rate + arm * motion.beta_dot)),
-            from_complex(crank * (1j * acceleration - rate**2) + arm * (1j * motion.beta_ddot - motion.beta_dot**2)),
-        )
 
     @validated
     def forces(
@@ -222,32 +167,6 @@ class FourBar(Valid):
         )
 
     @validated
-    def reactions(
-        self,
-        theta: ArrayLike,
-        theta_dot: ArrayLike,
-        theta_ddot: ArrayLike = 0.0,
-        branch: Signs = 1,
-        density: Densities = 1.0,
-        gravity: Vector = (0.0, -9.81),
-    ) -> tuple[Any, Any, Any, Any]:
-        """The pin forces at A, B, C, D of `forces`, signs and arguments as there."""
-        return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity)[:4]
-
-    @validated
-    def drive_torque(
-        self,
-        theta: ArrayLike,
-        theta_dot: ArrayLike,
-        theta_ddot: ArrayLike = 0.0,
-        branch: Signs = 1,
-        density: Densities = 1.0,
-        gravity: Vector = (0.0, -9.81),
-    ) -> Any:
-        """The torque [N m] of `forces` on the crank, counter-clockwise positive; arguments as there."""
-        return self.forces(theta, theta_dot, theta_ddot, branch, density, gravity).torque
-
-    @validated
     def integrate_rates(
         self,
         t: ArrayLike,
@@ -259,7 +178,3 @@ class FourBar(Valid):
         """The chapter's pseudocode from the given start, a method under test; settings as in `rate_integration`."""
         beta, phi = self.angles(theta, branch)
         return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)
-
-
-def _arm(along: ArrayLike, across: ArrayLike) -> Any:
-    return np.asarray(along) + 1j * np.asarray(across)

@@ -17,8 +17,8 @@ from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
 from reference.numerics.collocation import STAGES
 from reference.scene import Scene
-from reference.scenes.four_bar.forces import Densities
-from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, MovingFourBar
+from reference.scenes.four_bar.forces import Densities, three_densities
+from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
 from reference.trajectory import Trajectory
 
@@ -57,14 +57,10 @@ class FourBarScene(Scene):
         return FourBar(self.crank, self.coupler, self.rocker, self.ground)
 
     @property
-    def moving(self) -> MovingFourBar:
-        """The bars in the crank's angle: reduced inertia, potential, free acceleration."""
-        return MovingFourBar(self.four_bar, self.density, self.gravity)
-
-    @property
     def masses(self) -> tuple[float, float, float]:
         """Of crank, coupler and rocker [kg]."""
-        return self.moving.masses
+        densities = three_densities(self.density)
+        return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""

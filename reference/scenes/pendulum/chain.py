@@ -161,17 +161,6 @@ class Chain(Valid):
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
         return self.gravity * self._length * (self._mass / 2 + below)
 
-    @validated
-    def lagrangian_accelerations(self, angle: ArrayLike, rate: ArrayLike) -> Array:
-        """angle'' (links,) [rad/s^2] by Lagrange's equations, dense: O(links^3), no joint force in it; the second
-        opinion.
-        """
-        angle, rate = self._alike(angle, rate)
-        difference = angle[:, None] - angle
-        right = -(self.inertia_matrix * np.sin(difference)) @ rate**2 - self.stiffness * np.sin(angle)
-        solution: Any = np.linalg.solve(self.inertia_matrix * np.cos(difference), right)
-        return solution
-
     def modes(self) -> tuple[Array, Array]:
         """Small oscillations about hanging: frequencies (links,) [rad/s] ascending, and shapes (links, modes) of
         angles.

@@ -82,15 +82,6 @@ class ChaplyginSleigh(Scene):
         """
         return -self.offset * self.speed / self._arm**2
 
-    def total_heading_change(self) -> float:
-        """The heading's change from t = 0 until for ever [rad]; infinite without offset, when it circles."""
-        if self.turning_rate == 0:
-            return 0.0
-        if self.offset == 0:
-            return math.copysign(math.inf, self.turning_rate)
-        remaining = 2 * math.atan(math.exp(-math.copysign(self._phase, self._phase * self.offset)))
-        return math.copysign(self._arm / abs(self.offset) * remaining, self.turning_rate)
-
     @validated
     def rates(self, t: ArrayLike) -> tuple[Array, Array]:
         """The skate's speed u [m/s] and the turning rate w [rad/s] at times t."""

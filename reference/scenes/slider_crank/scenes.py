@@ -9,41 +9,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.checks import Complexes, Positive, Sign, validated
+from reference.checks import Positive, Sign
+from reference.embedding import EmbeddedScene
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.kinds import Floats
 from reference.mechanism import Body, Mechanism
-from reference.numerics import windows
-from reference.numerics.integration import Rates, units_of_motion
-from reference.scene import Scene
-from reference.scenes.slider_crank.linkage import MovingSliderCrank, SliderCrank
-from reference.trajectory import Trajectory
+from reference.scenes.slider_crank.linkage import SliderCrank
 
 Array = NDArray[np.float64]
 
 
-def _rates_of(moving: MovingSliderCrank) -> Rates:
-    def rates(state: Array) -> Array:
-        theta, rate = state[..., 0], state[..., 1]
-        return np.stack([rate, moving.acceleration(theta, rate)], axis=-1)
-
-    return rates
-
-
-@lru_cache(maxsize=8)
-def _integrated(moving: MovingSliderCrank, angle: float, rate: float, until: float, unit: float) -> windows.Motion:
-    rates = _rates_of(moving)
-    return windows.motion(rates, [angle, rate], until, units_of_motion(rates, [angle, rate], unit))
-
-
 @dataclass(frozen=True)
-class DrivenSliderCrank(Scene):
+class DrivenSliderCrank(EmbeddedScene):
     """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; lengths [m], masses [kg], gravity [m/s^2].
 
     The slider's `slider_inertia` [kg m^2] never acts: it doesn't turn.
@@ -68,50 +51,41 @@ class DrivenSliderCrank(Scene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.moving  # refuses lengths and masses that can't be
+        _ = self.shape  # refuses lengths that can't be
 
     @cached_property
-    def moving(self) -> MovingSliderCrank:
-        shape = SliderCrank(self.crank, self.rod, self.offset, self.branch)
-        return MovingSliderCrank(shape, self.crank_mass, self.rod_mass, self.slider_mass, self.gravity)
+    def shape(self) -> SliderCrank:
+        return SliderCrank(self.crank, self.rod, self.offset, self.branch)
 
-    def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
-        """Angle, rate and acceleration of the crank (times,) [rad, s]."""
-        return self.angle + self.rate * t, np.full_like(t, self.rate), np.zeros_like(t)
+    @property
+    def start(self) -> Array:
+        """The crank's angle [rad] and rate [rad/s]."""
+        return np.array([self.angle, self.rate])
 
-    def _placement(self, theta: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists, accelerations (times, 3 bodies, 3)."""
-        shape, r = self.moving.shape, self.crank
-        sine, cosine, zero = np.sin(theta), np.cos(theta), np.zeros_like(theta)
-        x, beta = shape.position(theta), shape.rod_angle(theta)
-        (x1, x2), (b1, b2) = shape.position_rates(theta), shape.rod_rates(theta)
-
-        def bodies(*rows: tuple[Array | float, Array | float, Array | float]) -> Array:
-            return np.stack([np.stack([value + zero for value in row], axis=-1) for row in rows], axis=-2)
-
-        place = bodies(
+    def tangent(self, coordinates: Any) -> tuple[Any, Any]:
+        theta, shape, r = coordinates[..., 0], self.shape, self.crank
+        sine, cosine, zero = np.sin(theta), np.cos(theta), 0 * theta
+        place, (turn, slide) = shape.position(theta), shape._rates(theta)
+        poses = (
             (r * cosine / 2, r * sine / 2, theta),
-            ((r * cosine + x) / 2, (r * sine + self.offset) / 2, beta),
-            (x, self.offset, 0.0),
+            ((r * cosine + place) / 2, (r * sine + self.offset) / 2, shape.rod_angle(np.real(theta))),
+            (place, self.offset + zero, zero),
         )
-        first = bodies((-r * sine / 2, r * cosine / 2, 1.0), ((x1 - r * sine) / 2, r * cosine / 2, b1), (x1, 0.0, 0.0))
-        second = bodies(
-            (-r * cosine / 2, -r * sine / 2, 0.0), ((x2 - r * cosine) / 2, -r * sine / 2, b2), (x2, 0.0, 0.0)
-        )
-        w, alpha = rate[:, None, None], acceleration[:, None, None]
-        return place, first * w, second * w**2 + first * alpha
+        rates = (-r * sine / 2, r * cosine / 2, 1 + zero)
+        rates += ((slide - r * sine) / 2, r * cosine / 2, turn, slide, zero, zero)
+        pose = np.stack([np.stack(np.broadcast_arrays(*row), axis=-1) for row in poses], axis=-2)
+        return pose, np.stack(rates, axis=-1)[..., None]
 
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        theta, rate, acceleration = self.crank_motion(np.zeros(1))
-        pose, twist, _ = self._placement(theta, rate, acceleration)
+    def mechanism(self) -> Mechanism:
+        pose, tangent = self.tangent(np.array([self.angle]))
+        twist = (tangent[..., 0] * self.rate).reshape(3, 3)
         masses = (self.crank_mass, self.rod_mass, self.slider_mass)
         inertias = (self.crank_mass * self.crank**2 / 12, self.rod_mass * self.rod**2 / 12, self.slider_inertia)
         names = ("crank", "rod", "slider")
         bodies = tuple(
             Body(name, mass, inertia, tuple(place), tuple(speed))
             for name, mass, inertia, place, speed in zip(
-                names, masses, inertias, pose[0].tolist(), twist[0].tolist(), strict=True
+                names, masses, inertias, pose.tolist(), twist.tolist(), strict=True
             )
         )
         joints: list[Joint] = [
@@ -125,12 +99,17 @@ class DrivenSliderCrank(Scene):
             joints.append(Drive("drive", None, "crank", self.rate, self.angle))
         return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
 
-    def mechanism(self) -> Mechanism:
-        return self._mechanism
+    def _states(self, times: Array) -> tuple[Array, Array]:
+        if not self.driven:
+            return super()._states(times)
+        return (self.angle + self.rate * times)[:, None], np.full((len(times), 1), self.rate)
 
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self._placement(*self.crank_motion(times))
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        return self.embedded(*self._states(times), np.zeros((len(times), 1)) if self.driven else None)[1:]
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """A bound on the truth's own error (times,) [rad, rad/s], by two rules; none of a prescribed motion."""
+        return np.zeros(len(self.times(t))) if self.driven else super().truth_error(t)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
@@ -147,24 +126,6 @@ class FreeSliderCrank(DrivenSliderCrank):
     duration: Positive = 2.0
     horizon: Positive = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
 
-    @property
-    def angle_unit(self) -> float:
-        """What the crank's angle is counted in while it is integrated [rad]."""
-        return 1.0
-
-    def crank_motion(self, t: Array) -> tuple[Array, Array, Array]:
-        until = max(self.duration, float(t.max(initial=0.0)))
-        if t.any():
-            state = _integrated(self.moving, self.angle, self.rate, until, self.angle_unit)(t)
-        else:  # a mechanism needs no more than the start
-            state = np.full((len(t), 2), (self.angle, self.rate), dtype=float)
-        return state[:, 0], state[:, 1], self.moving.acceleration(state[:, 0], state[:, 1])
-
-    def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the truth's own error (times,) [rad, rad/s], by two rules."""
-        rates, start = _rates_of(self.moving), [self.angle, self.rate]
-        return windows.error_of(rates, start, self.times(t), units_of_motion(rates, start, self.angle_unit))
-
 
 @dataclass(frozen=True)
 class RodEndInSlot(DrivenSliderCrank):
@@ -175,9 +136,8 @@ class RodEndInSlot(DrivenSliderCrank):
 
     name: ClassVar[str] = "rod_end_in_slot"
 
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        whole = super()._mechanism
+    def mechanism(self) -> Mechanism:
+        whole = super().mechanism()
         kept = tuple(joint for joint in whole.joints if "slider" not in (joint.first, joint.second))
         end = next(joint for joint in whole.joints if isinstance(joint, Pin) and joint.second == "slider")
         guide = next(joint for joint in whole.joints if isinstance(joint, Slot))
@@ -187,28 +147,13 @@ class RodEndInSlot(DrivenSliderCrank):
             joints=(*kept, replace(guide, second="rod", second_point=end.first_point)),
         )
 
-    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
-        pose, twist, acceleration = (part[:, :2] for part in self._placement(*self.crank_motion(times)))
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        pose, twist, acceleration = (part[:, :2] for part in super().placement(times))
+        return pose, twist, acceleration
 
     def _branch_of(self, pose: Floats) -> Any:
         """+1 where the rod points to the right, -1 to the left."""
         return np.sign(np.cos(pose[..., 1, 2])).astype(int)
-
-
-@dataclass(frozen=True)
-class PushedSliderCrank(MovingSliderCrank):
-    """Gravity acts along the slot, towards the crank's pivot."""
-
-    @validated
-    def potential(self, theta: Complexes) -> tuple[Any, Any]:
-        """V(theta) [J] and its derivative: everything is pushed to -x."""
-        r, x = self.shape.crank, self.shape.position(theta)
-        first, _ = self.shape.position_rates(theta)
-        cosine, sine = r * np.cos(theta), r * np.sin(theta)
-        value = self.crank_mass * cosine / 2 + self.rod_mass * (cosine + x) / 2 + self.slider_mass * x
-        slope = -self.crank_mass * sine / 2 + self.rod_mass * (first - sine) / 2 + self.slider_mass * first
-        return self.gravity * value, self.gravity * slope
 
 
 @dataclass(frozen=True)
@@ -229,11 +174,5 @@ class SliderAtDeadCentre(FreeSliderCrank):
         """The start's distance from the dead centre [rad]: an error in it grows as it does, and stays that part."""
         return min(1.0, abs(self.angle)) or 1.0
 
-    @cached_property
-    def moving(self) -> MovingSliderCrank:
-        shape = SliderCrank(self.crank, self.rod, self.offset, self.branch)
-        return PushedSliderCrank(shape, self.crank_mass, self.rod_mass, self.slider_mass, self.gravity)
-
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        return replace(super()._mechanism, gravity=(-self.gravity, 0.0))
+    def mechanism(self) -> Mechanism:
+        return replace(super().mechanism(), gravity=(-self.gravity, 0.0))

@@ -56,10 +56,6 @@ class Tow(Valid):
         ratio = self.length / abs(self.radius)
         return (abs(self.radius) - self.length) / abs(self.radius) * (1 + ratio)
 
-    def steady_angle(self) -> float | None:
-        """The angle at which the towed wheel settles [rad], on its own circle; None for R < L, when it never does."""
-        return -math.asin(self.length * self.curvature) if self._discriminant >= 0 else None
-
     @cached_property
     def _start(self) -> tuple[float, float, float]:
         """sin and cos of psi at the start, and -L psi' there."""
@@ -111,22 +107,6 @@ class Tow(Valid):
             even, odd = np.cosh(size), way / (2 * self.length) * np.where(size > 0, np.sinh(some) / some, 1.0)
         with np.errstate(invalid="ignore", divide="ignore"):  # further on it is not asked for
             return np.log1p(2 * odd * (even * cosine + odd * (1 + self.length * self.curvature * sine)))
-
-    @validated
-    def wheel_path_length(self, way: ArrayLike) -> Array:
-        """The length (...) [m] of the towed wheel's path after the hitch has gone `way` s [m], back or ahead.
-
-        The wheel turns back at cusps, where the drawbar is square to the hitch's travel; between them the advance is
-        monotonous.
-        """
-        way = np.asarray(way, dtype=float)
-        low, high = min(0.0, float(np.min(way, initial=0.0))), max(0.0, float(np.max(way, initial=0.0)))
-        knots = np.unique([low, 0.0, high, *self.cusps(low, high)])
-        advance = self.wheel_advance(knots)
-        gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(advance)))])
-        before = np.searchsorted(knots, way, side="right") - 1
-        length = gone[before] + np.abs(self.wheel_advance(way) - advance[before])
-        return np.abs(length - gone[np.searchsorted(knots, 0.0)])
 
     @validated
     def cusps(self, low: float, high: float) -> Array:

@@ -15,14 +15,13 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from reference.checks import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 from reference.joints import Triple
 from reference.kinds import of_shape
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.numerics.roots import first_below
-from reference.scenes.skates.pin_and_skate import SkatePath
 
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
@@ -33,38 +32,6 @@ def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Pos
     """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle before it; bend b in [rad]."""
     cosine, sine = np.cos(bend), np.sin(bend)
     return v * cosine + hitch * w * sine, (v * sine - hitch * w * cosine) / length
-
-
-@dataclass(frozen=True)
-class Tricycle(Valid):
-    """One steered wheel `wheelbase` [m] ahead of the rear axle; two wheels on that axle are one constraint."""
-
-    wheelbase: Positive
-
-    @validated
-    def rates(self, front_speed: ArrayLike, steering: ArrayLike) -> tuple[Array, Array]:
-        """Speed of the rear axle and turning rate, with the front wheel driven and steered by any angle [rad].
-
-        Square across (pi/2) it turns about the middle of its rear axle: a rear-driven car can't do that.
-        """
-        front_speed, steering = np.asarray(front_speed), np.asarray(steering)
-        return front_speed * np.cos(steering), front_speed * np.sin(steering) / self.wheelbase
-
-    @validated
-    def path(
-        self, front_speed: Input, steering: Input, start: Triple = (0.0, 0.0, 0.0), panel: Positive = 0.5
-    ) -> SkatePath:
-        """The rear axle's motion: the section's skate with v_C and theta_dot from the front wheel; see SkatePath."""
-        if not callable(front_speed) and not callable(steering):
-            speed, turning = self.rates(front_speed, steering)
-            return SkatePath(float(speed), float(turning), start, panel)
-        given = [(value if callable(value) else lambda t, value=value: value) for value in (front_speed, steering)]
-        return SkatePath(
-            lambda t: self.rates(given[0](t), given[1](t))[0] + 0 * t,
-            lambda t: self.rates(given[0](t), given[1](t))[1] + 0 * t,
-            start,
-            panel,
-        )
 
 
 @dataclass(frozen=True)
@@ -120,30 +87,6 @@ class CarWithTrailers(Valid):
     def turning_rate(self, speed: Complexes, steering: Complexes) -> Any:
         """Of the car, from its rear axle's speed and its steered wheel's angle [rad/s]: v tan(steering)/wheelbase."""
         return speed * np.tan(steering) / self.wheelbase
-
-    @validated
-    def bend_rates(
-        self, bends: Annotated[ArrayLike, of_shape("...", "trailers")], speed: float, steering: float
-    ) -> Array:
-        """Rates of the joint angles theta_trailer - theta_before (..., trailers) [rad/s]; speed < 0 reverses."""
-        bends = np.asarray(bends, dtype=float)
-        headings = np.concatenate([np.zeros((*bends.shape[:-1], 1)), np.cumsum(bends, axis=-1)], axis=-1)
-        _, rates = self.axle_rates(headings, speed, self.turning_rate(speed, steering))
-        return np.diff(rates, axis=-1)
-
-    @validated
-    def steady_bend(self, steering: float) -> float | None:
-        """The joint angle of the first trailer at which it circles with the car [rad]; None if there is none.
-
-        v sin b - h w cos b = L w. Reversing, a trailer bent further than at full steering can't be straightened again:
-        that is the last moment before the jack-knife.
-        """
-        curvature = math.tan(steering) / self.wheelbase
-        hitch, length = self.hitches[0], self.lengths[0]
-        reach = length * curvature / math.hypot(1.0, hitch * curvature)
-        if abs(reach) > 1:
-            return None
-        return -(math.asin(reach) + math.atan(hitch * curvature))
 
     @validated
     def drive(

@@ -14,7 +14,7 @@ from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.chapter.parking import commutator_displacement
 from reference.scene import Scene
-from reference.scenes.skates.pin_and_skate import FreelyPinnedBody, PinnedBody
+from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.charts import work_precision as charts
