@@ -1,4 +1,4 @@
-"""A body on a fixed pin at C (18.62), coasting or under gravity, exact: the holonomic case beside the skate (box 18.3)."""
+"""A body on a fixed pin (18.62), coasting or under gravity, exact: the holonomic case beside the skate."""
 
 from __future__ import annotations
 

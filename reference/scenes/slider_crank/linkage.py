@@ -41,9 +41,14 @@ class SliderCrank(Valid):
             )
 
     def _rod(self, theta: Any) -> tuple[Any, Any]:
-        """sin(beta) and cos(beta); unchecked, since an integration asks for them thousands of times."""
+        """sin(beta) and cos(beta); unchecked, since an integration asks for them thousands of times.
+
+        Of a complex step the cosine's derivative is written out: in that of (1 - sine)(1 + sine) a small sine is lost.
+        """
         sine = (self.offset - self.crank * np.sin(theta)) / self.rod
-        return sine, self.branch * np.sqrt((1 - sine) * (1 + sine))
+        flat = np.real(sine)
+        cosine = self.branch * np.sqrt((1 - flat) * (1 + flat))
+        return sine, cosine - 1j * flat * np.imag(sine) / cosine if np.iscomplexobj(sine) else cosine
 
     @validated
     def rod_angle(self, theta: ArrayLike) -> Array:

@@ -66,68 +66,10 @@ class Tow(Valid):
     def relative_angle(self, way: ArrayLike) -> Array:
         """psi [rad, not wrapped] after the hitch has gone `way` s [m] (...); negative when it is pushed back."""
         way = np.asarray(way, dtype=float)
-        across, along, _ = self._moved(way)
+        across, along = self._moved(way)
         # The turn of (q, p) is half that of psi, and monotonous; it is less than pi unless the wheel goes round.
         half_turns = np.round(self._rate * way / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
-
-    @validated
-    def wheel_advance(self, way: ArrayLike) -> Array:
-        """How far the wheel has rolled (...) [m] along its heading, less what it was pushed back: int cos psi ds.
-
-        From the linear system, (p^2 + q^2)' = (q^2 - p^2) / L = cos psi (p^2 + q^2) / L, so it is L ln(p^2 + q^2).
-        """
-        way = np.asarray(way, dtype=float)
-        _, cosine, swing = self._start
-        if swing == 0:
-            return cosine * way  # psi stays as it is
-        across, along, scale = self._moved(way)
-        far = 2 * self.length * (np.log(np.hypot(across, along)) + scale)
-        return np.where(self._near(way), self.length * self._grown(way), far)
-
-    def _near(self, way: Array) -> NDArray[np.bool_]:
-        """Where exponentials have not gone apart yet; where the wheel goes round for ever they never do."""
-        if self._discriminant < 0:
-            return np.full(way.shape, True)
-        return math.sqrt(self._discriminant) * np.abs(way) / (2 * self.length) < NEAR
-
-    def _grown(self, way: Array) -> Array:
-        """ln(p^2 + q^2) (...) of the unit vector that has become (q, p): of a short way it keeps all digits.
-
-        With e = cosh(m s) and o = sinh(m s)/(2 L m), p^2 + q^2 - 1 = 2 o (e cos psi + o (1 + c L sin psi)), psi that of
-        the start.
-        """
-        sine, cosine, _ = self._start
-        if self._discriminant < 0:
-            rest = self._rest(way)
-            even, odd = np.cos(rest), np.sin(rest) / (2 * self.length * self._rate)
-        else:
-            size = np.minimum(math.sqrt(self._discriminant) * np.abs(way) / (2 * self.length), NEAR)
-            some = np.where(size > 0, size, 1.0)
-            even, odd = np.cosh(size), way / (2 * self.length) * np.where(size > 0, np.sinh(some) / some, 1.0)
-        with np.errstate(invalid="ignore", divide="ignore"):  # further on it is not asked for
-            return np.log1p(2 * odd * (even * cosine + odd * (1 + self.length * self.curvature * sine)))
-
-    @validated
-    def cusps(self, low: float, high: float) -> Array:
-        """The ways s [m] of the hitch in [low, high] at which the wheel stands still and turns back: cos psi = 0."""
-        _, cosine, swing = self._start
-        found: list[float] = []
-        for square in (math.pi / 2, -math.pi / 2):
-            half = (square - self.angle) / 2  # what (q, p) must turn by
-            across, along = -math.sin(half), swing * math.cos(half) + cosine * math.sin(half)
-            if self._discriminant < 0:  # tan(rate s) / (2 L rate) = across / along, again and again
-                first = math.atan2(2 * self.length * self._rate * across, along) / self._rate
-                every = math.pi / self._rate
-                found += [
-                    first + every * k for k in range(math.ceil((low - first) / every), 1 + int((high - first) // every))
-                ]
-            else:  # tanh(m s) / (2 L m) = across / along, once or never
-                root = math.sqrt(self._discriminant)
-                if abs(root * across) < abs(along):
-                    ratio = across / along
-                    found.append(2 * self.length * (math.atanh(root * ratio) / root if root else ratio))
-        return np.sort([way for way in found if low <= way <= high])
 
     @cached_property
     def _rate(self) -> float:
@@ -138,14 +80,14 @@ class Tow(Valid):
         """The turn of (q, p) less its half turns [rad]."""
         return self._rate * way - np.round(self._rate * way / math.pi) * math.pi
 
-    def _moved(self, way: Array) -> tuple[Array, Array, Array]:
-        """(q, p), that began as a unit vector, across and along its start; both times e^scale."""
+    def _moved(self, way: Array) -> tuple[Array, Array]:
+        """(q, p), that began as a unit vector, across and along its start, up to a common factor."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
             rest = self._rest(way)
             double = 2 * self.length * self._rate
             across, along = -np.sin(rest) * swing, np.cos(rest) * double + np.sin(rest) * cosine
-            return across, along, np.full(way.shape, -math.log(double))
+            return across, along
         root = math.sqrt(self._discriminant)  # 2 L m
         size = root * np.abs(way) / (2 * self.length)
         near = size < NEAR
@@ -161,8 +103,7 @@ class Tow(Valid):
         forward = np.where(way >= 0, growing + ratio * dying, ratio * growing + dying)
         across = np.where(near, -tangent * swing, np.sign(way) * swing * np.expm1(-2 * size))
         along = np.where(near, 1 + tangent * cosine, forward)
-        far = np.where(near, 0.0, size) - math.log(2 * root) if root else np.zeros(way.shape)
-        return across, along, np.where(near, np.log(np.cosh(np.where(near, size, 0.0))), far)
+        return across, along
 
     @validated
     def heading(self, way: ArrayLike) -> Array:
@@ -171,7 +112,7 @@ class Tow(Valid):
         if self._discriminant >= 0:
             return self.start[2] + self.curvature * way + self.relative_angle(way)
         # The hitch's turn and psi nearly cancel on a small circle: what they share, 2 rate s, is not added at all.
-        across, along, _ = self._moved(way)
+        across, along = self._moved(way)
         slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
         shared = math.copysign(1.0, self.radius) * (slower * way + 2 * self._rest(way))
         return self.start[2] + self.angle + shared + 2 * np.arctan2(across, along)
