@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -135,6 +136,32 @@ def test_the_lateral_force_is_what_newtons_law_needs(sleigh):
     acceleration = sum(w * sleigh.motion(t + s).twist for w, s in zip(weights, shifts, strict=True))
     needed = sleigh.mechanism().reaction(motion.pose, acceleration)
     assert np.abs(needed - motion.reaction).max() < 1e-10  # order 6: (w h)^6 and eps/h
+
+
+def test_the_sleigh_agrees_with_mpmath_to_rounding():
+    rng = np.random.default_rng(11)
+    for _ in range(4):
+        mass, inertia, offset, speed, turning = rng.uniform([0.5, 0.1, -1, -2, -3], [3, 1, 1, 2, 3])
+        sleigh = ChaplyginSleigh(mass, inertia, offset, speed, turning)
+        with mpmath.workdps(30):
+            a, square = mpmath.mpf(offset), mpmath.mpf(inertia) / mpmath.mpf(mass) + mpmath.mpf(offset) ** 2
+            arm, top = mpmath.sqrt(square), mpmath.sqrt(mpmath.mpf(speed) ** 2 + square * mpmath.mpf(turning) ** 2)
+            first = mpmath.asinh(mpmath.mpf(speed) / (arm * abs(mpmath.mpf(turning))))
+
+            sign = math.copysign(1, turning)
+
+            def phase(t, a=a, square=square, top=top, first=first):
+                return first + a * top * t / square
+
+            def heading(t, a=a, arm=arm, first=first, phase=phase, sign=sign):
+                return sign * arm / a * (mpmath.atan(mpmath.sinh(phase(t))) - mpmath.atan(mpmath.sinh(first)))
+
+            moved = mpmath.quad(
+                lambda t, top=top, phase=phase, heading=heading: top * mpmath.tanh(phase(t)) * mpmath.expj(heading(t)),
+                mpmath.linspace(0, 3, 13),
+            )
+            expected = np.array([mpmath.re(moved), mpmath.im(moved), heading(mpmath.mpf(3))], dtype=float)
+        assert np.abs(sleigh.skate_pose(3.0)[0] - expected).max() < 1e-13
 
 
 def test_a_long_run_keeps_its_digits():
