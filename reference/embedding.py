@@ -12,24 +12,22 @@ rows are not used, so a motion from here checks them.
 from __future__ import annotations
 
 from abc import abstractmethod
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.mechanism import Mechanism
 from reference.numerics import windows
 from reference.numerics.integration import units_of_motion
-from reference.scene import Scene
-from reference.trajectory import Trajectory
+from reference.scene import PlacedScene
 
 Array = NDArray[np.float64]
 
 COMPLEX_STEP = 1e-100
 
 
-class EmbeddedScene(Scene):
+class EmbeddedScene(PlacedScene):
     """A scene whose state is (c, nu), and whose `mechanism` gives the masses M and the forces f."""
 
     @property
@@ -54,10 +52,6 @@ class EmbeddedScene(Scene):
     def angle_unit(self) -> float:
         """What the coordinates are counted in while they are integrated [rad or m]."""
         return 1.0
-
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        return self.mechanism()
 
     def _split(self, state: Array) -> tuple[Array, Array]:
         return state[..., : -self.freedoms], state[..., -self.freedoms :]
@@ -112,12 +106,7 @@ class EmbeddedScene(Scene):
         return windows.error_of(self.rates, self.start, self.times(t), units)
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, bodies, 3)."""
         return self.embedded(*self._states(times))[1:]
-
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self.placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration, twist=twist))
 
 
 @lru_cache(maxsize=16)

@@ -14,6 +14,7 @@ Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; on t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -44,6 +45,12 @@ class Body(Valid):
     inertia: Positive
     pose: Triple
     twist: Triple = (0.0, 0.0, 0.0)
+
+
+def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist: Any) -> tuple[Body, ...]:
+    """A body for each name, of masses and inertias (bodies,), at poses and twists (bodies, 3)."""
+    numbers = (np.asarray(each, dtype=float).tolist() for each in (masses, inertias, pose, twist))
+    return tuple(Body(name, m, i, tuple(p), tuple(v)) for name, m, i, p, v in zip(names, *numbers, strict=True))
 
 
 def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:

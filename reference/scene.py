@@ -10,6 +10,7 @@ import typing
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, replace
+from functools import cached_property
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -142,6 +143,22 @@ class Scene(Valid, ABC):
     def spacing(self) -> float:
         """The time between samples [s]."""
         return self.duration / self.samples
+
+
+class PlacedScene(Scene):
+    """A scene that knows where its bodies are: its reactions are those that their accelerations need."""
+
+    @abstractmethod
+    def placement(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+        """Poses, twists and accelerations (times, bodies, 3) at times (times,) [s] that are checked."""
+
+    @cached_property
+    def _mechanism(self) -> Mechanism:
+        return self.mechanism()
+
+    def _motion(self, times: Floats) -> Trajectory:
+        pose, twist, acceleration = self.placement(times)
+        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration, twist=twist))
 
 
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:

@@ -23,13 +23,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, NonNegative, Positive, Sign, Valid, validated
 from reference.forces import Spring, Torque
-from reference.joints import Pin, Vector
+from reference.joints import Pin, Vector, bodies_of
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.numerics import windows
 from reference.plane import from_complex
-from reference.scene import Scene
-from reference.trajectory import Trajectory
+from reference.scene import PlacedScene
 
 Array = NDArray[Any]
 Pair = tuple[Positive, float]
@@ -43,7 +42,7 @@ SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, low
 
 
 @dataclass(frozen=True)
-class Andrews(Scene):
+class Andrews(PlacedScene):
     """Seven bodies of `masses` [kg] and `inertias` [kg m^2], from rest with the crank at `angle` [rad].
 
     Lengths [m], by the test set's letters: `crank` rr, ra; `rod` d, da; `bar` ss, sa, sb, and `spring_point` sc, sd;
@@ -185,8 +184,7 @@ class Andrews(Scene):
         until = max(self.duration, float(times.max()))
         return _integrated(self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
 
-    def _placement(self, times: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 7, 3)."""
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
         state = self._states(times)
         phi, rate = state[:, 0], state[:, 1]
         gain = self._rates(state / [1.0, self.rate_unit])[:, 1] * self.rate_unit**2
@@ -203,13 +201,9 @@ class Andrews(Scene):
             parts.append(np.stack(bodies, axis=1))
         return parts[0], parts[1], parts[2]
 
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        pose, twist, _ = self._placement(np.zeros(1))
-        rows = zip(BODIES, self.masses, self.inertias, pose[0].tolist(), twist[0].tolist(), strict=True)
-        bodies = tuple(
-            Body(name, mass, inertia, tuple(place), tuple(speed)) for name, mass, inertia, place, speed in rows
-        )
+    def mechanism(self) -> Mechanism:
+        pose, twist, _ = self.placement(np.zeros(1))
+        bodies = bodies_of(BODIES, self.masses, self.inertias, pose[0], twist[0])
         own = [{name: (point.real, point.imag) for name, point in points.items()} for points in self._points]
         joints = (
             Pin("O", None, "K1", (0.0, 0.0), own[0]["O"]),
@@ -228,13 +222,6 @@ class Andrews(Scene):
             Torque("torque", None, "K1", self.torque),
         )
         return Mechanism(bodies, joints, (0.0, 0.0), forces)
-
-    def mechanism(self) -> Mechanism:
-        return self._mechanism
-
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self._placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """1 while the joints of all three pairs are on the sides where they started (...,), -1 after one has folded."""

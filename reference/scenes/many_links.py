@@ -10,19 +10,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import LARGEST_COUNT, Positive, validated
-from reference.joints import Pin
+from reference.joints import Pin, bodies_of
 from reference.kinds import from_to
-from reference.mechanism import Body, Mechanism
-from reference.scene import Scene
+from reference.mechanism import Mechanism
+from reference.scene import PlacedScene
 from reference.scenes.pendulum.scenes import LinkPendulum
-from reference.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SpinningRing(Scene):
+class SpinningRing(PlacedScene):
     """`links` uniform bars of `length` [m] and `mass` [kg] in a ring, turning at `rate` [rad/s]; no gravity.
 
     Raises InvalidMechanism for fewer than three links. The horizon is the duration: a ring under tension is stable.
@@ -76,10 +74,9 @@ class SpinningRing(Scene):
     duration: Positive = 1.0
     horizon: Positive = 1.0
 
-    def _placement(self, t: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, links, 3)."""
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
         inner = self.length / (2 * math.tan(math.pi / self.links))  # from the middle to the middle of a chord
-        where = 2 * math.pi * np.arange(self.links) / self.links + self.rate * t[:, None]
+        where = 2 * math.pi * np.arange(self.links) / self.links + self.rate * times[:, None]
         outwards = np.stack([np.cos(where), np.sin(where)], axis=-1)
         onwards = np.stack([-np.sin(where), np.cos(where)], axis=-1)
         zero = np.zeros_like(where)[..., None]
@@ -89,24 +86,14 @@ class SpinningRing(Scene):
             np.concatenate([-inner * self.rate**2 * outwards, zero], axis=-1),
         )
 
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        pose, twist, _ = self._placement(np.zeros(1))
-        inertia = self.mass * self.length**2 / 12
-        bodies = tuple(
-            Body(f"link {i + 1}", self.mass, inertia, tuple(place), tuple(speed))
-            for i, (place, speed) in enumerate(zip(pose[0].tolist(), twist[0].tolist(), strict=True))
-        )
+    def mechanism(self) -> Mechanism:
+        pose, twist, _ = self.placement(np.zeros(1))
+        same = np.full(self.links, self.mass)
+        names = [f"link {i + 1}" for i in range(self.links)]
+        bodies = bodies_of(names, same, same * self.length**2 / 12, pose[0], twist[0])
         half = self.length / 2
         joints = tuple(
             Pin(f"joint {i + 1}", bodies[i - 1].name, bodies[i].name, (half, 0.0), (-half, 0.0))
             for i in [*range(1, self.links), 0]  # the one that closes the ring comes last
         )
         return Mechanism(bodies, joints)
-
-    def mechanism(self) -> Mechanism:
-        return self._mechanism
-
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self._placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))

@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import Count, NonNegative, Positive, require_room, validated
-from reference.joints import Joint, Pin
+from reference.joints import Joint, Pin, bodies_of
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum, direction_of
@@ -98,11 +98,8 @@ class NFourBar(Scene):
         state = (value[None] for value in (np.array(math.pi), np.array(self.pendulum.rate), np.array(0.0)))
         pose, twist, _ = self._placement(*state)
         names = [f"crank {i}" for i in range(self.loops + 1)] + [f"coupler {i}" for i in range(self.loops)]
-        inertia = self.mass * self.length**2 / 12
-        bodies = tuple(
-            Body(name, self.mass, inertia, tuple(place), tuple(speed))
-            for name, place, speed in zip(names, pose[0].tolist(), twist[0].tolist(), strict=True)
-        )
+        same = np.full(len(names), self.mass)
+        bodies = bodies_of(names, same, same * self.length**2 / 12, pose[0], twist[0])
         half = self.length / 2
         joints: list[Joint] = [
             Pin(f"A{i}", None, f"crank {i}", (i * self.length, 0.0), (-half, 0.0)) for i in range(self.loops + 1)

@@ -27,9 +27,9 @@ from scipy.linalg import eig
 
 from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, kept, validated
 from reference.embedding import EmbeddedScene
-from reference.joints import Joint, Pin
+from reference.joints import Joint, Pin, bodies_of
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 
@@ -149,10 +149,7 @@ class OneFoot(EmbeddedScene):
 
     def mechanism(self) -> Mechanism:
         pose, _ = self.tangent(self.start[: self.freedoms])
-        bodies = tuple(
-            Body(name, float(mass), float(inertia), tuple(place))
-            for name, mass, inertia, place in zip(NAMES, self.masses, self.inertias, pose.tolist(), strict=True)
-        )
+        bodies = bodies_of(NAMES, self.masses, self.inertias, pose, np.zeros((5, 3)))
         behind, ahead = -self._behind, self.lengths - self._behind
         joints: list[Joint] = [
             Pin("left ankle", None, NAMES[0], (0.0, 0.0), (behind[0], 0.0)),

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign
-from reference.joints import Drive, Joint, Pin, Vector
+from reference.joints import Drive, Joint, Pin, Vector, bodies_of
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.numerics.collocation import STAGES
 from reference.scene import Scene
 from reference.scenes.four_bar.forces import Densities, three_densities
@@ -70,10 +70,8 @@ class FourBarScene(Scene):
     def _mechanism(self, motion: BarAngles, *drives: Joint) -> Mechanism:
         pose, twist, _ = self._bodies(motion)
         names, lengths = ("crank", "coupler", "rocker"), self.four_bar.lengths
-        bodies = tuple(
-            Body(name, mass, mass * length**2 / 12, tuple(where.tolist()), tuple(moving.tolist()))
-            for name, mass, length, where, moving in zip(names, self.masses, lengths, pose[0], twist[0], strict=True)
-        )
+        masses = np.array(self.masses)
+        bodies = bodies_of(names, masses, masses * np.array(lengths) ** 2 / 12, pose[0], twist[0])
         crank, coupler, rocker = (length / 2 for length in lengths)
         pins = (
             Pin("A", None, "crank", (0.0, 0.0), (-crank, 0.0)),

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Count, Positive, require_room
-from reference.joints import Pin
-from reference.mechanism import Body, Mechanism
+from reference.joints import Pin, bodies_of
+from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reference.scenes.pendulum.chain import Chain, Motion
 from reference.trajectory import Trajectory
@@ -68,10 +68,8 @@ class LinkPendulum(Scene):
     def mechanism(self) -> Mechanism:
         angle, rate = np.full(self.links, self.angle), np.full(self.links, self.rate)
         pose, twist, _ = self.chain.placement(angle, rate, np.zeros(self.links))
-        bodies = tuple(
-            Body(f"link {i + 1}", self.chain.masses[i], float(self.chain.inertia[i]), tuple(pose[i]), tuple(twist[i]))
-            for i in range(self.links)
-        )
+        names = [f"link {i + 1}" for i in range(self.links)]
+        bodies = bodies_of(names, self.chain.masses, self.chain.inertia, pose, twist)
         half = self.length / 2
         joints = tuple(
             Pin(

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.checks import Positive, validated
-from reference.joints import Drive, Pin, Triple
+from reference.joints import Drive, Pin, bodies_of
 from reference.kinds import from_to, of_shape
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Array
@@ -21,11 +21,6 @@ from reference.rolling.roll import Roll
 from reference.rows import undetermined
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-
-
-def _triple(values: Array) -> Triple:
-    x, y, angle = (float(value) for value in values)
-    return (x, y, angle)
 
 
 @dataclass(frozen=True)
@@ -102,10 +97,7 @@ class EllipticGears(Scene):
         shape = Ellipse(self.major, self._minor)
         pose, twist, _ = self.kinematics(np.zeros(1))
         inertia = self.mass * (self.major**2 + self._minor**2) / 4
-        bodies = tuple(
-            Body(name, self.mass, inertia, _triple(pose[0, gear]), _triple(twist[0, gear]))
-            for gear, name in enumerate(("first", "second"))
-        )
+        bodies = bodies_of(("first", "second"), (self.mass,) * 2, (inertia,) * 2, pose[0], twist[0])
         # At theta_1 = theta_2 = 0 the far end of the first touches the near end of the second.
         rolling = Rolling(shape, shape, 0.0, 0.0, shape.length / 2)
         return Mechanism(

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Positive, Sign
 from reference.embedding import EmbeddedScene
-from reference.joints import Drive, Joint, Pin, Slot
+from reference.joints import Drive, Joint, Pin, Slot, bodies_of
 from reference.kinds import Floats
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.scenes.slider_crank.linkage import SliderCrank
 
 Array = NDArray[np.float64]
@@ -82,12 +82,7 @@ class DrivenSliderCrank(EmbeddedScene):
         masses = (self.crank_mass, self.rod_mass, self.slider_mass)
         inertias = (self.crank_mass * self.crank**2 / 12, self.rod_mass * self.rod**2 / 12, self.slider_inertia)
         names = ("crank", "rod", "slider")
-        bodies = tuple(
-            Body(name, mass, inertia, tuple(place), tuple(speed))
-            for name, mass, inertia, place, speed in zip(
-                names, masses, inertias, pose.tolist(), twist.tolist(), strict=True
-            )
-        )
+        bodies = bodies_of(names, masses, inertias, pose, twist)
         joints: list[Joint] = [
             Pin("A", None, "crank", (0.0, 0.0), (-self.crank / 2, 0.0)),
             Pin("B", "crank", "rod", (self.crank / 2, 0.0), (-self.rod / 2, 0.0)),

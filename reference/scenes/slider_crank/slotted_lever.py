@@ -8,24 +8,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, Positive
-from reference.joints import Drive, Pin, Slot
-from reference.mechanism import Body, Mechanism
+from reference.joints import Drive, Pin, Slot, bodies_of
+from reference.mechanism import Mechanism
 from reference.plane import from_complex
-from reference.scene import Scene
-from reference.trajectory import Trajectory
+from reference.scene import PlacedScene
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SlottedLever(Scene):
+class SlottedLever(PlacedScene):
     """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; its pin slides in a straight slot of the lever.
 
     crank and lever [m], the lever's pivot at (-distance, 0) [m]; uniform bars of crank_mass and lever_mass [kg];
@@ -56,8 +54,7 @@ class SlottedLever(Scene):
                 "of the pivots"
             )
 
-    def _placement(self, times: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 2 bodies, 3)."""
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
         theta = self.angle + self.rate * times
         crank = self.crank * np.exp(1j * theta)
         reach = self.distance + crank  # from the lever's pivot to the pin; its real part is positive
@@ -79,20 +76,11 @@ class SlottedLever(Scene):
             parts.append(np.stack(bodies, axis=1))
         return parts[0], parts[1], parts[2]
 
-    @cached_property
-    def _mechanism(self) -> Mechanism:
-        pose, twist, _ = self._placement(np.zeros(1))
-        bodies = tuple(
-            Body(name, mass, mass * length**2 / 12, tuple(place), tuple(speed))
-            for name, mass, length, place, speed in zip(
-                ("crank", "lever"),
-                (self.crank_mass, self.lever_mass),
-                (self.crank, self.lever),
-                pose[0].tolist(),
-                twist[0].tolist(),
-                strict=True,
-            )
-        )
+    def mechanism(self) -> Mechanism:
+        pose, twist, _ = self.placement(np.zeros(1))
+        masses = (self.crank_mass, self.lever_mass)
+        inertias = (self.crank_mass * self.crank**2 / 12, self.lever_mass * self.lever**2 / 12)
+        bodies = bodies_of(("crank", "lever"), masses, inertias, pose[0], twist[0])
         joints = (
             Pin("A", None, "crank", (0.0, 0.0), (-self.crank / 2, 0.0)),
             Pin("D", None, "lever", (-self.distance, 0.0), (-self.lever / 2, 0.0)),
@@ -100,10 +88,3 @@ class SlottedLever(Scene):
             Drive("drive", None, "crank", self.rate, self.angle),
         )
         return Mechanism(bodies, joints, (0.0, -self.gravity))
-
-    def mechanism(self) -> Mechanism:
-        return self._mechanism
-
-    def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self._placement(times)
-        return Trajectory(times, pose, twist, self._mechanism.reaction(pose, acceleration))

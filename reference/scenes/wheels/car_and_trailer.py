@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import InvalidMechanism, Positive, validated
-from reference.joints import Joint, Pin, Skate, Triple
-from reference.mechanism import Body, Mechanism
+from reference.joints import Joint, Pin, Skate, Triple, bodies_of
+from reference.mechanism import Mechanism
 from reference.numerics.calculus import Antiderivative
 from reference.scene import Scene
 from reference.scenes.wheels.tractrix import Tow
@@ -146,12 +146,7 @@ class CarAndTrailer(Scene):
     def mechanism(self) -> Mechanism:
         start = self._moving(np.zeros(1), np.array([self.speed]))
         names = ("car", "trailer")
-        bodies = tuple(
-            Body(name, mass, own, tuple(pose.tolist()), tuple(twist.tolist()))
-            for name, mass, own, pose, twist in zip(
-                names, self.masses, self.inertias, start[0][0], start[1][0], strict=True
-            )
-        )
+        bodies = bodies_of(names, self.masses, self.inertias, start[0][0], start[1][0])
         (ahead, before), half = self.centres, self.track / 2
         joints: list[Joint] = [
             Skate("front wheel", None, "car", (self.wheelbase - ahead, 0.0), self.steering),

@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import Complexes, Positive, Times, Valid, index_of, sample_times, validated
 from reference.embedding import EmbeddedScene
-from reference.joints import Joint, Pin, Skate, Triple, Vector
-from reference.mechanism import Body, Mechanism
+from reference.joints import Joint, Pin, Skate, Triple, Vector, bodies_of
+from reference.mechanism import Mechanism
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.plane import components
 from reference.scenes.wheels.tractrix import Tow
@@ -161,13 +161,10 @@ class Cart(EmbeddedScene):
         coordinates, velocities = self._split(self.start)
         poses, tangent = self.tangent(coordinates)
         twists = (tangent @ velocities).reshape(3, 3)
-        caster = (self.caster_mass, self.caster_inertia)
-        masses = ((self.mass, self.inertia), caster, caster)
+        masses = (self.mass, self.caster_mass, self.caster_mass)
+        inertias = (self.inertia, self.caster_inertia, self.caster_inertia)
         names = ("cart", "left caster", "right caster")
-        bodies = tuple(
-            Body(name, mass, inertia, tuple(pose.tolist()), tuple(twist.tolist()))
-            for name, (mass, inertia), pose, twist in zip(names, masses, poses, twists, strict=True)
-        )
+        bodies = bodies_of(names, masses, inertias, poses, twists)
         joints: list[Joint] = [Skate("axle", None, "cart", (-self.centre, 0.0))]
         if self.redundant:
             joints = [
