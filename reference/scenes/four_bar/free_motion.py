@@ -11,6 +11,7 @@ At a crank limit the first component of t passes zero: the crank turns back, the
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -18,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign, Valid, validated
-from reference.numerics.collocation import STAGES, integrate
+from reference.numerics import windows
 from reference.scenes.four_bar.linkage import FourBar
 
 Array = NDArray[np.float64]
+
+TOLERANCE = windows.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
 
 
 class BarAngles(NamedTuple):
@@ -59,17 +62,26 @@ class CurveMotion(Valid):
             )
         return np.append(angle, np.longdouble(theta_dot) / along)
 
-    def states(self, start: Any, times: Array, longest: float, stages: int = STAGES) -> Any:
-        """States (times, 4) in extended precision at increasing times [s]."""
-        return integrate(self._slope, start, times, longest, stages)
+    def motion(self, start: Any, until: float, stages: int = windows.STAGES) -> windows.Windows:
+        """Angles and rates of the three bars up to `until` [s] from a start, in extended precision.
+
+        Raises IntegrationFailed at a change point.
+        """
+        angle, u = start[:3], start[3]
+        rate = u * self._direction(angle)
+        shortest = min(self.four_bar.lengths)
+        unit = max(float(np.abs(rate).max()), math.sqrt(math.hypot(*self.gravity) / shortest)) or 1.0
+        return windows.integrate(self._accelerations, angle, rate, until, unit, stages, TOLERANCE)
 
     def bar_angles(self, states: Any) -> BarAngles:
-        """Angles, rates and accelerations of the bars in given states."""
-        angle, u = states[:, :3], states[:, 3:]
-        direction, bend = self._direction_and_bend(angle)
-        u_dot = self._slope(states)[:, 3:]
-        values = (angle, u * direction, u_dot * direction + u**2 * bend)
+        """Angles, rates and accelerations of the bars in states (times, 6) of `motion`."""
+        angle, rate = np.split(states, 2, axis=-1)
+        values = (angle, rate, self._accelerations(angle, rate))
         return BarAngles(*(np.asarray(value, dtype=float) for value in values))
+
+    def at(self, start: Any) -> Any:
+        """The state (1, 6) of a start."""
+        return np.concatenate([start[:3], start[3] * self._direction(start[:3])])[None]
 
     def _closed(self, angle: Any) -> Any:
         """beta and phi of a closed loop, by Newton in extended precision: the start is known in double only."""
@@ -101,12 +113,12 @@ class CurveMotion(Valid):
         turning = np.roll(direction, 1, axis=-1) - np.roll(direction, -1, axis=-1)
         return direction, factor * np.cos(difference) * turning
 
-    def _slope(self, states: Any) -> Any:
-        """The time derivative (..., 4) of states (..., 4)."""
+    def _accelerations(self, angle: Any, rate: Any) -> Any:
+        """The second derivatives (..., 3) of the angles: u' t + u^2 (dt/dq) t, with u from the rates u t."""
         l1, l2, _ = (np.longdouble(length) for length in self.four_bar.lengths)
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
-        angle, u = states[..., :3], states[..., 3]
         t, bend = self._direction_and_bend(angle)
+        u = np.sum(rate * t, axis=-1) / np.sum(t * t, axis=-1)
         lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
         own = lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])
         cross = m2 * l1 * l2
@@ -121,7 +133,5 @@ class CurveMotion(Valid):
         carried = lengths * np.array([m1 / 2 + m2, m2 / 2, m3 / 2])
         force = np.longdouble(self.gravity[1]) * np.cos(angle) - np.longdouble(self.gravity[0]) * np.sin(angle)
         pull = np.sum(carried * force * t, axis=-1)
-        out = np.empty_like(states)
-        out[..., :3] = u[..., None] * t
-        out[..., 3] = (pull - u**2 * inertia_slope / 2) / inertia
-        return out
+        change = (pull - u**2 * inertia_slope / 2) / inertia
+        return change[..., None] * t + u[..., None] ** 2 * bend

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -15,7 +16,7 @@ from reference.checks import InvalidMechanism, Positive, Sign
 from reference.joints import Drive, Joint, Pin, Vector, bodies_of
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.numerics.collocation import STAGES
+from reference.numerics.windows import COARSE_STAGES, STAGES, Windows
 from reference.scene import Scene
 from reference.scenes.four_bar.forces import Densities, three_densities
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion
@@ -23,9 +24,6 @@ from reference.scenes.four_bar.linkage import FourBar, Unreachable
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-
-# The free motion's steps are at most this part of the mechanism's time scale; they are halved where that is too long.
-LONGEST_STEP = 0.25
 
 
 @dataclass(frozen=True)
@@ -181,18 +179,18 @@ class FreeFourBar(FourBarScene):
 
     def truth_error(self, t: ArrayLike) -> Array:
         """The truth's own error (times,): the largest change [m, rad, m/s, rad/s] of a pose or twist when it is
-        computed again with steps half as long and stages of another number; rounding to double is a part of it."""
+        computed again by another rule; rounding to double is a part of it."""
         times = self.times(t)
-        first, second = self._angles(times), self._angles(times, LONGEST_STEP / 2, STAGES - 2)
-        pairs = zip(self._bodies(first)[:2], self._bodies(second)[:2], strict=True)
-        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in pairs], axis=0)
+        pairs = zip(self._bodies(self._angles(times)), self._bodies(self._angles(times, COARSE_STAGES)), strict=True)
+        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in list(pairs)[:2]], axis=0)
 
-    def _angles(self, times: Array, longest: float = LONGEST_STEP, stages: int = STAGES) -> BarAngles:
+    def _angles(self, times: Array, stages: int = STAGES) -> BarAngles:
         curve = self._curve
         start = curve.start(self.start, self.rate, self.branch)
-        order, where = np.unique(times, return_inverse=True)
+        if not times.any():  # a mechanism needs no more than the start
+            return curve.bar_angles(np.repeat(curve.at(start), len(times), axis=0))
         try:
-            states = curve.states(start, order, longest * self._time_scale, stages)
+            return curve.bar_angles(_integrated(self, max(self.duration, float(times.max())), stages)(times))
         except ArithmeticError as failure:
             if self.four_bar.grashof() != "change-point":
                 raise
@@ -200,14 +198,13 @@ class FreeFourBar(FourBarScene):
                 f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that "
                 f"change point, beyond which two motions are possible and none is the truth ({failure})"
             ) from None
-        return curve.bar_angles(states[where])
 
-    @property
-    def _time_scale(self) -> float:
-        """One radian of the crank's rate or of a pendulum of the shortest bar [s]: a first step, no more."""
-        pendulum = math.sqrt(math.hypot(*self.gravity) / min(self.four_bar.lengths))
-        fastest = max(pendulum, abs(self.rate))
-        return 1 / fastest if fastest > 0 else 1.0
+
+@lru_cache(maxsize=8)
+def _integrated(scene: FreeFourBar, until: float, stages: int) -> Windows:
+    """Kept for all equal scenes, since samples of every number ask for it."""
+    curve = scene._curve
+    return curve.motion(curve.start(scene.start, scene.rate, scene.branch), until, stages)
 
 
 @dataclass(frozen=True)
