@@ -73,8 +73,8 @@ class EmbeddedScene(PlacedScene):
         if changes is None:
             weighted = np.swapaxes(tangent * mechanism.inertias.reshape(-1, 1), -1, -2)
             free = mechanism.unconstrained(pose, twist)
-            free = free.reshape((*free.shape[:-2], -1, 1))
-            changes = np.linalg.solve(weighted @ tangent, weighted @ (free - bias))[..., 0]
+            missing = free.reshape((*free.shape[:-2], -1, 1)) - bias
+            changes = np.asarray(np.linalg.solve(weighted @ tangent, weighted @ missing)[..., 0], dtype=float)
         return changes, pose, twist, (tangent @ changes[..., None] + bias).reshape(pose.shape)
 
     def accelerations(self, coordinates: Array, velocities: Array) -> Array:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import bisect
 
@@ -246,9 +245,6 @@ PENDULUM_ERRATA = (
         lambda: _pendulum(28),
     ),
 )
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
