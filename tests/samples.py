@@ -27,7 +27,7 @@ from reference.rolling.roll import Roll
 from reference.rolling.traced import Traced
 from reference.scenes.andrews import Dyad
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.free_motion import CurveMotion, MovingFourBar
+from reference.scenes.four_bar.free_motion import CurveMotion
 from reference.scenes.four_bar.linkage import FourBar
 from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
 from reference.scenes.many_links import LongPendulum, OpenChain, SpinningRing
@@ -35,14 +35,13 @@ from reference.scenes.pendulum.chain import Chain
 from reference.scenes.pendulum.link import Pendulum
 from reference.scenes.person import THIGH
 from reference.scenes.rolling.scenes import DiscInHole, RollingDisc, SquareOnCatenaries
-from reference.scenes.skates.pinned_body import SkatePath
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
-from reference.scenes.slider_crank.linkage import MovingSliderCrank, SliderCrank
-from reference.scenes.slider_crank.scenes import PushedSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.linkage import SliderCrank
+from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.scenes.wheels.cart import Casters
 from reference.scenes.wheels.tractrix import Tow
-from reference.scenes.wheels.trailers import CarWithTrailers, Tricycle
+from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.grid.cells import Cell
 from tests.mechanisms import four_bar
 
@@ -83,14 +82,12 @@ INSTANCES: tuple[Any, ...] = (
     *(
         _curve.four_bar,
         _curve,
-        MovingFourBar(_curve.four_bar),
         Chain((1.0, 0.5), (1.0, 2.0)),
         Pendulum(2.0, 0.5, 0.5),
         THIGH,
         Move(0.5, 0.5),
     ),
-    *(SkatePath(1.0, 0.5), _crank, MovingSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81)),
-    *(PushedSliderCrank(_crank, 1.0, 1.0, 1.0, 9.81), Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0), Tricycle(1.0)),
+    *(_crank, Casters(((0.5, 0.5),), 0.5), Tow(1.0, 0.5, 2.0)),
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,))),
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact()),
     *(limited_groove(5.0), limited_tendon(5.0)),

@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference.andrews import Moving
 
 from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
-from reference.scenes.andrews import Andrews, Dyad
+from reference.scenes.andrews import Andrews, Dyad, Moving
 from reference.trajectory import energy, joint_gap, slip
 
 SCENE = Andrews()
@@ -52,7 +51,7 @@ def test_it_ends_as_the_test_set_does():
 
 
 def test_its_first_accelerations_are_those_of_the_test_set():
-    _, _, acceleration = SCENE._placement(np.zeros(1))
+    _, _, acceleration = SCENE.placement(np.zeros(1))
     np.testing.assert_allclose(test_set_coordinates(acceleration[0, :, 2]), ACCELERATIONS, rtol=1e-14, atol=1e-11)
     mechanism = SCENE.mechanism()
     state = mechanism.pose, mechanism.twist

@@ -91,7 +91,7 @@ def test_the_stiffest_mode_is_that_of_the_double_pendulum():
 def test_the_rod_s_largest_rate_is_found_between_any_angles():
     scene = next(each for each in SUBJECTS if each.name == "offset").make(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
-    largest = np.abs(scene.moving.shape.rod_rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
+    largest = np.abs(scene.shape.rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
     assert rod_rate(1e-3) == pytest.approx(largest, rel=1e-3)
 
 

@@ -64,7 +64,9 @@ def test_rows_depend_on_their_engine_their_scene_and_the_measuring_and_on_nothin
     # Compiled code is imported by name, and only to step.
     assert ("engines/lagrange/compiled/rows" in files) == (own == "engines/lagrange")
     assert not [
-        name for name in files if name.startswith(("reference/pendulum", "reference/skate", "reference/wheels"))
+        name
+        for name in files
+        if name.startswith(tuple(f"reference/scenes/{part}" for part in ("pendulum", "skates", "wheels")))
     ]
     # What only prints or draws can't change a row.
     assert {name for name in files if name.startswith("reports/")} == {

@@ -94,7 +94,7 @@ def rod_rate(gap: float) -> float:
     """The largest rate of that rod [rad/s], over a whole turn of the crank."""
     scene = near_the_largest_offset(gap)
     angles = np.concatenate([np.linspace(0, 2 * math.pi, 721), math.pi / 2 * 3 + np.geomspace(1e-7, 0.1, 200)])
-    return float(scene.rate * np.abs(scene.moving.shape.rod_rates(angles)[0]).max())
+    return float(scene.rate * np.abs(scene.shape.rates(angles)[0]).max())
 
 
 def driven(rate: float) -> DrivenFourBar:

@@ -34,7 +34,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Rows, and the dead centres and stroke of the scene from the formulas."""
-    shape = DrivenSliderCrank().moving.shape
+    shape = DrivenSliderCrank().shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
     return {**told(material, SCENES), **formulas}
