@@ -1,0 +1,136 @@
+"""The matrix of mistakes by tests: which tests noticed which mistake, and what that says of the tests."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from tests.mutants.sources import Mistake
+from tests.mutants.tracing import Traced
+from tests.mutants.trial import Answer, Question, asked
+
+LAYERS = ("reference", "engines", "reports")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One mistake: the files of the tests that were asked, and the tests that noticed it."""
+
+    mistake: str
+    file: str
+    line: int
+    files: tuple[str, ...]
+    tests: int
+    noticed: tuple[str, ...]
+    seconds: float
+    end: str
+
+    @property
+    def caught(self) -> bool:
+        return bool(self.noticed or self.end)
+
+
+def read(path: Path) -> list[Row]:
+    """The rows of a file of JSON lines; none if there is no file. The last row of a mistake counts."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+    rows = [Row(**{name: tuple(v) if isinstance(v, list) else v for name, v in json.loads(x).items()}) for x in lines]
+    return list({row.mistake: row for row in rows}.values())
+
+
+def filled(mistakes: Iterable[Mistake], traced: Traced, path: Path, trees: Sequence[Path], budget: float) -> None:
+    """Ask every likely test of each mistake that the file lacks, and append what it said; may be interrupted."""
+    known = {row.mistake for row in read(path)}
+    path.parent.mkdir(parents=True, exist_ok=True)
+
+    def keep(question: Question, answer: Answer) -> None:
+        mistake = question.mistake
+        assert mistake is not None
+        files = tuple(dict.fromkeys(test.partition("::")[0] for test in question.tests))
+        row = Row(mistake.name, mistake.file, mistake.line, files, len(question.tests), *_told(answer))
+        with path.open("a", encoding="utf-8") as file:
+            print(json.dumps(asdict(row)), file=file)
+        print(f"{len(row.noticed)} of {row.tests} ({row.seconds:.0f} s) {row.end} {row.mistake}", flush=True)
+
+    for mistake in mistakes:
+        if mistake.name in known:
+            continue
+        question = Question(traced.likely(mistake, budget), mistake, first=False, limit=20 * budget)
+        if question.tests:
+            asked([question], trees[:1], keep)
+        else:
+            keep(question, Answer((), 0, 0.0))
+
+
+def _told(answer: Answer) -> tuple[tuple[str, ...], float, str]:
+    return answer.noticed, answer.seconds, answer.end
+
+
+def functions(tests: Iterable[str]) -> frozenset[str]:
+    """Tests without their parameters."""
+    return frozenset(test.partition("[")[0] for test in tests)
+
+
+def alone(rows: Sequence[Row]) -> Mapping[str, list[str]]:
+    """Test functions that noticed what no other test did, with those mistakes."""
+    out: dict[str, list[str]] = defaultdict(list)
+    for row in rows:
+        if len(names := functions(row.noticed)) == 1 and not row.end:
+            out[next(iter(names))].append(row.mistake)
+    return out
+
+
+def cover(rows: Sequence[Row]) -> list[str]:
+    """Few test functions that notice everything that is noticed, the one with most mistakes first."""
+    left, out = [functions(row.noticed) for row in rows if row.noticed], []
+    while left:
+        counts = Counter(name for names in left for name in names)
+        out.append(min(counts, key=lambda name: (-counts[name], name)))
+        left = [names for names in left if out[-1] not in names]
+    return out
+
+
+def reading(rows: Sequence[Row], traced: Traced | None = None) -> str:
+    """A Markdown document: the share caught by layer, what got through, and what that says of the tests."""
+    lines = ["# Mistakes by tests", "", "| layer | mistakes | caught | share |", "| --- | --: | --: | --: |"]
+    for layer in LAYERS:
+        of = [row for row in rows if row.file.startswith(layer + "/")]
+        caught = sum(row.caught for row in of)
+        lines.append(f"| {layer} | {len(of)} | {caught} | {caught / len(of) if of else 1:.0%} |")
+    lines += ["", "## Got through", ""]
+    lines += [f"* {row.mistake} ({row.file}:{row.line}; {row.tests} tests)" for row in rows if not row.caught]
+    only = alone(rows)
+    lines += ["", "## Test functions that alone notice something: they stay", ""]
+    lines += [f"* {name}: {len(what)}, such as {what[0]}" for name, what in sorted(only.items())]
+    lines += ["", "## Test files", "", "alone: mistakes that no test of another file noticed.", ""]
+    lines += ["| file | asked | noticed | alone |", "| --- | --: | --: | --: |"]
+    files = sorted({file for row in rows for file in row.files})
+    by = {id(row): {test.partition("::")[0] for test in row.noticed} for row in rows}
+    counted = [
+        (
+            sum(by[id(row)] == {file} for row in rows),
+            sum(file in by[id(row)] for row in rows),
+            sum(file in row.files for row in rows),
+            file,
+        )
+        for file in files
+    ]
+    lines += [f"| {file} | {asks} | {noticed} | {single} |" for single, noticed, asks, file in sorted(counted)]
+    kept = cover(rows)
+    lines += ["", f"## {len(kept)} test functions notice all that is noticed", "", *(f"* {name}" for name in kept)]
+    if traced is not None:
+        lines += ["", "## Test functions that run no block which another file's tests don't run", ""]
+        lines += [f"* {name}" for name in _needless(traced) if name not in only]
+    return "\n".join(lines) + "\n"
+
+
+def _needless(traced: Traced) -> list[str]:
+    """Test functions of which every block is run by tests of another file too: mistakes there have other witnesses."""
+    needed = set()
+    for places in traced.runs.values():
+        for tests in places.values():
+            if len({test.partition("::")[0] for test in tests}) == 1:
+                needed |= functions(tests)
+    return sorted(functions(traced.seconds) - needed)
