@@ -6,6 +6,7 @@ import ast
 import json
 import struct
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -167,25 +168,28 @@ def test_the_matrix_tells_who_alone_notices_something_and_goes_on_where_it_was(t
     kept = tmp_path / "matrix.jsonl"
     given = [wrong("2 * ", f"{factor} * ") for factor in (3, 4)]
     monkeypatch.setattr(Traced, "likely", lambda *_: ())
-    for some in (given[:1], given):
-        matrix.filled(some, Traced(tmp_path), kept, [], 1.0)
-    assert [each.mistake for each in matrix.read(kept)] == [mistake.name for mistake in given]
+    matrix.filled(given, Traced(tmp_path), kept, [], 1.0, first=False)
+    assert [(each.mistake, each.caught) for each in matrix.read(kept)] == [(each.name, False) for each in given]
 
 
-def test_the_status_tells_whether_all_is_as_it_should_be(monkeypatch, tmp_path, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(command.trial, "copy_tree", lambda root, folder: folder)
-    monkeypatch.setattr(command, "traced", lambda *_, **__: None)
-    monkeypatch.setattr(command, "chosen", lambda words, *_: [] if words == ["nowhere/"] else [(wrong("2 * ", ""), "")])
-    for fate, drawn_ones, status in (
-        ("caught", 1, 0),
-        ("survived, as nobody asks", 1, 0),
-        ("survived", 0, 1),
-        ("survived", 1, 1),
-    ):
-        fates = [command.Fate(wrong("2 * ", "3 * "), fate, "t", drawn=bool(drawn_ones))]
-        monkeypatch.setattr(command, "tried", lambda *_, fates=fates: fates)
-        assert command.main(["run", "reference/plane.py"]) == status
-        assert f"| {fate} |" in (tmp_path / command.KEPT / "fates.md").read_text()
+@pytest.mark.parametrize(
+    ("name", "test", "reason", "status"),
+    [
+        ("by hand", "test_product", "", 0),
+        ("by hand", "test_positive", "", 1),
+        ("by hand", "test_positive", "nobody looks", 0),
+        ("area:area:factor:1", "test_product", "", 0),
+        ("area:area:factor:1", "test_positive", "", 1),
+    ],
+)
+def test_the_status_tells_whether_all_is_as_it_should_be(tree, monkeypatch, capsys, name, test, reason, status):
+    monkeypatch.chdir(tree)
+    monkeypatch.setattr(Traced, "likely", lambda *_: (f"tests/test_area.py::{test}",))
+    mistake = replace(wrong("2 * ", "3 * "), name=name)
+    assert command.tried([(mistake, reason)], Traced(tree), [tree]) == status
+    assert (name in (command.KEPT / "fates.md").read_text()) == (test == "test_positive")
+
+
+def test_words_that_choose_nothing_are_told(capsys):
     assert command.main(["run", "nowhere/"]) == 2
     assert "nowhere/" in capsys.readouterr().err

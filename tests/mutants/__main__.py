@@ -12,9 +12,7 @@ import json
 import shutil
 import sys
 import tempfile
-import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from tests.mutants import by_hand, generated, matrix, trial
@@ -26,20 +24,6 @@ KEPT = Path("crosscheck-results") / "mutants"
 ALLOWED = 0.05  # of the drawn mistakes may get through: some change nothing that can be seen
 FIRST, MORE = 15.0, 150.0  # s of tests that are asked at first, and again by those who notice nothing
 APART = ("test_crosscheck.py", "test_mutants.py", "test_site_in_browser.py")  # the grid, this, and what needs a browser
-
-
-@dataclass(frozen=True)
-class Fate:
-    """What became of a mistake: "caught", "survived", or "survived, as" with the reason that is written beside it."""
-
-    mistake: Mistake
-    fate: str
-    by: str
-    drawn: bool
-
-    @property
-    def wrong(self) -> bool:
-        return self.fate == "survived"
 
 
 def chosen(words: Sequence[str], drawn: int, seed: str) -> list[tuple[Mistake, str]]:
@@ -70,42 +54,22 @@ def traced(workers: int, trees: Sequence[Path], anew: bool = False) -> Traced:
     return Traced(folder)
 
 
-def tried(mistakes: Sequence[tuple[Mistake, str]], trace: Traced, trees: Sequence[Path]) -> list[Fate]:
-    """The fate of each mistake, told as it is known."""
-    fates: dict[str, Fate] = {}
-    reasons = {mistake.name: reason for mistake, reason in mistakes}
-
-    def tell(question: Question, answer: Answer) -> None:
-        mistake = question.mistake
-        assert mistake is not None
-        reason, by = reasons[mistake.name], next(iter(answer.noticed), answer.end)
-        fate = "caught" if by else f"survived, as {reason}" if reason else "survived"
-        fates[mistake.name] = Fate(mistake, fate, by, drawn=":" in mistake.name)
-        print(f"{fate}: {mistake.name} ({answer.seconds:.0f} s) {by}", flush=True)
-
-    for budget in (FIRST, MORE):
-        questions = []
-        for mistake, reason in mistakes:
-            tests = trace.likely(mistake, budget)
-            known = fates.get(mistake.name)
-            if tests and (known is None or (known.wrong and not reason)):
-                questions.append(Question(tests, mistake, limit=60 + 4 * budget))
-            elif not tests and known is None:
-                tell(Question((), mistake), Answer((), 0, 0.0))
-        asked(questions, trees, tell)
-    return list(fates.values())
-
-
-def report(fates: Sequence[Fate], seconds: float) -> str:
-    """All fates as a Markdown document, the survivors first."""
-    lines = ["# Deliberate mistakes", "", f"{len(fates)} mistakes in {seconds / 60:.1f} minutes.", ""]
-    for title, drawn in (("by hand", False), ("drawn", True)):
-        of = [fate for fate in fates if fate.drawn is drawn]
-        lines.append(f"* {title}: {len(of)}, of which {sum(fate.fate == 'caught' for fate in of)} caught")
-    lines += ["", "| mistake | file | fate | by |", "| --- | --- | --- | --- |"]
-    for fate in sorted(fates, key=lambda fate: not fate.wrong):
-        lines.append(f"| {fate.mistake.name} | {fate.mistake.file} | {fate.fate} | {fate.by} |")
-    return "\n".join(lines) + "\n"
+def tried(mistakes: Sequence[tuple[Mistake, str]], trace: Traced, trees: Sequence[Path]) -> int:
+    """Ask about every mistake, twice where nothing is noticed; write the report, and give the status."""
+    fates = KEPT / "fates.jsonl"
+    fates.unlink(missing_ok=True)
+    reasons = {mistake.name: reason for mistake, reason in mistakes if reason}
+    matrix.filled([mistake for mistake, _ in mistakes], trace, fates, trees, FIRST, first=True)
+    through = {row.mistake for row in matrix.read(fates) if not row.caught and row.tests} - set(reasons)
+    matrix.filled([m for m, _ in mistakes if m.name in through], trace, fates, trees, MORE, first=True)
+    rows = matrix.read(fates)
+    by_rule = {row.mistake: not row.caught for row in rows if ":" in row.mistake}
+    wrong = [row for row in rows if not row.caught and row.mistake not in {*by_rule, *reasons}]
+    text = "\n".join(["# Deliberate mistakes", "", *matrix.shares(rows)])
+    (KEPT / "fates.md").write_text(text, encoding="utf-8")
+    told = f"{len(wrong)} by hand and {sum(by_rule.values())} of {len(by_rule)} drawn got through"
+    print(f"\n{told}; see {KEPT / 'fates.md'}")
+    return 1 if wrong or sum(by_rule.values()) > ALLOWED * len(by_rule) else 0
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -128,25 +92,18 @@ def main(words: Sequence[str] | None = None) -> int:
     if given.command == "list":
         print(*(mistake for mistake, _ in mistakes), sep="\n")
         return 0
-    began = time.monotonic()
     trial.load_others()
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
         trees = [trial.copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
         trace = traced(given.workers, trees, anew=given.command == "trace")
         if given.command == "trace":
             return 0
-        if given.command == "matrix":
-            matrix.filled([mistake for mistake, _ in mistakes], trace, rows, trees, FIRST)
-            return 0
-        fates = tried(mistakes, trace, trees)
-    text = report(fates, time.monotonic() - began)
-    KEPT.mkdir(parents=True, exist_ok=True)
-    (KEPT / "fates.md").write_text(text, encoding="utf-8")
-    drawn = [fate for fate in fates if fate.drawn]
-    through = sum(fate.wrong for fate in drawn)
-    wrong = [fate for fate in fates if fate.wrong and not fate.drawn]
-    print(f"\n{len(wrong)} by hand and {through} of {len(drawn)} drawn got through; see {KEPT / 'fates.md'}")
-    return 1 if wrong or through > ALLOWED * len(drawn) else 0
+        if given.command == "run":
+            return tried(mistakes, trace, trees)
+        known = {row.mistake for row in matrix.read(rows)}
+        left = [mistake for mistake, _ in mistakes if mistake.name not in known]
+        matrix.filled(left, trace, rows, trees, FIRST, first=False)
+        return 0
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ LAYERS = ("reference", "engines", "reports")
 
 @dataclass(frozen=True)
 class Row:
-    """One mistake: the files of the tests that were asked, and the tests that noticed it."""
+    """One mistake: the files of the tests that were asked, how many tests, and those that noticed it."""
 
     mistake: str
     file: str
@@ -32,6 +32,11 @@ class Row:
     def caught(self) -> bool:
         return bool(self.noticed or self.end)
 
+    @property
+    def by(self) -> set[str]:
+        """The files of the tests that noticed it."""
+        return {test.partition("::")[0] for test in self.noticed}
+
 
 def read(path: Path) -> list[Row]:
     """The rows of a file of JSON lines; none if there is no file. The last row of a mistake counts."""
@@ -40,32 +45,31 @@ def read(path: Path) -> list[Row]:
     return list({row.mistake: row for row in rows}.values())
 
 
-def filled(mistakes: Iterable[Mistake], traced: Traced, path: Path, trees: Sequence[Path], budget: float) -> None:
-    """Ask every likely test of each mistake that the file lacks, and append what it said; may be interrupted."""
-    known = {row.mistake for row in read(path)}
+def filled(
+    mistakes: Iterable[Mistake], traced: Traced, path: Path, trees: Sequence[Path], budget: float, first: bool
+) -> None:
+    """Ask the likely tests of each mistake, until the first fails or all of them, and append what they said to a file.
+
+    `budget`: for how many seconds of tests. May be interrupted at any time.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
 
     def keep(question: Question, answer: Answer) -> None:
         mistake = question.mistake
         assert mistake is not None
         files = tuple(dict.fromkeys(test.partition("::")[0] for test in question.tests))
-        row = Row(mistake.name, mistake.file, mistake.line, files, len(question.tests), *_told(answer))
+        said = answer.noticed, answer.seconds, answer.end
+        row = Row(mistake.name, mistake.file, mistake.line, files, len(question.tests), *said)
         with path.open("a", encoding="utf-8") as file:
             print(json.dumps(asdict(row)), file=file)
-        print(f"{len(row.noticed)} of {row.tests} ({row.seconds:.0f} s) {row.end} {row.mistake}", flush=True)
+        told = f"{len(row.noticed)} of {row.tests}" if row.caught else "GOT THROUGH"
+        print(f"{told} ({row.seconds:.0f} s) {row.mistake} {row.end}", flush=True)
 
-    for mistake in mistakes:
-        if mistake.name in known:
-            continue
-        question = Question(traced.likely(mistake, budget), mistake, first=False, limit=20 * budget)
-        if question.tests:
-            asked([question], trees[:1], keep)
-        else:
+    questions = [Question(traced.likely(each, budget), each, first, limit=60 + 10 * budget) for each in mistakes]
+    for question in questions:
+        if not question.tests:
             keep(question, Answer((), 0, 0.0))
-
-
-def _told(answer: Answer) -> tuple[tuple[str, ...], float, str]:
-    return answer.noticed, answer.seconds, answer.end
+    asked([question for question in questions if question.tests], trees, keep)
 
 
 def functions(tests: Iterable[str]) -> frozenset[str]:
@@ -77,7 +81,7 @@ def alone(rows: Sequence[Row]) -> Mapping[str, list[str]]:
     """Test functions that noticed what no other test did, with those mistakes."""
     out: dict[str, list[str]] = defaultdict(list)
     for row in rows:
-        if len(names := functions(row.noticed)) == 1 and not row.end:
+        if len(names := functions(row.noticed)) == 1:
             out[next(iter(names))].append(row.mistake)
     return out
 
@@ -92,41 +96,35 @@ def cover(rows: Sequence[Row]) -> list[str]:
     return out
 
 
-def reading(rows: Sequence[Row], traced: Traced | None = None) -> str:
-    """A Markdown document: the share caught by layer, what got through, and what that says of the tests."""
-    lines = ["# Mistakes by tests", "", "| layer | mistakes | caught | share |", "| --- | --: | --: | --: |"]
+def shares(rows: Sequence[Row]) -> list[str]:
+    """By layer how many mistakes were caught, then those that got through, as lines of Markdown."""
+    lines = ["| layer | mistakes | caught | share |", "| --- | --: | --: | --: |"]
     for layer in LAYERS:
         of = [row for row in rows if row.file.startswith(layer + "/")]
         caught = sum(row.caught for row in of)
         lines.append(f"| {layer} | {len(of)} | {caught} | {caught / len(of) if of else 1:.0%} |")
-    lines += ["", "## Got through", ""]
-    lines += [f"* {row.mistake} ({row.file}:{row.line}; {row.tests} tests)" for row in rows if not row.caught]
-    only = alone(rows)
-    lines += ["", "## Test functions that alone notice something: they stay", ""]
+    through = [f"* {row.mistake} ({row.file}:{row.line}; {row.tests} tests)" for row in rows if not row.caught]
+    return [*lines, "", "## Got through", "", *through, ""]
+
+
+def reading(rows: Sequence[Row], traced: Traced | None = None) -> str:
+    """A Markdown document: what was caught, which test functions must stay, and which files have no mistake alone."""
+    only, kept = alone(rows), cover(rows)
+    lines = ["# Mistakes by tests", "", *shares(rows), "## Test functions that alone notice something: they stay", ""]
     lines += [f"* {name}: {len(what)}, such as {what[0]}" for name, what in sorted(only.items())]
     lines += ["", "## Test files", "", "alone: mistakes that no test of another file noticed.", ""]
     lines += ["| file | asked | noticed | alone |", "| --- | --: | --: | --: |"]
-    files = sorted({file for row in rows for file in row.files})
-    by = {id(row): {test.partition("::")[0] for test in row.noticed} for row in rows}
-    counted = [
-        (
-            sum(by[id(row)] == {file} for row in rows),
-            sum(file in by[id(row)] for row in rows),
-            sum(file in row.files for row in rows),
-            file,
-        )
-        for file in files
-    ]
-    lines += [f"| {file} | {asks} | {noticed} | {single} |" for single, noticed, asks, file in sorted(counted)]
-    kept = cover(rows)
+    for file in sorted({file for row in rows for file in row.files}):
+        asks, noticed = sum(file in row.files for row in rows), sum(file in row.by for row in rows)
+        lines.append(f"| {file} | {asks} | {noticed} | {sum(row.by == {file} for row in rows)} |")
     lines += ["", f"## {len(kept)} test functions notice all that is noticed", "", *(f"* {name}" for name in kept)]
     if traced is not None:
-        lines += ["", "## Test functions that run no block which another file's tests don't run", ""]
-        lines += [f"* {name}" for name in _needless(traced) if name not in only]
+        lines += ["", "## Test functions that run no block which tests of other files don't run", ""]
+        lines += [f"* {name}" for name in needless(traced) if name not in only]
     return "\n".join(lines) + "\n"
 
 
-def _needless(traced: Traced) -> list[str]:
+def needless(traced: Traced) -> list[str]:
     """Test functions of which every block is run by tests of another file too: mistakes there have other witnesses."""
     needed = set()
     for places in traced.runs.values():

@@ -13,11 +13,13 @@ import builtins
 import hashlib
 import importlib.machinery
 import json
+import marshal
 import os
 import struct
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -69,17 +71,27 @@ def named(block: list[ast.stmt]) -> int:
 
 
 class _Loader(importlib.machinery.SourceFileLoader):
-    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> Any:  # type: ignore[override]
-        file = os.path.relpath(os.fspath(path), ROOT)
+    """Puts the calls in; what it has compiled is kept apart from what Python keeps."""
+
+    def get_code(self, fullname: str) -> Any:
+        file = os.path.relpath(self.get_filename(fullname), ROOT)
         if file not in SOURCES:
-            return super().source_to_code(data, path)
+            return super().get_code(fullname)
+        kept = Path(os.environ[FOLDER]).parent / "compiled" / f"{file.replace('/', '.')}-{digest(file)}"
+        with suppress(OSError):
+            return marshal.loads(kept.read_bytes())
         number = SOURCES.index(file) * MOST
-        tree = ast.parse(data)
+        tree = ast.parse((ROOT / file).read_bytes())
         for block in list(blocks(tree, file)):
             at = next(index for index, statement in enumerate(block) if statement.lineno == named(block))
             call = ast.Call(ast.Name(HIT, ast.Load()), [ast.Constant(number + block[at].lineno)], [])
             block.insert(at, ast.copy_location(ast.Expr(call), block[at]))
-        return compile(ast.fix_missing_locations(tree), path, "exec", dont_inherit=True, optimize=_optimize)
+        code = compile(ast.fix_missing_locations(tree), self.get_filename(fullname), "exec", dont_inherit=True)
+        kept.parent.mkdir(exist_ok=True)
+        part = kept.with_suffix(f".{os.getpid()}")
+        part.write_bytes(marshal.dumps(code))
+        part.replace(kept)
+        return code
 
 
 class Recorder:

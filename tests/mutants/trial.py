@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from tests.mutants import tracing
@@ -91,10 +92,10 @@ def _run(question: Question, tree: Path, told: Path) -> int:
             folder.mkdir(parents=True, exist_ok=True)
         (inject / "sitecustomize.py").write_text(tracing.INJECTED)
         os.environ.update({tracing.FOLDER: str(question.traced / "hits"), "PYTHONPATH": f"{tree}{os.pathsep}{inject}"})
-        os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(question.traced / "compiled")
         os.environ["NUMBA_CACHE_DIR"] = str(question.traced / "numba")
     for name in [name for name in sys.modules if name.partition(".")[0] == "tests"]:
         del sys.modules[name]
+    sys.modules["__main__"] = ModuleType("__main__")  # else processes that tests spawn import that of the mutants
     if question.traced is not None:
         plugins.append(importlib.import_module("tests.mutants.tracing").start())
     import pytest
