@@ -83,7 +83,8 @@ def _run(question: Question, tree: Path, told: Path) -> int:
     for stream in range(3):
         os.dup2(silent, stream)
     os.chdir(tree)
-    os.environ.update(ONE_THREAD, PYTHONPATH=str(tree))
+    # Folders of tests in one of their own: pytest clears away what others have left in the one that all share.
+    os.environ.update(ONE_THREAD, PYTHONPATH=str(tree), PYTEST_DEBUG_TEMPROOT=str(told.parent))
     sys.path.insert(0, str(tree))
     plugins: list[object] = [_Writer(told)]
     if question.traced is not None:
@@ -123,7 +124,8 @@ def asked(
             while waiting and free:
                 number, question = waiting.pop()
                 tree = free.pop()
-                told = Path(tempfile.mkstemp(prefix="mutants-")[1])
+                told = Path(tempfile.mkdtemp(prefix="mutants-")) / "told"
+                told.touch()
                 right = None
                 if question.mistake is not None:
                     right = (tree / question.mistake.file).read_bytes()
@@ -165,7 +167,7 @@ def _kill(process: int, wait: bool) -> None:
 
 def _answer(told: Path, status: int | None, question: Question, seconds: float) -> Answer:
     rows = [json.loads(row) for row in told.read_text().splitlines()]
-    told.unlink()
+    shutil.rmtree(told.parent, ignore_errors=True)
     end = f"no end within {question.limit:g} s" if status is None else ""
     if status is not None and os.waitstatus_to_exitcode(status) not in (0, 1, 5) and not any(row[1] for row in rows):
         end = f"pytest ended with {os.waitstatus_to_exitcode(status)}"
