@@ -254,7 +254,7 @@ class Admitting(Boasting):
 
     finer: bool = True
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
         rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
         words = ("it is wrong",) if (dt < 0.75 * rough) is self.finer else ()
         return Spoiled(super().build(mechanism, dt), lambda given: replace(given, warnings=words))

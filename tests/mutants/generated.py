@@ -11,6 +11,7 @@ import copy
 from collections.abc import Callable, Iterator, Sequence
 from hashlib import sha256
 from itertools import count
+from typing import TypeVar
 
 from tests.mutants.sources import SOURCES, Mistake, Source, source
 
@@ -24,6 +25,7 @@ TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {
     **{ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is},
 }
 LAYOUT = ("reports/plots/", "reports/site/", "reports/cli/")  # sizes and colours stand there, which no test should hold
+Node = TypeVar("Node", bound=ast.AST)
 Arithmetic = ast.Add | ast.Sub | ast.Mult | ast.Div | ast.Pow
 
 
@@ -99,7 +101,7 @@ def _beside(index: ast.expr) -> Iterator[ast.expr]:
                     yield _with(index, elts=[*elements[:place], other, *elements[place + 1 :]])
 
 
-def _with(node: ast.AST, **changes: object) -> ast.AST:
+def _with(node: Node, **changes: object) -> Node:
     out = copy.copy(node)
     for name, value in changes.items():
         setattr(out, name, value)

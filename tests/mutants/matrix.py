@@ -7,6 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from tests.mutants.sources import Mistake
 from tests.mutants.tracing import Traced
@@ -41,8 +42,13 @@ class Row:
 def read(path: Path) -> list[Row]:
     """The rows of a file of JSON lines; none if there is no file. The last row of a mistake counts."""
     lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
-    rows = [Row(**{name: tuple(v) if isinstance(v, list) else v for name, v in json.loads(x).items()}) for x in lines]
-    return list({row.mistake: row for row in rows}.values())
+    rows: dict[str, Row] = {}
+    for line in lines:
+        fields: dict[str, Any] = json.loads(line)
+        fields.update(files=tuple(fields["files"]), noticed=tuple(fields["noticed"]))
+        row = Row(**fields)
+        rows[row.mistake] = row
+    return list(rows.values())
 
 
 def filled(

@@ -27,7 +27,7 @@ LEFT_OUT = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite
 OTHERS = ("numpy", "scipy.integrate", "scipy.optimize", "scipy.sparse.linalg", "scipy.special", "mujoco", "pymunk")
 OTHERS += ("matplotlib.figure", "matplotlib.backends.backend_agg", "numba", "rich.table", "rich.progress", "typer")
 OTHERS += ("jinja2", "pytest", "ezdxf", "markdown_it")
-ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+ONE_THREAD: dict[str, str] = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 OPTIONS = ("-q", "--no-header", "--tb=no", "-p", "no:cacheprovider", "-m", "not slow and not crosscheck")
 
 
@@ -85,6 +85,8 @@ def _run(question: Question, tree: Path, told: Path) -> int:
     os.chdir(tree)
     # Folders of tests in one of their own: pytest clears away what others have left in the one that all share.
     os.environ.update(ONE_THREAD, PYTHONPATH=str(tree), PYTEST_DEBUG_TEMPROOT=str(told.parent))
+    # What is compiled is kept by a digest of its sources, beside the trees: to compile takes a minute.
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(tree.parent / "numba"))
     sys.path.insert(0, str(tree))
     plugins: list[object] = [_Writer(told)]
     if question.traced is not None:
@@ -93,7 +95,6 @@ def _run(question: Question, tree: Path, told: Path) -> int:
             folder.mkdir(parents=True, exist_ok=True)
         (inject / "sitecustomize.py").write_text(tracing.INJECTED)
         os.environ.update({tracing.FOLDER: str(question.traced / "hits"), "PYTHONPATH": f"{tree}{os.pathsep}{inject}"})
-        os.environ["NUMBA_CACHE_DIR"] = str(question.traced / "numba")
     for name in [name for name in sys.modules if name.partition(".")[0] == "tests"]:
         del sys.modules[name]
     sys.modules["__main__"] = ModuleType("__main__")  # else processes that tests spawn import that of the mutants
