@@ -61,7 +61,7 @@ def tried(mistakes: Sequence[tuple[Mistake, str]], trace: Traced, trees: Sequenc
     reasons = {mistake.name: reason for mistake, reason in mistakes if reason}
     matrix.filled([mistake for mistake, _ in mistakes], trace, fates, trees, FIRST, first=True)
     through = {row.mistake for row in matrix.read(fates) if not row.caught and row.tests} - set(reasons)
-    matrix.filled([m for m, _ in mistakes if m.name in through], trace, fates, trees, MORE, first=True)
+    matrix.filled([m for m, _ in mistakes if m.name in through], trace, fates, trees, MORE, first=True, each=1000)
     rows = matrix.read(fates)
     by_rule = {row.mistake: not row.caught for row in rows if ":" in row.mistake}
     wrong = [row for row in rows if not row.caught and row.mistake not in {*by_rule, *reasons}]

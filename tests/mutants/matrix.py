@@ -52,11 +52,17 @@ def read(path: Path) -> list[Row]:
 
 
 def filled(
-    mistakes: Iterable[Mistake], traced: Traced, path: Path, trees: Sequence[Path], budget: float, first: bool
+    mistakes: Iterable[Mistake],
+    traced: Traced,
+    path: Path,
+    trees: Sequence[Path],
+    budget: float,
+    first: bool,
+    each: int = 3,
 ) -> None:
     """Ask the likely tests of each mistake, until the first fails or all of them, and append what they said to a file.
 
-    `budget`: for how many seconds of tests. May be interrupted at any time.
+    `budget`: for how many seconds of tests, and of a function with parameters `each`. May be interrupted at any time.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
 
@@ -71,7 +77,7 @@ def filled(
         told = f"{len(row.noticed)} of {row.tests}" if row.caught else "GOT THROUGH"
         print(f"{told} ({row.seconds:.0f} s) {row.mistake} {row.end}", flush=True)
 
-    questions = [Question(traced.likely(each, budget), each, first, limit=60 + 10 * budget) for each in mistakes]
+    questions = [Question(traced.likely(one, budget, each), one, first, limit=60 + 10 * budget) for one in mistakes]
     for question in questions:
         if not question.tests:
             keep(question, Answer((), 0, 0.0))
