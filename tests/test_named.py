@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from reports.grid.ending import FINE, REFUSED
 from reports.pages import catalogue
 from tests.present import present
 from tests.test_command_line import call, one_line
+from tests.toys import Toy
 
 # Files as a user writes them: a scene and an engine in a few lines, made of ours.
 FALLING = """
@@ -85,6 +87,14 @@ def test_the_folder_of_an_engine_hides_no_module_that_is_installed(here):
     written(here, "folder/this.py", "")
     registry.load(f"{here}/folder/mine_1.py:ENGINES")
     assert not str(present(find_spec("this")).origin).startswith(str(here))
+
+
+@pytest.mark.parametrize("word", ["", "  ", "two\nlines", None])
+def test_a_name_that_can_not_be_printed_in_a_table_is_no_engines_name(word):
+    for field in ("name", "variant"):
+        wrong = replace(Toy(), **{field: word})
+        assert registry.trouble(wrong).startswith(f"its {field} is {word!r}; it must be a string that is not empty")
+    assert registry.trouble(Toy()) == ""
 
 
 @pytest.mark.parametrize(

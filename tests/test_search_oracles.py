@@ -219,6 +219,25 @@ def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
     assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
 
 
+@dataclass(frozen=True)
+class Admitting(Boasting):
+    """As wrong as that, and says so in the finer runs alone, or in the coarse one alone."""
+
+    finer: bool = True
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
+        words = ("it is wrong",) if (dt < 0.75 * rough) is self.finer else ()
+        return Spoiled(super().build(mechanism, dt), lambda given: replace(given, warnings=words))
+
+
+@pytest.mark.parametrize("finer", [True, False])
+def test_a_motion_of_which_any_run_warns_is_not_held_against_the_engine(finer: bool) -> None:
+    for one in told(Admitting("euler", "projection", finer=finer), ("pin",), 3, "motions"):
+        assert one.faults == ()
+        assert any("something is wrong" in reason for reason in one.not_asked)
+
+
 def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
     def loses(mechanism: Mechanism) -> Mechanism:
         raise KeyError("body 7")
