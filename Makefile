@@ -38,8 +38,8 @@ bench: .venv/installed-bench     ## what stepping costs beside the bare loops, a
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 
-mutants: .venv/installed         ## about 500 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
-	$(BIN)/python -m tests.mutants $(ONLY)
+mutants: .venv/installed         ## about 450 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
+	$(BIN)/python -m tests.mutants run $(ONLY)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
 	.venv-lower/bin/python -m pytest $(WORKERS) -m "not crosscheck and not slow"

@@ -3,8 +3,10 @@
 from engines.contract import (
     CLAIM,
     EXACT,
+    Around,
     Engine,
     Holder,
+    OneShot,
     Promise,
     Run,
     Size,
@@ -17,8 +19,10 @@ from engines.contract import (
 __all__ = [
     "CLAIM",
     "EXACT",
+    "Around",
     "Engine",
     "Holder",
+    "OneShot",
     "Promise",
     "Run",
     "Size",

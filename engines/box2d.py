@@ -44,11 +44,11 @@ import numpy as np
 
 from engines.contract import Holder, Promise, Size, Unpromised, Unsupported
 from engines.motions import over_three
-from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_all_but, unwrapped
+from engines.single_run import Optional, Recorded, SingleRun, differences, refuse_lacking, unwrapped
+from reference.checks import Count, Name, NonNegative, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Name, NonNegative, Positive, validated
 
 STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s
@@ -72,9 +72,9 @@ class Box2D(Optional):
     of a sub-step, 0 for joints as shipped.
     """
 
-    extra: ClassVar[str] = "box2d"
+    name = "box2d"
+    packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
-    distributions: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Holder] = "ours"
     precision: ClassVar[float] = 2.0**-23  # of its numbers
 
@@ -101,7 +101,7 @@ class Box2D(Optional):
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A world for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
-        refuse_all_but(mechanism, "box2d", (Pin, Slot, Drive, Weld, Rod), LACKS)
+        refuse_lacking(mechanism, LACKS)
         self.require()
         world = _World(mechanism, self.closing * self.substeps / dt)
         return SingleRun(

@@ -1,9 +1,10 @@
 """The contract of an engine under test: what the suite asks of it, and nothing else.
 
-1. An engine is a frozen dataclass; its fields are its settings, printed in the report. `name` and `variant` together
-   name a method there; a variant is a label of the user's choice: any string that is not empty and can be printed.
+1. An engine is a frozen dataclass that inherits from `Engine`; its fields are its settings, printed in the report.
+   `name` and `variant` together name a method there; a variant is a label of the user's choice: any string that is not
+   empty and can be printed.
    Settings, steps and counts that can't be are refused by a ValueError, not by the engine's own abort:
-   `reference.validation` does it for what inherits from `Valid`, and for `build` and `run` with `validated`.
+   `reference.checks` does it for what inherits from `Valid`, and for `build` and `run` with `validated`.
 2. `packages` are the installed distributions whose versions its numbers depend on; they are printed under the numbers.
    Engines of one `family` share a colour and a mark in charts: the variants of an engine are one family.
 3. `build(mechanism, dt)` makes a model of the mechanism at t = 0 for steps of dt [s], or raises Unsupported with a
@@ -26,22 +27,23 @@
 
 More may be declared. Under the entry point group `crosscheck.bare_loops`, by an engine's name, stands a function that
 is given (engine, mechanism, dt, steps) and tells the CPU seconds of that many steps of its model with nothing read:
-`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too. And an engine may have a method
-`prepare()`: what it loads or compiles once in a process, so that no build is timed with it.
+`crosscheck bench` sets the `stepping` of a run beside it. It may raise Unsupported too. What else is asked of an engine
+stands in the class `Engine`, with what is usual where an engine says nothing.
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol, runtime_checkable
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
+from reference.checks import Count
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive
 
 # The order of an error that no step makes: a joint between coordinates that can't part, a motion that is prescribed.
 EXACT = math.inf
@@ -136,23 +138,128 @@ class Run(Protocol):
     def __call__(self, samples: Count, every: Count) -> Trajectory: ...
 
 
-@runtime_checkable
-class Engine(Protocol):
-    """See the module's numbered contract."""
+class OneShot:
+    """The base of a run: what it has once begun can't begin again."""
+
+    _over = False
+
+    def begin(self) -> None:
+        """Raises RuntimeError at the second call."""
+        if self._over:
+            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
+        self._over = True
+
+
+class Engine(ABC):
+    """The base of every engine: what the module's numbered contract asks for, and what is usual where it says no more.
+
+    `name`, `variant` and `packages` are each engine's own: in its class, as fields, or as properties.
+    """
+
+    name: str
+    variant: str
+    packages: tuple[str, ...]
+    # What an extra is imported by when its first mechanism is built, since some take seconds.
+    modules: ClassVar[tuple[str, ...]] = ()
+    # About how long a model takes to build [s], where that is no matter of milliseconds.
+    building: ClassVar[float] = 0.0
+    # The relative rounding of its numbers, where these are of less than double precision.
+    precision: ClassVar[float] = 0.0
+    # Who works out what springs, dampers and the like do.
+    forces_by: ClassVar[Holder] = "engine"
 
     @property
-    def name(self) -> str: ...
+    def family(self) -> str:
+        return self.name
+
     @property
-    def variant(self) -> str: ...
+    def missing(self) -> str:
+        """One sentence that says how to install what it needs; empty where that is there."""
+        return ""
+
     @property
-    def packages(self) -> tuple[str, ...]: ...
-    @property
-    def family(self) -> str: ...
+    def touches(self) -> bool:
+        """Whether rolls are held by contacts of shapes: if two that just touch do, depends on rounding."""
+        return False
+
+    def prepare(self) -> None:  # noqa: B027  (most engines have nothing to prepare)
+        """Load or compile what is needed once in a process, so that no build is timed with it."""
+
+    @abstractmethod
     def order(self, mechanism: Mechanism) -> Promise | Unpromised: ...
+
+    @abstractmethod
     def step_cost(self, mechanism: Mechanism) -> float: ...
+
+    def step_cost_within(self, mechanism: Mechanism, duration: float) -> float:
+        """`step_cost` in a motion of `duration` [s], which may meet poses that cost more than the start."""
+        return self.step_cost(mechanism)
+
+    @abstractmethod
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder: ...
-    def softness(self, mechanism: Mechanism, dt: Positive) -> Softness | None: ...
-    def build(self, mechanism: Mechanism, dt: Positive) -> Run: ...
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        """Nothing is declared that the judge could follow."""
+        return None
+
+    def iterations_of(self, mechanism: Mechanism) -> int | None:
+        """The Gauss-Seidel iterations over the joints in a step, as it starts; None for another solver."""
+        return None
+
+    def within(self, mechanism: Mechanism) -> Engine:
+        """The engine that is stepped: inside of those that choose and combine others."""
+        return self
+
+    @abstractmethod
+    def build(self, mechanism: Mechanism, dt: float) -> Run: ...
+
+
+class Around(Engine):
+    """An engine around another one, which says what this one does not."""
+
+    engine: Engine
+
+    @property
+    def name(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.name
+
+    @property
+    def packages(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.packages
+
+    @property
+    def modules(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.modules
+
+    @property
+    def family(self) -> str:
+        return self.engine.family
+
+    @property
+    def missing(self) -> str:
+        return self.engine.missing
+
+    @property
+    def touches(self) -> bool:
+        return self.engine.touches
+
+    def prepare(self) -> None:
+        self.engine.prepare()
+
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        return self.engine.order(mechanism)
+
+    def step_cost(self, mechanism: Mechanism) -> float:
+        return self.engine.step_cost(mechanism)
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return self.engine.holder(joint, mechanism)
+
+    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
+        return self.engine.softness(mechanism, dt)
+
+    def within(self, mechanism: Mechanism) -> Engine:
+        return self.engine.within(mechanism)
 
 
 # Of a step: far below the half step by which a state can belong to another instant, far above what products round.

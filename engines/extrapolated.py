@@ -11,21 +11,21 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Holder, Promise, Run, Size, Unpromised
-from engines.finer import Division, Lasting, division, tells_itself
-from reference.joints import Joint
+from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
+from engines.finer import Division, division, tells_itself
+from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 
 # Of the largest force that acts: reactions whose estimate is above it are told.
 FORCES = 1e-3
-# How many times the next difference that two successive ones let expect counts as the error. Chosen after 270 random
-# mechanisms with three steps each, and frozen before 298 others were tried: of these 894 motions one was wrong without
-# a word, by 4e-6 with an estimate of 9e-8; it had a strong damper, and is told of now.
-CAUTION = 4
+# How many times the next difference that successive ones let expect counts as the error; what of the last difference
+# counts at least; and from which share of the claim on poses are unresolved where an estimate passes it, as errors rise
+# before it does. LEAST and EARLY are fitted on 1300 random mechanisms of all kinds with three steps each (seeds 7001,
+# 31153099 and 601) in pymunk, Exudyn and Bullet.
+CAUTION, LEAST, EARLY = 4, 0.5, 1 / 30
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
 
@@ -49,8 +49,17 @@ class Watched(Protocol):
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory: ...
 
 
+@runtime_checkable
+class Settling(Protocol):
+    """An engine whose first steps differ from the others. What is left when they end is a series in the step only if
+    they last as long in all runs.
+    """
+
+    def settled_for(self, steps: Count) -> Engine: ...
+
+
 @dataclass(frozen=True)
-class Extrapolated(Valid):
+class Extrapolated(Around, Valid):
     """An engine in the sense of `engines.Engine` that runs another one at steps dt / level, and extrapolates.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
@@ -59,10 +68,11 @@ class Extrapolated(Valid):
 
     The `estimate` is what `expected_error` makes of the differences between successive columns of Richardson's table,
     and the rounding of all steps. It is worked out at every step of dt, whichever of them are sampled, and where it
-    is above `engines.CLAIM`, of a radian or of the mechanism's length, the motion is `unresolved_at` that time, and a
-    warning tells it. So it is from the start where a damper is so strong that it ends a motion within a step of the
-    coarsest run: what it does then all may miss alike. Reactions whose own estimate is above FORCES of the largest
-    force that acts are told as well.
+    is above `engines.CLAIM`, of a radian or of the mechanism's length, the motion is unresolved, and a warning tells
+    it: `unresolved_at` the time from which it is above EARLY of that. So it is from the start where a damper is so
+    strong that it ends a motion within a step of the coarsest run: what it does then all may miss alike, and of random
+    mechanisms some were wrong by 5e-5 with an estimate of 4e-9. Reactions whose own estimate is above FORCES of the
+    largest force that acts are told as well.
 
     Where the estimate is more than what the finest run seems to miss (the distance to the extrapolation of the two
     finest), the runs are no series in the step: one has gone another way at a singular position, say. From there on the
@@ -93,21 +103,6 @@ class Extrapolated(Valid):
                 f"extrapolated: {len(self.levels)} levels remove {len(self.levels) - 1} powers, "
                 f"but powers are {self.powers!r}; give one power fewer than levels"
             )
-
-    @property
-    def name(self) -> str:
-        """The name of the engine inside."""
-        return self.engine.name
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        """Those of the engine inside."""
-        return self.engine.packages
-
-    @property
-    def family(self) -> str:
-        """That of the engine inside."""
-        return self.engine.family
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -140,16 +135,8 @@ class Extrapolated(Valid):
 
     @validated
     def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
-        """The same in a motion of `duration` [s]: see `engines.finer.Lasting`."""
-        inner = self.engine
-        lasting = isinstance(inner, Lasting)
-        each = inner.step_cost_within(mechanism, duration) if lasting else inner.step_cost(mechanism)
-        return sum(self.levels) * each
-
-    @validated
-    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """Whoever holds it in the runs that are combined."""
-        return self.engine.holder(joint, mechanism)
+        """The same in a motion of `duration` [s]."""
+        return sum(self.levels) * self.engine.step_cost_within(mechanism, duration)
 
     def softness(self, mechanism: Mechanism, dt: float) -> None:
         """Nothing is declared: a softness that is tied to the step is extrapolated too."""
@@ -168,7 +155,7 @@ class Extrapolated(Valid):
         )
 
 
-class ExtrapolatedRun:
+class ExtrapolatedRun(OneShot):
     """The built models of all levels, ready to be stepped once; see `engines.Run`."""
 
     def __init__(
@@ -182,18 +169,21 @@ class ExtrapolatedRun:
         self._method, self._mechanism, self._dt, self._divided = method, mechanism, dt, divided
         # What differences of poses are measured by [m, m, rad].
         self._scale = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-        self._runs, self._over = self._built(1), False
+        self._runs = self._built(1)
         self.size: Size = self._runs[0].size
 
     def _built(self, finer: int) -> tuple[Run, ...]:
-        levels = self._method.levels
-        return tuple(self._method.engine.build(self._mechanism, self._dt / (level * finer)) for level in levels)
+        inner = self._method.engine
+        return tuple(
+            (inner.settled_for(level) if isinstance(inner, Settling) else inner).build(
+                self._mechanism, self._dt / (level * finer)
+            )
+            for level in self._method.levels
+        )
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         asked = every
         every = _watched(samples, asked, len(self._mechanism.bodies))
         samples, each = samples * (asked // every), asked // every
@@ -222,21 +212,21 @@ class ExtrapolatedRun:
             np.stack([getattr(part, name) for part in parts]) for name in ("pose", "twist", "reaction")
         )
         pose, twist = combine(poses, weights), combine(twists, weights)
+        stiff = self._mechanism.applied.dissipate and self._dt / (levels[0] * finer) > self._mechanism.time_scale
         reaction, estimate = combine(reactions, weights), self._estimate(poses, pose, samples * every)
         t, warnings = parts[-1].t, [warning for part in parts for warning in part.warnings]
         largest = self._largest(estimate)
-        unresolved = largest > CLAIM
-        if self._mechanism.applied.dissipate and self._dt / (levels[0] * finer) > self._mechanism.time_scale:
-            unresolved[:] = True
-        lost = unresolved & self._is_no_series(poses, largest)
+        above = largest > CLAIM
+        lost = above & self._is_no_series(poses, largest)
         if lost.any():
             since = int(np.argmax(lost))
             pose[since:], twist[since:], reaction[since:] = poses[-1, since:], twists[-1, since:], reactions[-1, since:]
             with np.errstate(all="ignore"):
                 estimate[since:] = np.abs(poses[:-1, since:] - poses[-1, since:]).max(axis=0)
-        else:
-            warnings += self._doubts(reactions[:, ::each])
-        unresolved_at = float(t[np.argmax(unresolved)]) if unresolved.any() else None
+        warnings += self._doubts(reactions[:, ::each])
+        unresolved_at = float(t[np.argmax(largest > EARLY * CLAIM)]) if above.any() else None
+        if stiff:
+            unresolved_at = 0.0
         if unresolved_at is not None:
             reason = "the runs are no series in the step" if lost.any() else "its own estimate is not below its claim"
             warnings.append(f"ours: unresolved from {unresolved_at:.4g} s on, {reason}")
@@ -256,8 +246,8 @@ class ExtrapolatedRun:
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
         """(times, bodies, 3) [m, m, rad] for poses (levels, times, bodies, 3) and what they are extrapolated to."""
         levels, powers = self._method.levels, self._method.powers
-        # Each step rounds a pose anew, and the combination carries that as many times as its weights are large.
-        carried = np.abs(extrapolation_weights(levels, powers)).sum() * np.finfo(float).eps * steps * levels[-1]
+        # Each step rounds a pose anew, by half a unit at most, and the combination carries that with its weights.
+        carried = np.abs(extrapolation_weights(levels, powers)) @ levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, poses.shape[1])[:, None, None]
         with np.errstate(all="ignore"):
             rounding = carried * elapsed * np.maximum(np.abs(pose), self._scale)
@@ -312,8 +302,9 @@ def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Cou
     The differences between the extrapolations of k + 1 and of the k finest runs fall from one k to the next while the
     runs are a series in the step. The last of them is the error of the extrapolation without the coarsest run; what is
     left is smaller by the factor that it fell by, or by the one that the last two factors lead to, as in asymptotic
-    series factors rise. That is taken CAUTION times, but no more than a single run that is out of the series, by
-    whatever, puts the extrapolation off if it is that run alone. Factors are those of the largest differences so far.
+    series factors rise. That is taken CAUTION times. It is no less than LEAST of the last difference, as that may just
+    pass zero, and no more than a single run that is out of the series, by whatever, puts the extrapolation off if it is
+    that run alone. Factors are those of the largest differences so far.
     """
     parts = [
         combine(values[-count:], extrapolation_weights(levels[-count:], powers[: count - 1]))
@@ -327,7 +318,8 @@ def expected_error(values: Numbers, levels: tuple[Count, ...], powers: tuple[Cou
         weights = extrapolation_weights(levels, powers)
         fewer = np.array([0.0, *extrapolation_weights(levels[1:], powers[:-1])])
         most = np.abs(weights / (weights - fewer)).max()
-        factor = np.minimum(CAUTION * np.max([ratios[-1], *rising], axis=0), most) if ratios else most
+        expected = CAUTION * np.max([ratios[-1], *rising], axis=0) if ratios else most
+        factor = np.clip(expected, min(LEAST, most), most)
         return apart[-1] * np.reshape(factor, (-1, *(1,) * (apart[-1].ndim - 1)))
 
 

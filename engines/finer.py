@@ -13,14 +13,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, isfinite
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from engines.contract import Engine
+from reference.checks import Count, Positive, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive, validated
 
 # All of these numbers are fitted: chosen by what random mechanisms of the seeds 1 and 22 needed (pins, slots, skates,
 # drives), MOST and DEAREST by what rough runs cost. They have not been changed since they were tried on 372 others of
@@ -45,13 +44,6 @@ class Division:
 
     steps: int
     seconds: float
-
-
-@runtime_checkable
-class Lasting(Protocol):
-    """An engine whose step costs more than at the start [s] in a motion that is so long that it meets worse poses."""
-
-    def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float: ...
 
 
 @validated
@@ -85,7 +77,7 @@ def division(
     """
     duration = float(f"{duration:.12g}")  # which runs at different steps round differently
     begin = time.process_time()
-    cost = method.step_cost_within(mechanism, duration) if isinstance(method, Lasting) else method.step_cost(mechanism)
+    cost = method.step_cost_within(mechanism, duration)
     steps = _found(build, mechanism, duration, order, finest, cost)
     return Division(steps, time.process_time() - begin)
 

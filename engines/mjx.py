@@ -42,10 +42,10 @@ from engines.mujoco.model import Model
 from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
 from engines.tree import Tree, spanning_tree
 from engines.user_cache import cache_folder
+from reference.checks import Name, Positive, validated
 from reference.joints import Joint, Rod, Skate
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Name, Positive, validated
 
 Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
@@ -56,18 +56,14 @@ NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so th
 class Mjx(Optional):
     """An engine in the sense of `engines.Engine`; `settings`: the MuJoCo method whose model and options are taken."""
 
-    extra: ClassVar[str] = "mjx"
+    name = "mjx"
+    packages = ("mujoco-mjx", "jax", "mujoco-core")
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
-    distributions: ClassVar[tuple[str, ...]] = ("mujoco-mjx", "jax", "mujoco-core")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
     building: ClassVar[float] = 20.0
 
     variant: Name
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
-
-    @property
-    def family(self) -> str:
-        return "mjx"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -111,8 +107,7 @@ class Mjx(Optional):
                 raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
         self.require()
         model = self.settings.model(mechanism, dt)
-        hooks = model.hooks
-        if any((hooks.control, hooks.passive, hooks.before, hooks.start, hooks.read)) or model.written:
+        if model.hooks.control or model.hooks.before:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:
             return model, _programs()[0].put_model(model.compiled)

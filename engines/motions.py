@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from reference.checks import validated
 from reference.joints import Drive, Pin
 from reference.mechanism import Mechanism
-from reference.validation import validated
 
 
 @validated

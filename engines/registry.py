@@ -18,18 +18,15 @@ from engines.entry_points import registered
 from engines.loading import Kind
 from engines.loading import load as load_values
 
-MEMBERS = tuple(name for name in vars(Engine) if not name.startswith("_"))
-
 
 def trouble(value: Any) -> str:
     """Why a value is no engine, as a clause; empty if it is one. See the contract in `engines`."""
     if isinstance(value, type):
         return f"it is a class; give an engine made of it, {value.__name__}()"
-    lacking = [name for name in MEMBERS if not hasattr(value, name)]
-    if lacking:
-        return f"it lacks {', '.join(lacking)}"
+    if not isinstance(value, Engine):
+        return "it does not inherit from engines.Engine"
     for name in ("name", "variant"):
-        word = getattr(value, name)
+        word = getattr(value, name, None)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
     return ""
@@ -72,14 +69,9 @@ _optional = registered(
 )
 
 
-def missing(engine: Engine) -> str:
-    """One sentence that says how to install what an engine needs; empty where it is there. See `engines.single_run`."""
-    return getattr(engine, "missing", "") or getattr(getattr(engine, "engine", None), "missing", "")
-
-
 # Engines that are extras, installed or not: a row of theirs may have been measured elsewhere.
 OTHERS: tuple[Engine, ...] = _optional.values
-INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not missing(engine))
+INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not engine.missing)
 # By an engine's name the sentence that says which extra installs it.
-ABSENT: dict[str, str] = {engine.name: missing(engine) for engine in OTHERS if missing(engine)}
+ABSENT: dict[str, str] = {engine.name: engine.missing for engine in OTHERS if engine.missing}
 TROUBLES = (*_variants.troubles, *_methods.troubles, *_optional.troubles)

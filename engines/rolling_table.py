@@ -13,14 +13,13 @@ from __future__ import annotations
 
 import math
 from cmath import rect
-from collections import deque
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.curve import Curve, Placed
+from engines.remembered import by_identity
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at Chebyshev points of a cell, and P' and P are its integrals: nothing is differentiated, so
@@ -72,21 +71,9 @@ class Rolled(Protocol):
         ...
 
 
-# Of the mechanisms built last: the levels of an extrapolation build one mechanism many times, and a table takes as long
-# as thousands of steps.
-_latest: deque[tuple[Rolling, Rolled]] = deque(maxlen=8)
-
-
+@by_identity()  # a table takes as long as thousands of steps
 def rolled(rolling: Rolling) -> Rolled:
     """The fast functions of a pair, made once for as long as the same pair is asked for."""
-    for known, fast in _latest:
-        if known is rolling:
-            return fast
-    _latest.append((rolling, _made(rolling)))
-    return _latest[-1][1]
-
-
-def _made(rolling: Rolling) -> Rolled:
     ground, body = _round(rolling.ground), _round(rolling.body)
     if body is not None and ground is not None:
         return RoundOnRound(rolling, ground, body)

@@ -16,12 +16,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Holder, Size, Softness, Unsupported
-from engines.read_reactions import reactions
+from engines.contract import Engine, OneShot, Size, Unsupported
 from engines.tree import Tree
+from reference.checks import Count, Valid, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, Valid, validated
 
 Array = NDArray[np.float64]
 
@@ -40,35 +39,15 @@ def _is_loaded(library: str) -> bool:
     return True
 
 
-class Optional(Valid):
+class Optional(Engine, Valid):
     """The base of an engine whose package is an extra of this project: a value even where the package is missing.
 
-    `extra` installs it, and is the engine's name; `modules` are what it is imported by, `distributions` what they
-    belong to; `library`: a shared library of Linux that their wheel needs and has not, with the package of Debian that
-    has it; `apart`: what has to be installed besides, since pip can't in one go; `building`: about how long a model
-    takes to build [s], where that is no matter of milliseconds; `forces_by`: who works out what springs, dampers and
-    the like do. A package is imported when the first mechanism is built, because some take seconds.
+    The extra has the engine's name. `library`: a shared library of Linux that the wheel of `modules` needs and has not,
+    with the package of Debian that has it; `apart`: what has to be installed besides, since pip can't in one go.
     """
 
-    extra: ClassVar[str]
-    modules: ClassVar[tuple[str, ...]]
-    distributions: ClassVar[tuple[str, ...]]
     library: ClassVar[tuple[str, str] | None] = None
     apart: ClassVar[str] = ""
-    building: ClassVar[float] = 0.0
-    forces_by: ClassVar[Holder] = "engine"
-
-    @property
-    def name(self) -> str:
-        return self.extra
-
-    @property
-    def family(self) -> str:
-        return self.extra
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return self.distributions
 
     @property
     def missing(self) -> str:
@@ -79,29 +58,22 @@ class Optional(Valid):
                 return ""
             name, package = self.library
             return (
-                f"{self.extra} needs the shared library {name}, which is not on this system: apt-get install {package}"
+                f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
             )
         then = f", then {self.apart}" if self.apart else ""
-        return f"{self.extra} needs the package {absent[0]}: pip install -e '.[{self.extra}]'{then}"
+        return f"{self.name} needs the package {absent[0]}: pip install -e '.[{self.name}]'{then}"
 
     def require(self) -> None:
         """Raises Unsupported with the sentence where the package is missing."""
         if self.missing:
             raise Unsupported(self.missing)
 
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        """None, unless an engine says otherwise: nothing is declared that the judge could follow."""
-        return None
 
-
-def refuse_all_but(mechanism: Mechanism, engine: str, kinds: tuple[type, ...], why: Mapping[type, str]) -> None:
-    """Raises Unsupported for joints of other kinds; `why`: by kind, a clause that says what the engine lacks for it."""
+def refuse_lacking(mechanism: Mechanism, lacks: Mapping[type, str]) -> None:
+    """Raises Unsupported for a joint of these kinds; `lacks`: by kind, a clause that says what the engine has not."""
     for joint in mechanism.joints:
-        if not isinstance(joint, kinds):
-            kind = type(joint)
-            raise Unsupported(
-                f"joint {joint.name!r}: {why.get(kind, f'{engine} is given no {kind.__name__.lower()} here')}"
-            )
+        if type(joint) in lacks:
+            raise Unsupported(f"joint {joint.name!r}: {lacks[type(joint)]}")
 
 
 @contextmanager
@@ -137,6 +109,24 @@ class Recorded:
     warnings: tuple[str, ...] = ()
 
 
+def reactions(
+    mechanism: Mechanism,
+    pose: Array,
+    twist: Array,
+    acceleration: Array,
+    inertias: Array,
+    gravity: Array | tuple[float, float],
+) -> Array:
+    """Reactions from accelerations at samples, with the engine's own masses and gravity; NaN where these are none."""
+    out = np.full((len(pose), mechanism.row_count), np.nan)
+    # Squares of the numbers must be finite as well, or the factorisation raises instead of giving NaN.
+    sane = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
+    if mechanism.row_count and np.any(sane):
+        with np.errstate(all="ignore"):
+            out[sane] = mechanism.reaction(pose[sane], acceleration[sane], inertias, np.array(gravity), twist[sane])
+    return out
+
+
 def tree_states(tree: Tree, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
     """Poses, twists and accelerations of bodies, of tree coordinates (times, coordinates) that may be NaN."""
     with np.errstate(all="ignore"):
@@ -165,21 +155,19 @@ def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
     return out
 
 
-class SingleRun:
+class SingleRun(OneShot):
     """A model, ready to be stepped once; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
         """`record(samples, every)` steps the model, with steps of dt [s]."""
-        self._mechanism, self._dt, self._record, self._over = mechanism, dt, record, False
+        self._mechanism, self._dt, self._record = mechanism, dt, record
         self.size = size
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         found = self._record(samples, every)
         pose, twist = found.pose.copy(), found.twist.copy()
         # Single precision rounds the start, which is the mechanism's and not the engine's.

@@ -9,16 +9,17 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import Literal
+from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines.contract import Unsupported
+from engines.remembered import by_identity
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
-from reference.plane import components, rotated
+from reference.plane import components
 
 Array = NDArray[np.float64]
 
@@ -127,42 +128,78 @@ class Tree:
 
     def motion(self, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, bodies, 3) of tree motions (times, coordinates) [m, rad, s]."""
-        start, times = self.mechanism.pose, len(position)
-        bodies = len(self.mechanism.bodies)
-        pose, twist, change = (np.zeros((times, bodies + 1, 3)) for _ in range(3))  # the ground stands last and rests
-        turned = np.zeros((times, bodies + 1))
+        pose, twist, change = np.empty((3, len(position), len(self.mechanism.bodies), 3))
+        states = self._states(position.T, velocity.T, acceleration.T, np.cos, np.sin)
+        for body, state in enumerate(states):
+            for part, begin in ((pose, 0), (twist, 3), (change, 6)):
+                part[:, body, 0], part[:, body, 1], part[:, body, 2] = state[begin : begin + 3]
+        pose[..., 2] += self.mechanism.pose[:, 2]
+        return pose, twist, change
+
+    def instant(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Poses and twists (bodies, 3) at tree coordinates and rates (coordinates,): `motion` of one time.
+
+        In plain floats, which for one time are ten times as fast as arrays. NaN where one of these is not finite.
+        """
+        if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
+            pose, twist = np.full((2, len(self.mechanism.bodies), 3), math.nan)
+            return pose, twist
+        rest = [0.0] * self.coordinates
+        states = np.array(self._states(position.tolist(), velocity.tolist(), rest, math.cos, math.sin))
+        pose, twist = states[:, :3], states[:, 3:6]
+        pose[:, 2] += self.mechanism.pose[:, 2]
+        return pose, twist
+
+    def _states(self, way: Any, rate: Any, gain: Any, cos: Any, sin: Any) -> list[tuple[Any, ...]]:
+        """By body x, y and by how much it has turned, the rates of these, and the rates of those.
+
+        `way`, `rate`, `gain`: by tree coordinate a float, or an array of times, with the functions that take such.
+        Bodies turn by the angle's change, not by the angle: at t = 0 the pose is then the start, to rounding.
+        """
+        start = self.mechanism.pose.tolist()
+        ground = (0.0,) * 9
+        states = [ground] * len(start)
         for link in self.links:
-            body, base, last = link.body, bodies if link.parent is None else link.parent, link.rotation
-            for angles, motion in ((turned, position), (twist[..., 2], velocity), (change[..., 2], acceleration)):
-                angles[:, body] = angles[:, base] + (0.0 if last is None else motion[:, last])
-            pose[:, body, 2] = start[body, 2] + turned[:, body]
+            column, last = link.column, link.column + link.slides
+            x, y, turned, vx, vy, spin, ax, ay, spun = ground if link.parent is None else states[link.parent]
+            own_turned, own_spin, own_spun = turned, spin, spun
+            if link.turns:
+                own_turned, own_spin, own_spun = turned + way[last], spin + rate[last], spun + gain[last]
             if link.kind == "free":
-                plane = slice(link.column, link.column + 2)
-                pose[:, body, :2] = start[body, :2] + position[:, plane]
-                twist[:, body, :2] = velocity[:, plane]
-                change[:, body, :2] = acceleration[:, plane]
-                continue
-            offsets = [(base, np.array(link.arm), 1.0), (body, np.array(link.anchor), -1.0)]
-            # The arms turn by the angle's change, not by the angle: at t = 0 the pose is then the start, to rounding.
-            pose[:, body, :2] = pose[:, base, :2]
-            twist[:, body, :2] = twist[:, base, :2]
-            change[:, body, :2] = change[:, base, :2]
-            if link.kind == "slot":
-                way, way_rate, way_gain = (
-                    values[:, link.column, None] for values in (position, velocity, acceleration)
-                )
-                rate = twist[:, base, 2, None]
-                along = rotated(turned[:, base], np.array(link.direction))
-                offsets[0] = (base, np.array(link.arm) + way * np.array(link.direction), 1.0)
-                twist[:, body, :2] += way_rate * along
-                change[:, body, :2] += way_gain * along + 2 * rate * way_rate * along[:, ::-1] * [-1.0, 1.0]
-            for which, offset, sign in offsets:
-                x, y = components(turned[:, which], offset[..., 0], offset[..., 1])
-                rate, gain = twist[:, which, 2], change[:, which, 2]
-                pose[:, body, :2] += sign * np.stack([x, y], axis=-1)
-                twist[:, body, :2] += sign * np.stack([-rate * y, rate * x], axis=-1)
-                change[:, body, :2] += sign * np.stack([-gain * y - rate**2 * x, gain * x - rate**2 * y], axis=-1)
-        return pose[:, :bodies], twist[:, :bodies], change[:, :bodies]
+                x, y = start[link.body][0] + way[column], start[link.body][1] + way[column + 1]
+                vx, vy, ax, ay = rate[column], rate[column + 1], gain[column], gain[column + 1]
+            else:
+                cosine, sine = cos(turned), sin(turned)
+                arm_x, arm_y = link.arm
+                if link.kind == "slot":
+                    along_x, along_y = link.direction
+                    arm_x, arm_y = arm_x + way[column] * along_x, arm_y + way[column] * along_y
+                    along_x, along_y = cosine * along_x - sine * along_y, sine * along_x + cosine * along_y
+                    vx, vy = vx + rate[column] * along_x, vy + rate[column] * along_y
+                    coriolis = 2 * spin * rate[column]
+                    ax = ax + gain[column] * along_x - coriolis * along_y
+                    ay = ay + gain[column] * along_y + coriolis * along_x
+                arm_x, arm_y = cosine * arm_x - sine * arm_y, sine * arm_x + cosine * arm_y
+                cosine, sine = cos(own_turned), sin(own_turned)
+                own_x, own_y = link.anchor
+                own_x, own_y = cosine * own_x - sine * own_y, sine * own_x + cosine * own_y
+                inward, own_inward = spin * spin, own_spin * own_spin
+                x, y = x + arm_x - own_x, y + arm_y - own_y
+                vx, vy = vx - spin * arm_y + own_spin * own_y, vy + spin * arm_x - own_spin * own_x
+                ax = ax - spun * arm_y - inward * arm_x + own_spun * own_y + own_inward * own_x
+                ay = ay + spun * arm_x - inward * arm_y - own_spun * own_x + own_inward * own_y
+            states[link.body] = (x, y, own_turned, vx, vy, own_spin, ax, ay, own_spun)
+        return states
+
+
+def pushes(tree: Tree, position: Array, velocity: Array) -> tuple[Array, Array]:
+    """Poses (bodies, 3) [m, m, rad], and what force elements do to bodies (bodies, 3) [N, N, N m].
+
+    For engines that have no springs, or springs of another law: as their users do, before every step. position,
+    velocity (coordinates,): tree coordinates [m, rad] and their rates. NaN where these are NaN or infinite.
+    """
+    pose, twist = tree.instant(position, velocity)
+    return pose, np.asarray(tree.mechanism.applied.on(pose, twist), dtype=np.float64)
 
 
 def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
@@ -172,25 +209,11 @@ def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
     where its slotted body comes first; welds are preferred, then pins. A drive of rate zero across it keeps the
     angle. The trees of the last mechanisms are kept: a report asks for one once a joint.
     """
-    return _tree_of(_Same(mechanism), hanging)
+    return _tree_of(mechanism, hanging)
 
 
-class _Same:
-    """A mechanism that equals itself alone: comparing all of its numbers would take as long as the tree."""
-
-    def __init__(self, mechanism: Mechanism) -> None:
-        self.mechanism = mechanism
-
-    def __hash__(self) -> int:
-        return id(self.mechanism)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.mechanism is self.mechanism
-
-
-@lru_cache(maxsize=8)
-def _tree_of(same: _Same, hanging: bool) -> Tree:
-    mechanism = same.mechanism
+@by_identity()
+def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
     loops = [joint for joint in mechanism.joints if isinstance(joint, Pin | Slot | Weld)]
     resting = [joint for joint in mechanism.joints if isinstance(joint, Drive) and joint.turning_rate == 0]
     usable: dict[str | None, list[Pin | Slot | Weld]] = {}

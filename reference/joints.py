@@ -1,4 +1,4 @@
-"""The joints that join two bodies, or a body and the ground: their gap, and their velocity rows J v = rate.
+"""Rigid bodies, and the joints that join two of them, or one and the ground: gap, and velocity rows J v = rate.
 
 A closed vocabulary: engines `match` on it, and a joint enters only when a scene needs it and `engines.lagrange` runs
 it. A joint has `name`; `first` and `second`, names of bodies or None for the ground; `size` rows with `labels`;
@@ -8,25 +8,99 @@ whose columns are the first body's x, y, angle and then the second's. Rows are a
 passes through them. The reaction of a row acts along it on the second body, and against it on the first.
 `mechanism.Mechanism` stacks joints of one kind: numeric fields then carry the joints along their first axis. A kind
 with `stackable = False` is evaluated joint by joint.
+
+Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.distance import apart, point_rows
-from reference.links import Gear, Rod, Vector, Weld
+from reference.checks import Name, Positive, Valid
+from reference.kinds import Rule
 from reference.plane import from_body
 from reference.rolling.roll import Roll
-from reference.validation import Name, Valid
+
+Vector = tuple[float, float]
+Triple = tuple[float, float, float]
+Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]
+AnyArray = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Pin(Valid):
+class Body(Valid):
+    """A rigid body in the plane, described at its centre of mass.
+
+    mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
+    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a non-positive mass or inertia, or a number not finite.
+    """
+
+    name: Name
+    mass: Positive
+    inertia: Positive
+    pose: Triple
+    twist: Triple = (0.0, 0.0, 0.0)
+
+
+def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist: Any) -> tuple[Body, ...]:
+    """A body for each name, of masses and inertias (bodies,), at poses and twists (bodies, 3)."""
+    numbers = (np.asarray(each, dtype=float).tolist() for each in (masses, inertias, pose, twist))
+    return tuple(Body(name, m, i, tuple(p), tuple(v)) for name, m, i, p, v in zip(names, *numbers, strict=True))
+
+
+def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
+    """The vector (..., 2) [m] from the first point to the second."""
+    first_x, first_y = from_body(first[..., 2], first_point)
+    second_x, second_y = from_body(second[..., 2], second_point)
+    x = second[..., 0] + second_x - first[..., 0] - first_x
+    y = second[..., 1] + second_y - first[..., 1] - first_y
+    return np.stack([x, y], axis=-1)
+
+
+def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
+    """Its derivative (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
+    first_x, first_y = from_body(first[..., 2], first_point)
+    second_x, second_y = from_body(second[..., 2], second_point)
+    rows = np.zeros((*first_x.shape, 2, 6), dtype=np.result_type(first_x, second_x))
+    rows[..., 0, 0] = rows[..., 1, 1] = -1
+    rows[..., 0, 3] = rows[..., 1, 4] = 1
+    rows[..., 0, 2], rows[..., 0, 5] = first_y, -second_y
+    rows[..., 1, 2], rows[..., 1, 5] = -first_x, second_x
+    return rows
+
+
+def length_of(vector: AnyArray) -> AnyArray:
+    """The length (...) of a vector (..., 2); not its absolute value, so that it stays analytic."""
+    return np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2)
+
+
+def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> tuple[AnyArray, AnyArray]:
+    """The distance (...) [m] of the two points and its derivative (..., 6); NaN where they coincide."""
+    points = first_point, second_point
+    vector, rows = apart(first, second, *points), point_rows(first, second, *points)
+    length = length_of(vector)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        row = (vector[..., 0, None] * rows[..., 0, :] + vector[..., 1, None] * rows[..., 1, :]) / length[..., None]
+    return length, row
+
+
+class _AtRest(Valid):
+    """A joint that prescribes no motion: J v = 0."""
+
+    size: ClassVar[int]
+
+    @property
+    def rate(self) -> tuple[float, ...]:
+        return (0.0,) * self.size
+
+
+@dataclass(frozen=True)
+class Pin(_AtRest):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
     Points [m] are in the body's own frame, from its centre of mass; on the ground (None) they are world coordinates.
@@ -42,10 +116,6 @@ class Pin(Valid):
     second: Name | None
     first_point: Vector
     second_point: Vector
-
-    @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0, 0.0)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the two points, second minus first (..., 2) [m], for the bodies' poses (..., 3)."""
@@ -92,7 +162,7 @@ class Drive(Valid):
 
 
 @dataclass(frozen=True)
-class Slot(Valid):
+class Slot(_AtRest):
     """A straight slot in the first body, in which the point `second_point` of the second slides.
 
     The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
@@ -111,10 +181,6 @@ class Slot(Valid):
     first_point: Vector
     line_angle: float
     second_point: Vector
-
-    @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
@@ -141,7 +207,7 @@ class Slot(Valid):
 
 
 @dataclass(frozen=True)
-class Skate(Valid):
+class Skate(_AtRest):
     """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
 
     `second_point` [m] is where the blade touches, in the second body's own frame from its centre of mass, and `angle`
@@ -160,10 +226,6 @@ class Skate(Valid):
     second_point: Vector
     angle: float = 0.0
 
-    @property
-    def rate(self) -> tuple[float, ...]:
-        return (0.0,)
-
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
         """NaN (..., 1): no function of the pose is held (18.65)."""
         return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
@@ -181,6 +243,104 @@ class Skate(Valid):
         rows[..., 0, 3] = left_x
         rows[..., 0, 4] = left_y
         rows[..., 0, 5] = point_x * left_y - point_y * left_x
+        return rows
+
+
+@dataclass(frozen=True)
+class Rod(_AtRest):
+    """A massless rigid rod: the distance of a point of each body stays `length` [m].
+
+    `first_point` and `second_point` [m] are in the bodies' own frames, from the centre of mass; on the ground (None)
+    world coordinates. Row: how fast the distance grows [m/s]. Reaction: force on the second body along the direction
+    from the first point to the second [N], positive where the rod pushes.
+    """
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("along",)
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    first_point: Vector
+    second_point: Vector
+    length: Positive
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Distance of the two points minus the rod's length (..., 1) [m], for the bodies' poses (..., 3)."""
+        length, _ = distance(first, second, self.first_point, self.second_point)
+        return (length - np.asarray(self.length))[..., None]
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
+        return distance(first, second, self.first_point, self.second_point)[1][..., None, :]
+
+
+@dataclass(frozen=True)
+class Gear(_AtRest):
+    """A pair of gears on fixed axles, or a belt: second angle = `ratio` times first angle + `phase` [rad].
+
+    Angles are those of the poses, counted in the world and not wrapped; the ground's (None) is zero. A negative ratio
+    is of wheels that mesh from outside, a positive one of a belt or a ring. Row: omega of the second minus `ratio`
+    times omega of the first [rad/s]. Reaction: torque on the second body [N m]; on the first acts -ratio times as much,
+    so that the frame, which is not in the equations, takes the rest.
+    """
+
+    size: ClassVar[int] = 1
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("torque",)
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    ratio: Ratio
+    phase: float = 0.0
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Second angle minus what the gear prescribes (..., 1) [rad], for the bodies' poses (..., 3)."""
+        return (second[..., 2] - np.asarray(self.ratio) * first[..., 2] - np.asarray(self.phase))[..., None]
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity row (..., 1, 6)."""
+        rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
+        rows[..., 0, 2] = -np.asarray(self.ratio)
+        rows[..., 0, 5] = 1
+        return rows
+
+
+@dataclass(frozen=True)
+class Weld(_AtRest):
+    """Two bodies as one: a point of each coincide, and the second stands at `angle` [rad] to the first.
+
+    Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates. The angle
+    is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus that of the first, x
+    then y, and omega of the second minus omega of the first. Reaction: force [N] at the point, and torque [N m], on the
+    second body.
+    """
+
+    size: ClassVar[int] = 3
+    holonomic: ClassVar[bool] = True
+    labels: ClassVar[tuple[str, ...]] = ("x", "y", "torque")
+
+    name: Name
+    first: Name | None
+    second: Name | None
+    first_point: Vector
+    second_point: Vector
+    angle: float = 0.0
+
+    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+        """Distance of the points, second minus first, and what the angle is off (..., 3) [m, m, rad]."""
+        off = second[..., 2] - first[..., 2] - np.asarray(self.angle)
+        return np.concatenate([apart(first, second, self.first_point, self.second_point), off[..., None]], axis=-1)
+
+    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+        """Velocity rows (..., 3, 6): columns are the first body's x, y, angle and then the second's."""
+        points = point_rows(first, second, self.first_point, self.second_point)
+        rows = np.zeros((*points.shape[:-2], 3, 6), dtype=points.dtype)
+        rows[..., :2, :] = points
+        rows[..., 2, 2] = -1
+        rows[..., 2, 5] = 1
         return rows
 
 

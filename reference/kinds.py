@@ -2,7 +2,7 @@
 
 `float` is a finite number, `int` a whole one (a bool is neither), `ArrayLike` numbers in any shape, `NDArray` the same
 made an array of floats; Literal, tuple, unions and classes say what they mean; `Annotated` adds a Rule, or allows what
-is NOT_FINITE or COMPLEX; what is `Any` is not looked at. See `reference.validation`, where these are used.
+is NOT_FINITE or COMPLEX; what is `Any` is not looked at. See `reference.checks`, where these are used.
 """
 
 from __future__ import annotations

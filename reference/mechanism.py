@@ -14,19 +14,12 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.applied_forces import AppliedForces
-from reference.banded_reactions import MANY_ROWS, banded_reaction
-from reference.body import Body
-from reference.forces import ForceElement
-from reference.joint_rows import JointRows
-from reference.joints import Joint, Vector
-from reference.kept import kept
+from reference.checks import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, kept, require_room, validated
+from reference.forces import AppliedForces, ForceElement
+from reference.joints import Body, Joint, Vector
 from reference.kinds import Floats, of_shape
-from reference.memory import require_room
-from reference.row_system import rank, reactions
+from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
 from reference.scales import length_scale, time_scale
-from reference.start import refuse_a_bad_start
-from reference.validation import AnyComplexes, InvalidMechanism, Name, Numbers, Valid, validated
 
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
@@ -261,3 +254,63 @@ class Mechanism(Valid):
     def time_scale(self) -> float:
         """One radian of the fastest motion that the description promises [s]: see `scales.time_scale`."""
         return time_scale(self.length_scale, self.gravity, self.bodies, self.joints, self.forces)
+
+
+Array = NDArray[np.float64]
+# A start that misses a row by more than this fraction of the mechanism's own length or speed is refused: far above
+# rounding, far below a mistake.
+START_TOLERANCE = 1e-9
+ROUNDINGS = 64  # of a coordinate: what placing a body and its joints may take
+
+
+def refuse_a_bad_start(mechanism: Mechanism) -> None:
+    """Raise InvalidMechanism for a start that no engine could begin with, in a sentence that names the row or force."""
+    _refuse_open_joints(mechanism)
+    for element in mechanism.forces:
+        still = np.zeros(3)
+        first, second = (
+            still if name is None else mechanism.pose[mechanism.body_index(name)]
+            for name in (element.first, element.second)
+        )
+        if not np.isfinite(element.on(first, second, still, still)).all():
+            raise InvalidMechanism(
+                f"force {element.name!r}: at t = 0 its two points coincide, so it has no direction; move one of them"
+            )
+
+
+def _refuse_open_joints(mechanism: Mechanism) -> None:
+    if not mechanism.joints:
+        return
+    gap, slip = mechanism.gap(mechanism.pose, 0.0), mechanism.slip(mechanism.pose, mechanism.twist)
+    size = np.asarray(mechanism.length_scale)
+    sentence = open_joint(mechanism, gap, slip, mechanism.pose, mechanism.twist, size)
+    if sentence is not None:
+        raise InvalidMechanism(f"mechanism: {sentence}")
+
+
+def open_joint(
+    mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: Array, begin: int = 0
+) -> str | None:
+    """What is wrong with the start of one mechanism, or of the worst of many of its shape; None if nothing is.
+
+    gap, slip (..., rows); pose, twist (..., bodies, 3); size (...) [m], of many in one line; `begin`: the number of the
+    first of many.
+    """
+    place, turn = np.abs(pose[..., :2]).max(axis=(-2, -1)), np.abs(pose[..., 2]).max(axis=-1)
+    speed = np.abs(twist[..., :2]).max(axis=(-2, -1)) + size * np.abs(twist[..., 2]).max(axis=-1)
+    # Relative to the mechanism's own size and speed, and above the rounding of a place far from the origin.
+    far = ROUNDINGS * np.finfo(float).eps
+    for missed, (length, angle), (unit, angular), what in (
+        (gap, (START_TOLERANCE * size + far * place, START_TOLERANCE + far * turn), ("m", "rad"), "open by"),
+        (slip, (START_TOLERANCE * speed, START_TOLERANCE * speed / size), ("m/s", "rad/s"), "moving apart at"),
+    ):
+        value = np.nan_to_num(np.abs(missed))
+        allowed = np.where(mechanism.turning, angle[..., None], length[..., None])
+        worst = np.unravel_index(np.argmax(value - allowed), value.shape)
+        if value[worst] > allowed[worst]:
+            row, which = worst[-1], "".join(f" of mechanism {begin + number}" for number in worst[:-1])
+            return (
+                f"at t = 0 row {mechanism.row_names[row]!r}{which} is {what} {value[worst]:.3g} "
+                f"{angular if mechanism.turning[row] else unit}; the start must satisfy it to {allowed[worst]:.1g}"
+            )
+    return None

@@ -24,8 +24,7 @@ import engines
 import reference
 from engines import registry
 from engines.pymunk.contraction import Sweeping
-from reference.kinds import Floats, Rule
-from reference.validation import (
+from reference.checks import (
     AnyComplexes,
     Complexes,
     Count,
@@ -38,6 +37,7 @@ from reference.validation import (
     Signs,
     Times,
 )
+from reference.kinds import Floats, Rule
 from tests.mechanisms import four_bar
 from tests.samples import INSTANCES, RUN
 

@@ -5,19 +5,25 @@ This is what a mistake in an adapter comes to: its engine moves another mechanis
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from engines import Engine
-from engines.altered import Altered
-from reference.curves import Cam, Circle, Curve, Ellipse, Line, Placed, Ring
+from engines.box2d import Box2D
+from engines.mjx import Mjx
+from engines.mujoco import MuJoCo
+from engines.pymunk import Pymunk
 from reference.joints import Drive, Gear, Joint, Roll, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
+from reports.gate.change import Altered
 from reports.gate.judge import projected
 
 Array = NDArray[np.float64]
@@ -215,52 +221,95 @@ class Made:
         return self.mistake.made(mechanism, self.relative)
 
 
-@dataclass(frozen=True)
-class Off:
-    """The change by which one number of every part, of "bodies" or "forces", is off by a part of itself."""
+def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
+    """An engine with one mistake in every model that it builds, held to the promises of the right one."""
+    return Altered(engine, Made(mistake, relative))
 
-    parts: str
+
+# What the search has to find: a part of a number, or a sign.
+
+Change = Callable[[Mechanism], Mechanism]
+
+FORCES = ("spring", "torsion-spring", "damper", "torsion-damper", "force", "torque")
+FIELD = {"spring": "stiffness", "torsion-spring": "stiffness", "force": "second_point"}  # a force's is its lever arm
+FIELD |= {"damper": "damping", "torsion-damper": "damping", "torque": "torque"}
+# Of joints that hold velocities: a kind of Mistake, and its detail.
+WRONG = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "")}
+
+
+@dataclass(frozen=True)
+class Heavier:
+    """Every inertia off by a part."""
+
+    relative: float
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        return replace(mechanism, bodies=tuple(_larger(body, "inertia", self.relative) for body in mechanism.bodies))
+
+
+@dataclass(frozen=True)
+class Stronger:
+    """This number of every force element off by a part."""
+
     name: str
     relative: float
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
-        return replace(mechanism, **{self.parts: tuple(map(self._larger, getattr(mechanism, self.parts)))})
-
-    def _larger(self, part: Any) -> Any:
-        value, factor = getattr(part, self.name, None), 1 + self.relative
-        if value is None:
-            return part
-        return replace(part, **{self.name: _times(value, factor) if isinstance(value, tuple) else value * factor})
-
-
-# By kind of force element, the number that a planted fault changes: of a force it is its lever arm.
-FORCES = {"spring": "stiffness", "torsion-spring": "stiffness", "damper": "damping", "torsion-damper": "damping"}
-FORCES |= {"force": "second_point", "torque": "torque"}
-# Of joints that hold velocities: a kind of Mistake, and its detail. Of others it is the point on the second body.
-HOLDING = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "")}
+        return replace(mechanism, forces=tuple(_larger(force, self.name, self.relative) for force in mechanism.forces))
 
 
 @dataclass(frozen=True)
-class Planted:
-    """The change by a fault of the code for one kind of part: a number of every inertia or force element, one of the
-    last joint of this kind, or the sign of every gear's row."""
+class Moved:
+    """A number of the last joint of a kind off by a part: its point on the second body, unless WRONG says another."""
 
     kind: str
     relative: float
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
-        if self.kind == "inertia":
-            return Off("bodies", "inertia", self.relative)(mechanism)
-        if self.kind in FORCES:
-            return Off("forces", FORCES[self.kind], self.relative)(mechanism)
-        if self.kind == "gear":
-            turned = (replace(each, ratio=-each.ratio) if isinstance(each, Gear) else each for each in mechanism.joints)
-            return Misbuilt(mechanism.bodies, tuple(turned), mechanism.gravity, mechanism.forces, right=mechanism)
         own = [joint for joint in mechanism.joints if type(joint).__name__.lower() == self.kind]
-        what, detail = HOLDING.get(self.kind, ("point", "second_point x"))
+        what, detail = WRONG.get(self.kind, ("point", "second_point x"))
         return Mistake(what, own[-1].name, detail).made(mechanism, self.relative) if own else mechanism
 
 
-def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
-    """An engine with one mistake in every model that it builds, held to the promises of the right one."""
-    return Altered(engine, Made(mistake, relative))
+@dataclass(frozen=True)
+class Reversed:
+    """Gears turn the wrong way round: a sign of their row."""
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        joints = tuple(
+            replace(joint, ratio=-joint.ratio) if isinstance(joint, Gear) else joint for joint in mechanism.joints
+        )
+        return Misbuilt(mechanism.bodies, joints, mechanism.gravity, mechanism.forces, right=mechanism)
+
+
+def _larger(part: Any, name: str, relative: float) -> Any:
+    if not hasattr(part, name):
+        return part
+    value = getattr(part, name)
+    return replace(part, **{name: tuple((1 + relative) * v for v in value) if isinstance(value, tuple) else
+                            (1 + relative) * value})  # fmt: skip
+
+
+def planted(kind: str, relative: float) -> Change:
+    """The fault of a kind of joint, of a force element, or of all inertias."""
+    if kind == "inertia":
+        return Heavier(relative)
+    if kind == "gear":
+        return Reversed()
+    return Stronger(FIELD[kind], relative) if kind in FORCES else Moved(kind, relative)
+
+
+def plant(monkeypatch: pytest.MonkeyPatch, change: Change) -> None:
+    """Have the engines whose laws of an instant are asked build their models from changed mechanisms."""
+    for engine, name in ((MuJoCo, "model"), (Mjx, "model"), (Pymunk, "swept_model"), (Box2D, "build")):
+        monkeypatch.setattr(engine, name, _planted(getattr(engine, name), change))
+
+
+def _planted(right: Callable[..., Any], change: Change) -> Callable[..., Any]:
+    def wrong(self: Any, mechanism: Mechanism, *given: Any, **named: Any) -> Any:
+        made = right(self, change(mechanism), *given, **named)
+        if isinstance(self, MuJoCo):  # what is read out belongs to the mechanism that was asked for
+            return replace(made, mechanism=mechanism)
+        return (replace(made[0], mechanism=mechanism), made[1]) if isinstance(self, Mjx) else made
+
+    return wrong

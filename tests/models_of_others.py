@@ -24,7 +24,7 @@ import pymunk
 
 from engines import Unsupported
 from engines.mujoco.reading import READER
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.check.judging import refuse_disagreement
 from reports.pages.your_model.page import TABLE
 

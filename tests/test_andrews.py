@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
-from reference.andrews import Andrews, Dyad, Moving
+from reference.checks import InvalidMechanism
+from reference.scenes.andrews import Andrews, Dyad, Moving
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 SCENE = Andrews()
 # The test set's coordinates are beta, Theta, gamma, Phi, delta, Omega, epsilon: angles of one body against another.
@@ -51,7 +51,7 @@ def test_it_ends_as_the_test_set_does():
 
 
 def test_its_first_accelerations_are_those_of_the_test_set():
-    _, _, acceleration = SCENE._placement(np.zeros(1))
+    _, _, acceleration = SCENE.placement(np.zeros(1))
     np.testing.assert_allclose(test_set_coordinates(acceleration[0, :, 2]), ACCELERATIONS, rtol=1e-14, atol=1e-11)
     mechanism = SCENE.mechanism()
     state = mechanism.pose, mechanism.twist

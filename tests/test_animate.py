@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from engines import mujoco, pymunk
-from reference.four_bar import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.commands import invoke
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered

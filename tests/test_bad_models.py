@@ -11,7 +11,7 @@ import pytest
 from pymunk import Space
 
 from engines import Unsupported
-from engines.mujoco.reading.other_settings import switch_off as of_mujoco
+from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reference.banded_reactions import banded_reaction
 from reference.joints import Pin
 from reference.mechanism import Mechanism
-from reference.n_four_bar import TenFourBars
-from reference.pendulum.scenes import HundredLinks, TenLinks
+from reference.rows import banded_reaction
+from reference.scenes.n_four_bar import TenFourBars
+from reference.scenes.pendulum.scenes import HundredLinks, TenLinks
 
 
 def displaced(mechanism: Mechanism) -> tuple[Any, Any]:

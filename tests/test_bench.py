@@ -7,9 +7,9 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange, loading
-from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import LinkPendulum
-from reference.rolling.singular_cases import SquareOnCatenaries
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.rolling.scenes import SquareOnCatenaries
 from reports.bench import judge
 from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, loop_costs, timings_alike
 from reports.cli.bench import bench
@@ -97,13 +97,6 @@ def test_the_judges_figures_are_of_runs_that_are_right(monkeypatch):
     assert chain.asked == 3e-3
 
 
-@pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
-def test_the_batch_that_is_timed_holds_the_error_that_is_asked_for():
-    *parts, error = judge.batch_figures(3)
-    assert error.measured < error.asked == 1e-6
-    assert all(part.measured >= 0 for part in parts)
-
-
 def test_the_judges_figures_say_that_they_need_numba(monkeypatch):
     monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
     with pytest.raises(RuntimeError, match="the extra 'fast'"):
@@ -130,12 +123,10 @@ def test_crosscheck_bench_judge_prints_what_was_measured_beside_what_is_asked_fo
     monkeypatch.setattr("reports.cli.selection.choose_cells", lambda *_: [Cell(Disc(), Toy(), 1)])
     monkeypatch.setattr(judge, "truth_costs", lambda scenes: [(scene, 0.25) for scene in scenes])
     monkeypatch.setattr(judge, "figures", lambda: [judge.Figure("one evaluation", 3e-6, "s", 5e-6)])
-    monkeypatch.setattr(judge, "batch_figures", lambda count: [judge.Figure(f"{count} four-bars", 7.0, "s")])
     monkeypatch.setattr(judge, "beside_others", lambda *_: [judge.Beside(1e-6, 2e-3, 9e-3, "pymunk extended")])
     bench(["judge"])
     told = [re.split(r" *│ *| {2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
     assert ["the dearest truths, of 0.25 s for the 1 of the full grid"] in told
     assert [repr(Disc()), "0.25"] in told
     assert ["one evaluation", "3.0e-6", "5.0e-6", "s"] in told
-    assert ["2000 four-bars", "7", "", "s"] in told
     assert ["1.0e-6", "2", "9", "pymunk extended", "4.5"] in told  # milliseconds

@@ -11,14 +11,22 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from reference.centrodes import Centrodes, _assembled, _halved, centrode_error, centrodes, from_poses, instant_centre
-from reference.curves.ellipse import Ellipse
-from reference.four_bar.linkage import FourBar
+from reference.chapter.centrodes import (
+    Centrodes,
+    _assembled,
+    _halved,
+    centrode_error,
+    centrodes,
+    from_poses,
+    instant_centre,
+)
+from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of
+from reference.checks import InvalidMechanism
+from reference.rolling.closed_curves import Ellipse
 from reference.rolling.kinematics import Rolling
-from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
-from reference.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of_motion
+from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse, RollingInRing
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
@@ -187,7 +195,7 @@ def test_an_engines_centrodes_are_wrong_by_its_velocity_error_over_its_rate():
 
 
 def test_shapes_are_equally_long_and_touch_where_they_say():
-    shapes = shapes_of_motion(*coupler(*ARCS["coupler forward"], 401)[:2], points=300)
+    shapes = shapes_of(from_poses(*coupler(*ARCS["coupler forward"], 401)[:2]), points=300)
     lengths = [np.linalg.norm(np.diff(points, axis=0), axis=-1) for points in (shapes.space, shapes.body)]
     # Chords of 3 mm are shorter than their arcs by the cube of that over the radius squared.
     np.testing.assert_allclose(lengths[0], lengths[1], atol=1e-6)
@@ -196,7 +204,7 @@ def test_shapes_are_equally_long_and_touch_where_they_say():
 
 
 def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
-    shapes = shapes_of_motion(*cardan(), points=60)
+    shapes = shapes_of(from_poses(*cardan()), points=60)
     rows = list(csv.DictReader(io.StringIO(as_csv(shapes))))
     np.testing.assert_array_equal([[float(r["body_x"]), float(r["body_y"])] for r in rows], shapes.body)
     np.testing.assert_array_equal([[float(r["x"]), float(r["y"]), float(r["angle"])] for r in rows], shapes.pose)
@@ -219,7 +227,7 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
 
 
 def test_what_is_higher_in_the_world_is_higher_in_the_drawing():
-    shapes = shapes_of_motion(*cardan(), points=60)
+    shapes = shapes_of(from_poses(*cardan()), points=60)
     root = ElementTree.fromstring(as_svg(shapes, width=150.0))
     text = next(present(path.get("d")) for path in root.iter() if path.get("id") == "space")
     drawn = np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
@@ -251,7 +259,7 @@ REFUSED = {
     "a missing column": (lambda: poses_from_csv("t,x,y\n1,2,3\n"), "no column 'angle'"),
     "a word in a number's place": (lambda: poses_from_csv("t,x,y,angle\n0,1,2,3\n1,2,3,left\n"), "line 3"),
     "an empty table": (lambda: poses_from_csv(""), "no column"),
-    "a curve of one point": (lambda: shapes_of_motion(*cardan(), points=1), "from 2 to"),
+    "a curve of one point": (lambda: shapes_of(from_poses(*cardan()), points=1), "from 2 to"),
 }
 
 

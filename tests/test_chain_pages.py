@@ -11,15 +11,14 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.n_four_bar import NFourBar
-from reference.pendulum.scenes import LinkPendulum
-from reference.person.two_feet import TwoFeet
-from reference.rolling.spinning_ring import SpinningRing
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
-from reference.slider_crank.slotted_lever import SlottedLever
+from reference.checks import InvalidMechanism
+from reference.scenes.many_links import SpinningRing
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.person import TwoFeet
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from reports.gate.prediction import all_tasks
 from reports.model.cells import Cell, sweep_cells
 from reports.model.measure import measure

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from engines.mujoco import TUNED
-from engines.mujoco.written_urdf import urdf
+from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
 from engines.reading import Give
-from reference.four_bar import FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check import rendering
 from reports.check.checked import best, cheapest, check, read
 from reports.check.facts import facts_of

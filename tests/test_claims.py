@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import pytest
 
-from engines import bullet, exudyn, mujoco, registry
+from engines import bullet, exudyn, mujoco, pymunk
 from tests.claims import as_text, judged, rows, table
 
 CLAIMING = pytest.mark.parametrize(
-    "engine", [mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED], ids=["mujoco", "exudyn", "bullet"]
+    "engine",
+    [pymunk.EXTENDED, mujoco.EXTENDED, exudyn.EXTENDED, bullet.EXTENDED],
+    ids=["pymunk", "mujoco", "exudyn", "bullet"],
 )
 
 
 @CLAIMING
 def test_twenty_mechanisms_are_right_or_told(engine):
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     cases, _ = judged(31, range(40, 60))
     found = table(rows(engine, cases))
     assert sum(line.silent for line in found) == 0, as_text(found)
@@ -24,8 +26,8 @@ def test_twenty_mechanisms_are_right_or_told(engine):
 @pytest.mark.slow
 @CLAIMING
 def test_a_thousand_mechanisms_are_right_or_told_and_at_most_two_in_a_hundred_are_told_for_nothing(engine):
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     cases, unknown = judged(601, range(1000))
     assert len(unknown) < 20
     found = table(rows(engine, cases))

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 from engines.registry import VARIANTS
-from reference.four_bar.scenes import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import Cell
 from reports.model.ending import REFUSED, BadInput
 from reports.model.measure import TIMINGS

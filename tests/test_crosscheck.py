@@ -10,7 +10,7 @@ import pytest
 
 from engines import Promise, registry
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 from reports.gate.change import Baseline, Old
 from reports.gate.grid_tests import (
     GRID,

@@ -10,14 +10,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.curves.cam import Cam
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Placed
-from reference.curves.ellipse import Ellipse
-from reference.curves.open import Catenary, LogSpiral, Parabola
-from reference.curves.traced import Traced
-from reference.numerics.monotone import solve_increasing
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.numerics.roots import solve_increasing
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
+from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
+from reference.rolling.traced import Traced
 
 COSINES, SINES = (0.05, 0.02, 0.01), (0.0, 0.03)
 

@@ -20,8 +20,8 @@ FIRST, SECOND = 0.1, 0.02  # rad: above and below these the two families are tol
 @cache
 def miss(cell: Cell) -> float:
     """The largest angle error [rad]; a skip that names the package where it is missing."""
-    if registry.missing(cell.engine):
-        pytest.skip(registry.missing(cell.engine))
+    if cell.engine.missing:
+        pytest.skip(cell.engine.missing)
     run = cell.engine.build(FREE.mechanism(), cell.step)(cell.sample_count, cell.every)
     return float(np.abs(run.pose - FREE.motion(run.t).pose)[..., 2].max())
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from reference.errata.catalogue import ERRATA, Erratum, derivative
+from reference.chapter.errata.catalogue import ERRATA, Erratum, derivative
 
 IDS = [str(erratum.number) for erratum in ERRATA]
 

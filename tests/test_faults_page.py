@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import registry, single_run
+from engines import single_run
 from reports.cli.selection import page_tasks
 from reports.gate.prediction import all_tasks
 from reports.model.page import Material
@@ -53,7 +53,7 @@ def material(started: dict[str, str]) -> Material:
 def not_here(name: str) -> str:
     """The sentence that names the extra which a script needs, if it is not installed."""
     engine = SCRIPTS[name].engine
-    return registry.missing(engine) if engine is not None else ""
+    return engine.missing if engine is not None else ""
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

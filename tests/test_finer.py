@@ -11,9 +11,9 @@ from engines import finer
 from engines.finer import Division, division, tells_itself
 from engines.pymunk import EXTENDED
 from engines.pymunk.methods import SETTLED
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.trajectory import Trajectory
 from tests.mechanisms import pendulum
 from tests.toys import Toy

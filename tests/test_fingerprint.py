@@ -17,7 +17,7 @@ import pytest
 from engines import lagrange, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from engines.registry import INSTALLED
-from reference.four_bar.scenes import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model import fingerprint as fingerprint_module
 from reports.model.cells import Cell
 from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_behind, modules_of, normalised, with_required
@@ -51,19 +51,22 @@ FILES = {
     "theirs/__init__.py": "",
     "theirs/plugin.py": """
 from dataclasses import dataclass, field
+from engines import Engine
 from importlib import import_module
 from . import near
 LATE = import_module(".late", __package__)
 FILES = ("table.csv", "grid.bin")
 
 @dataclass(frozen=True)
-class Plugin:
+class Plugin(Engine):
     variant: str = "default"
     name: str = "theirs"
     settings: dict = field(default_factory=dict, hash=False)
     packages = ()
-    family = "theirs"
-    build = order = step_cost = holder = softness = print
+    order = step_cost = holder = print
+
+    def build(self, mechanism, dt):
+        raise NotImplementedError
 
 def helper():
     if LATE: import theirs_below

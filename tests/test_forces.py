@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines import EXACT, Promise, Unsupported, registry
+from engines import EXACT, Promise, registry
 from engines.lagrange import TRUTH, Lagrange
-from engines.mujoco.methods import SKATES
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Pin, Skate
+from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy
-from reference.validation import InvalidMechanism
 from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS
 
 TINY = 1e-100  # a complex step: no difference is taken, so no digit is lost
@@ -216,12 +215,3 @@ def test_a_spring_without_rest_length_may_start_with_its_points_together():
     mechanism = one_body(Spring("s", None, "b", (0.0, 0.0), (0.0, 0.0), 8.0), twist=(1.0, 0.0, 0.0))
     motion = truth(mechanism, 0.1)
     np.testing.assert_allclose(motion.pose[:, 0, 0], np.sin(2.0 * motion.t) / 2, atol=1e-12)
-
-
-def test_a_method_that_knows_no_forces_says_so():
-    skate = Skate("k", None, "b", (0.2, 0.0))
-    sliding = replace(one_body(Torque("t", None, "b", 1.0)), joints=(skate,))
-    for engine in SKATES:
-        if engine.skates in ("passive", "leapfrog"):
-            with pytest.raises(Unsupported, match="force"):
-                engine.build(sliding, 1e-3)

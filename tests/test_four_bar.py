@@ -1,4 +1,4 @@
-"""The four-bar's closed form against the chapter's numbers, 50-digit arithmetic, identities, and wrong models."""
+"""The four-bar's formulas: the chapter's numbers, identities, wrong models, its forces, and its rates integrated."""
 
 import math
 from dataclasses import replace
@@ -7,8 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from reference.four_bar.linkage import FourBar
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.linkage import FourBar
 from tests.present import present
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
@@ -44,29 +44,6 @@ def precise(linkage, theta, branch):
     height = mpmath.sqrt(coupler**2 - foot**2)
     c = b + (d - b) / span * mpmath.mpc(foot, branch * height)
     return mpmath.arg(c - b), mpmath.arg(c - d)
-
-
-def precise_six(linkage, theta, theta_dot, theta_ddot, branch):
-    """All six by Taylor series at 50 digits: a small real step either side, on the angles alone."""
-    step = mpmath.mpf(10) ** -12
-    values = []
-    for sign in (-1, 0, 1):
-        shift = theta_dot * sign * step + theta_ddot * (sign * step) ** 2 / 2
-        crank, coupler, rocker = (mpmath.mpf(length) for length in linkage.lengths)
-        b = crank * mpmath.expj(mpmath.mpf(float(theta)) + shift)
-        d = mpmath.mpc(*linkage.ground)
-        span = abs(d - b)
-        foot = (coupler**2 - rocker**2 + span**2) / (2 * span)
-        c = b + (d - b) / span * mpmath.mpc(foot, branch * mpmath.sqrt(coupler**2 - foot**2))
-        values.append((c - b, c - d))
-    six = [[], [], []]
-    for member in (0, 1):
-        before, now, after = (pair[member] for pair in values)
-        back, forth = mpmath.arg(before / now), mpmath.arg(after / now)
-        six[0].append(float(mpmath.arg(now)))
-        six[1].append(float((forth - back) / (2 * step)))
-        six[2].append(float((forth + back) / step**2))
-    return [value for pair in six for value in pair]
 
 
 def wrapped(angle):
@@ -114,22 +91,6 @@ def test_the_rotation_rates_satisfy_the_velocity_equation_of_the_loop():
 
     assert np.max(residual(beta_dot)) < 1e-14  # (18.69), terms of order one
     assert np.max(residual(-beta_dot)) > 0.1
-
-
-@pytest.mark.parametrize("branch", [1, -1])
-@pytest.mark.parametrize("linkage", LINKAGES)
-def test_all_six_agree_with_fifty_digits(linkage, branch):
-    theta = reachable(linkage, 9)
-    rate, bend = -3.0, 7.0
-    ours = np.array(linkage.kinematics(theta, rate, bend, branch)).T
-    with mpmath.workdps(50):
-        truth = np.array([precise_six(linkage, angle, rate, bend, branch) for angle in theta])
-    difference = ours - truth
-    difference[:, :2] = wrapped(difference[:, :2])
-    # A fiftieth from an end rates are amplified some tens of times, accelerations by the cube of that.
-    scale = np.array([1, 1, 30, 30, 3000, 3000])
-    assert np.max(np.abs(difference) / scale) < 1e-12
-    assert np.max(np.abs(difference[:, :2])) < 1e-13
 
 
 @pytest.mark.parametrize("change", [{"coupler": 1e-3}, {"rocker": 1e-3}, {"crank": 1e-3}])
@@ -238,95 +199,97 @@ def test_near_a_crank_limit_the_angle_error_is_rounding_over_the_root_of_the_dis
     assert abs(wrapped(beta - other)) < 20 * math.sqrt(EPS)
 
 
-def test_transmission_angle_is_that_of_the_triangle_and_its_extremes_are_reached():
-    for linkage in (*LINKAGES, *random_linkages(50)):
-        theta = reachable(linkage, 400, inside=0.0)
-        angle = linkage.transmission_angle(theta)
-        span = np.abs(linkage.crank * np.exp(1j * theta) - complex(*linkage.ground))
-        sides = linkage.coupler**2 + linkage.rocker**2 - span**2
-        assert np.max(np.abs(np.cos(angle) - sides / (2 * linkage.coupler * linkage.rocker))) < 1e-13
-        low, high = linkage.transmission_extremes()
-        # At a limit the angle is only known to the square root of rounding.
-        assert low - 1e-6 <= np.min(angle)
-        assert np.max(angle) <= high + 1e-6
-        heading = np.arctan2(linkage.ground[1], linkage.ground[0])
-        if linkage.crank_limits() is None:
-            assert np.allclose(linkage.transmission_angle(heading + np.array([0, np.pi])), (low, high), atol=1e-12)
-        assert np.allclose(linkage.transmission_angle(theta, -1), angle, atol=1e-6)
+def test_the_drive_torque_is_the_rate_of_work_of_all_bars():
+    density, gravity, rate, step = (1.0, 2.5, 0.4), (1.5, -9.81), -3.0, 1e-3
 
+    def work(theta):  # kinetic plus potential energy
+        motion = TURNED.kinematics(theta, rate, 0.0, -1)
+        mass = np.array(density) * TURNED.lengths
+        b = TURNED.crank * np.exp(1j * theta)
+        arm, follower = TURNED.coupler / 2 * np.exp(1j * motion.beta), TURNED.rocker / 2 * np.exp(1j * motion.phi)
+        centres = (b / 2, b + arm, complex(*TURNED.ground) + follower)
+        speeds = (b / 2 * rate, b * rate + arm * motion.beta_dot, follower * motion.phi_dot)
+        turning = (rate, motion.beta_dot, motion.phi_dot)
+        total = 0
+        for m, length, c, v, w in zip(mass, TURNED.lengths, centres, speeds, turning, strict=True):
+            total += m * (np.abs(v) ** 2 + length**2 / 12 * w**2) / 2
+            total -= m * (gravity[0] * c.real + gravity[1] * c.imag)
+        return total
 
-def test_a_coupler_point_across_lies_to_the_left_of_the_coupler():
-    # At the start B = (0, 0.4) and C = (0.4, 0.8): along B -> C is up to the right, and left of that up to the left.
-    diagonal = math.sqrt(0.5)
-    np.testing.assert_allclose(
-        CHAPTER.coupler_point(math.pi / 2, 0.3, 0.1), [0.2 * diagonal, 0.4 + 0.4 * diagonal], atol=1e-15
-    )
-
-
-def test_coupler_point_velocity_and_acceleration_are_its_derivatives():
-    start, rate, bend, step = 0.7, -2.0, 3.0, 1e-3
-    times = step * np.arange(-4, 5)
-    theta = start + rate * times + bend * times**2 / 2
-    motion = TURNED.coupler_motion(theta, rate + bend * times, bend, 0.3, -0.2, -1)
-    assert np.array_equal(motion.position, TURNED.coupler_point(theta, 0.3, -0.2, -1))
-    # The 9-point derivative has an error of step^8 = 1e-24 times the ninth derivative, and rounding over step.
     weights = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840 / step
-    assert np.max(np.abs(weights @ motion.position - motion.velocity[4])) < 1e-11
-    assert np.max(np.abs(weights @ motion.velocity - motion.acceleration[4])) < 1e-11
-    assert np.max(np.abs(weights @ motion.velocity + motion.acceleration[4])) > 0.1
-    corner = TURNED.coupler_point(start, TURNED.coupler, 0.0)
-    assert abs(math.dist(corner, TURNED.ground) - TURNED.rocker) < 1e-15
+    for theta in (0.3, 2.0, 4.4):
+        power = weights @ work(theta + rate * step * np.arange(-4, 5))
+        torque = TURNED.forces(theta, rate, 0.0, -1, density, gravity).torque
+        assert abs(torque * rate - power) < 1e-10  # energies of 20 J, rounded, over the step
+        wrong = TURNED.forces(theta, rate, 0.0, -1, density, (gravity[0], -gravity[1])).torque
+        assert abs(wrong * rate - power) > 1e-2
 
 
-def closed_in_sixty_digits(lengths, ground, theta, branch):
-    """beta and phi by the triangle B C D, or None where it doesn't close."""
-    with mpmath.workdps(60):
-        crank, coupler, rocker = map(mpmath.mpf, lengths)
-        x, y = map(mpmath.mpf, ground)
-        there = x + 1j * y
-        b = crank * mpmath.expj(mpmath.mpf(theta))
-        across = there - b
-        cosine = (abs(across) ** 2 + coupler**2 - rocker**2) / (2 * abs(across) * coupler)
-        if abs(cosine) > 1:
-            return None
-        beta = mpmath.arg(across) + branch * mpmath.acos(cosine)
-        return beta, mpmath.arg(b + coupler * mpmath.expj(beta) - there)
+def test_a_linkage_at_rest_without_weight_needs_no_force():
+    forces = CHAPTER.forces(np.linspace(0, 6, 20), 0.0, gravity=(0.0, 0.0))
+    assert max(np.max(np.abs(force)) for force in forces) == 0
 
 
-def missed(found, exact):
-    return abs(float((mpmath.mpf(float(found)) - exact + mpmath.pi) % (2 * mpmath.pi) - mpmath.pi))
+def test_the_ground_carries_the_weight_at_rest():
+    at_a, _, _, at_d = CHAPTER.forces(np.linspace(0, 6, 20), 0.0)[:4]
+    weight = 9.81 * sum(CHAPTER.lengths)
+    assert np.max(np.abs(at_a + at_d - (0.0, weight))) < 1e-13
 
 
-@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9])
-@pytest.mark.parametrize("branch", [1, -1])
-def test_angles_of_very_short_bars_far_from_the_pivot_keep_their_digits(short, branch):
-    lengths, ground, theta = (1.0, short, short), (1.0 + short / 2, 0.0), short / 2
-    found = FourBar(*lengths, ground).angles(theta, branch)
-    for angle, exact in zip(found, present(closed_in_sixty_digits(lengths, ground, theta, branch)), strict=True):
-        # The ground's own rounding, 1e-16 of a metre, turns bars of `short` metres by 1e-16 / short; no more than that.
-        assert missed(angle, exact) < 4e-16 * (1 + 1e-3 / short)
+def test_integrated_rates_at_the_common_tolerance_miss_by_two_hundredths_in_one_revolution():
+    times = np.linspace(0, np.pi / 5, 401)
+    run = CHAPTER.integrate_rates(times)  # RK45, rtol 1e-3, atol 1e-6
+    beta, _ = CHAPTER.angles(run.theta)
+    assert np.max(np.abs(run.beta - beta)) == pytest.approx(2.4e-2, rel=0.05)
+    assert run.stopped == ""
 
 
-def test_angles_of_random_four_bars_at_all_scales_are_those_of_sixty_digits():
-    generator = np.random.default_rng(5)
-    compared = 0
-    for _ in range(600):
-        lengths = (10 ** (generator.uniform(-1.5, 1.0, 3) + generator.uniform(-9, 9))).tolist()
-        heading = generator.uniform(-math.pi, math.pi)
-        size = max(lengths) * 10 ** generator.uniform(-1, 0.3)
-        ground = (size * math.cos(heading), size * math.sin(heading))
-        try:
-            crank, coupler, rocker = lengths
-            bar = FourBar(crank, coupler, rocker, ground)
-        except InvalidMechanism:
-            continue
-        low, high = (bar.crank_limits() or ((-3.0, 3.0),))[0]
-        theta = low + (high - low) * generator.uniform(0.02, 0.98)
-        for branch in (1, -1):
-            rates = bar.rates(theta, 1.0, branch)
-            exact = present(closed_in_sixty_digits(lengths, ground, theta, branch))
-            for angle, value, rate in zip(bar.angles(theta, branch), exact, rates, strict=True):
-                # What the roundings of the crank angle and of the ground's heading cause by themselves, times 60.
-                assert missed(angle, value) < 60 * 2.2e-16 * (1 + abs(rate) * (abs(theta) + abs(heading) + 1))
-                compared += 1
-    assert compared > 400
+def test_integrated_rates_drift_by_a_radian_in_a_hundred_revolutions():
+    times = np.linspace(0, 100 * np.pi / 5, 1001)
+    run = CHAPTER.integrate_rates(times)
+    beta, _ = CHAPTER.angles(math.pi / 2 + 10 * times)
+    error = np.abs(run.beta - beta)
+    assert np.nanmax(error) > 0.5
+    assert bool(run.stopped) == bool(np.any(np.isnan(run.beta)))
+    assert run.evaluations < 100_100
+
+
+# RK4's steps are longer: with Euler's its error is the rounding of thousands of steps.
+@pytest.mark.parametrize(("method", "order", "steps"), [("euler", 1, (200, 400)), ("rk4", 4, (8, 16))])
+def test_fixed_steps_have_their_order(method, order, steps):
+    times = np.linspace(0, np.pi / 5, 21)
+    beta, _ = CHAPTER.angles(math.pi / 2 + 10 * times)
+    coarse, fine = (
+        np.max(np.abs(CHAPTER.integrate_rates(times, method=method, every=every, limit=10**6).beta - beta))
+        for every in steps
+    )
+    assert math.log2(coarse / fine) == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("method", ["RK23", "DOP853", "Radau", "BDF", "LSODA"])
+def test_every_adaptive_method_reaches_a_tight_tolerance(method):
+    times = np.linspace(0, np.pi / 5, 11)
+    run = CHAPTER.integrate_rates(times, method=method, rtol=1e-7, atol=1e-9)
+    assert np.max(np.abs(run.beta - CHAPTER.angles(run.theta)[0])) < 1e-4  # global error, some 1000 steps of 1e-7
+
+
+def test_integration_stops_and_says_so():
+    times = np.linspace(0, 10, 11)
+    for method in ("euler", "rk4", "RK45"):
+        run = CHAPTER.integrate_rates(times, method=method, limit=15)
+        assert "stopped at" in run.stopped
+        assert np.isnan(run.beta[-1])
+    with pytest.raises(ValueError, match="method is 'ode45'"):
+        CHAPTER.integrate_rates(times, method="ode45")
+    with pytest.raises(ValueError, match="increasing"):
+        CHAPTER.integrate_rates([1.0, 0.0])
+
+
+@pytest.mark.parametrize(("method", "cost"), [("euler", 1), ("rk4", 4)])
+def test_a_limit_that_is_a_whole_number_of_steps_is_used_up(method, cost):
+    run = CHAPTER.integrate_rates([0.0, 0.01, 0.02], method=method, every=10, limit=20 * cost)
+    assert run.stopped == ""
+    assert run.evaluations == 20 * cost
+    short = CHAPTER.integrate_rates([0.0, 0.01, 0.02], method=method, every=10, limit=20 * cost - 1)
+    assert short.evaluations == 19 * cost
+    assert "stopped at" in short.stopped

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from engines import mujoco, pymunk
-from reference.four_bar import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reference.four_bar.linkage import FourBar, Unreachable
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
 from tests.present import present
 from tests.test_four_bar import CHAPTER, ROCKING, gap, random_linkages, wrapped
 
@@ -106,6 +106,6 @@ def test_bad_arguments_are_refused_in_a_sentence():
     with pytest.raises(ValueError, match="branch is 0"):
         CHAPTER.angles(0.0, 0)
     with pytest.raises(InvalidMechanism, match="density"):
-        CHAPTER.reactions(0.0, 1.0, density=(1.0, 2.0))  # pyright: ignore[reportArgumentType]
+        CHAPTER.forces(0.0, 1.0, density=(1.0, 2.0))  # pyright: ignore[reportArgumentType]
     with pytest.raises(InvalidMechanism, match=r"density is .*greater than zero"):
-        CHAPTER.drive_torque(0.0, 1.0, density=(1.0, 0.0, 1.0))
+        CHAPTER.forces(0.0, 1.0, density=(1.0, 0.0, 1.0))

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from engines import Promise
-from engines.altered import Altered
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar
 from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate.change import (
+    Altered,
     BadBaseline,
     Baseline,
     Nudge,

@@ -7,8 +7,8 @@ from typing import cast
 
 import pytest
 
-from engines import Engine, box2d, mujoco, pymunk, registry
-from reference.four_bar.scenes import DrivenFourBar
+from engines import Engine, box2d, mujoco, pymunk
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate.prediction import prediction
 from reports.gate.theory import Case, checks, kinds
 from reports.model.checks import Check
@@ -49,8 +49,8 @@ UNSEEN: dict[tuple[str, str], str] = {
 def found(name: str, mistake: str) -> tuple[Check, ...]:
     """The checks that an engine with this mistake fails."""
     engine = cast(Engine, Wrong(mistake, ENGINES[name]))
-    if registry.missing(ENGINES[name]):
-        pytest.skip(registry.missing(ENGINES[name]))
+    if ENGINES[name].missing:
+        pytest.skip(ENGINES[name].missing)
     case = Case(SCENE, engine, engine.order(SCENE.mechanism()))
     rows = [measure(cell, repeat=False) for cell in case.cells()]
     judge = prediction(SCENE, kinds(SCENE, [engine]))

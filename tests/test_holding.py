@@ -10,14 +10,14 @@ from engines import Holder, Unpromised, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Drive, Joint, Slot
 from reference.mechanism import Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.write.holders import held_by
 from tests.mechanisms import four_bar
 from tests.toys import Toy
@@ -48,21 +48,16 @@ def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, c
 
 def test_every_construction_of_a_skate_says_who_holds_it():
     ours = {"skate: centre's velocity zeroed", "skate: point's velocity zeroed", "skate: impulse at the blade"}
-    ours |= {"applied force", "passive force"}
-    engines = {"skate: friction", "friction blade", "thin wheel", "velocity servo"}
+    engines = {"friction blade"}
     for engine in (*pymunk_methods.SKATES, *mujoco_methods.SKATES):
         expected = "ours" if engine.variant in ours else "engine" if engine.variant in engines else SHARED
         assert held_by(engine, SKATE) == expected, engine.variant
 
 
 def test_every_construction_of_a_rolling_contact_says_who_holds_it():
-    assert {held_by(engine, ROLL) for engine in (pymunk_methods.ROLL_SHIPPED, *pymunk_methods.ROLL_FACETED)} == {
-        "engine"
-    }
-    for engine in (pymunk_methods.ROLL_STALE_PIVOT, pymunk_methods.ROLL_PIVOT, pymunk_methods.ROLL_PIVOT_EXTRAPOLATED):
-        assert held_by(engine, ROLL) == SHARED
-    stiff, equality, completed = mujoco_methods.ROLLS
-    assert [held_by(engine, ROLL) for engine in (stiff, equality, completed)] == ["engine", SHARED, SHARED]
+    assert {held_by(engine, ROLL) for engine in (pymunk.DEFAULT, *pymunk_methods.ROLL_FACETED)} == {"engine"}
+    assert {held_by(engine, ROLL) for engine in (pymunk.EXTENDED, pymunk_methods.ROLL_PIVOT)} == {SHARED}
+    assert [held_by(engine, ROLL) for engine in mujoco_methods.ROLLS] == ["engine"]
 
 
 def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
@@ -73,8 +68,9 @@ def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
     joints = tuple(moved if joint == slot else joint for joint in turning)
     mechanism = replace(SLIDER, joints=joints)
     assert held_by(pymunk.TUNED, mechanism) == f"engine; slot: {SHARED}"
-    assert held_by(pymunk_methods.SLOT_GROOVE, mechanism) == "engine"
-    assert isinstance(pymunk_methods.SLOT_GROOVE.order(mechanism), Unpromised)
+    naive = replace(pymunk.DEFAULT, slot="groove")
+    assert held_by(naive, mechanism) == "engine"
+    assert isinstance(naive.order(mechanism), Unpromised)
 
 
 def test_an_overwritten_crank_is_ours():

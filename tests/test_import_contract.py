@@ -47,9 +47,9 @@ def test_the_packages_keep_their_contracts(copy):
 @pytest.mark.parametrize(
     "line",
     [
-        "from reference.four_bar.linkage import FourBar",
-        "from reference.pendulum.link import Pendulum",
-        "from reference.scenes import SCENES",
+        "from reference.scenes.four_bar.linkage import FourBar",
+        "from reference.scenes.pendulum.link import Pendulum",
+        "from reference.scenes.catalogue import SCENES",
         "from engines.conformance.worlds import WORLDS",
     ],
 )
@@ -62,10 +62,10 @@ def test_a_closed_form_in_an_adapter_is_refused(copy, line):
 
 def test_a_closed_form_behind_another_module_is_refused(copy):
     roll = copy / "reference/rolling/roll.py"
-    roll.write_text(f"import reference.rolling.body\n{roll.read_text(encoding='utf-8')}", encoding="utf-8")
+    roll.write_text(f"import reference.scenes.rolling.body\n{roll.read_text(encoding='utf-8')}", encoding="utf-8")
     told = checked(copy)
     assert told.returncode == 1
-    assert "reference.rolling.body" in told.stdout
+    assert "reference.scenes.rolling.body" in told.stdout
 
 
 def test_a_report_in_the_reference_breaks_the_layers(copy):

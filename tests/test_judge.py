@@ -11,9 +11,9 @@ from engines import Softness
 from engines.lagrange.loading import installed
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.n_four_bar import NFourBar
-from reference.pendulum.link import PointPendulum
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.link import PointPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.gate import judge
 from reports.gate.judge import QUANTITY_NAMES, errors, errors_as_soft, in_numpy, integrate, refined
 from tests.toys import Disc

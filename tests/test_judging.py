@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from reference.pendulum.scenes import LinkPendulum
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.gate import walk
 from reports.gate.judge import _samples, integrate
 from reports.gate.prediction import prediction

@@ -9,8 +9,7 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from engines.lagrange import METHODS, TRUTH, Lagrange
-from engines.lagrange.dynamics import Dynamics, runge_kutta
-from engines.lagrange.tableaus import RK4
+from engines.lagrange.dynamics import RK4, Dynamics, runge_kutta
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy, joint_gap, slip
 from tests.mechanisms import four_bar, pendulum

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from engines.registry import ENGINES
-from reference.memory import LARGEST, require_room
-from reference.n_four_bar import NFourBar
-from reference.pendulum.chain import Chain
-from reference.pendulum.many_links import LongPendulum
-from reference.pendulum.scenes import LinkPendulum
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.validation import InvalidMechanism
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.checks import LARGEST, InvalidMechanism, require_room
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from tests.mechanisms import four_bar
 
 LINKS = 5_000

@@ -64,7 +64,7 @@ def test_it_holds_no_results_and_uses_what_everybody_may_use():
         "dataclasses",
         "numpy",
         "matplotlib.pyplot",
-        "reference.four_bar",
+        "reference.scenes.four_bar.scenes",
         "engines.lagrange",
         "engines",
     }

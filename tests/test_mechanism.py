@@ -11,12 +11,12 @@ from functools import cached_property
 import numpy as np
 import pytest
 
-from reference.curves.traced import Traced
+from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scenes import SCENES
+from reference.rolling.traced import Traced
+from reference.scenes.catalogue import SCENES
 from reference.trajectory import Trajectory, energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from tests.mechanisms import bar, four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)

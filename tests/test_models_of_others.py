@@ -10,7 +10,7 @@ import pytest
 
 from engines import Unsupported
 from engines.mujoco import read
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.check.judging import refuse_disagreement
 from reports.pages.your_model.page import rows
 from tests.models_of_others import models, spaces, unpacked

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from engines.mujoco import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, MuJoCo, Shipped, bare_loop
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin
 from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.trajectory import Trajectory, energy
 from tests.mechanisms import four_bar, pendulum
 

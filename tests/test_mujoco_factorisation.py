@@ -15,10 +15,10 @@ import pytest
 
 from engines import Unsupported
 from engines import mujoco as adapter
-from engines.mujoco import factorisation
-from engines.mujoco.factorisation import AGREEMENT, disagreement
 from engines.mujoco.methods import SKATES
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from tests import mujoco_factorisation as factorisation
+from tests.mujoco_factorisation import AGREEMENT, disagreement
 
 # Three links on the tip of the first, a fifth on one of them, two loops across: the smallest that 4.0.0 gets wrong.
 PARENTS = (-1, 0, 0, 0, 2)

@@ -15,9 +15,9 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened
 from engines.mujoco.solver_check import unsolved
-from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Drive, Joint, Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
 from tests.mechanisms import bar, four_bar
 
 FREE = FreeFourBar()

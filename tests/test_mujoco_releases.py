@@ -7,7 +7,7 @@ import pytest
 
 from engines.mujoco import DEFAULT
 from engines.mujoco.releases import MARK, known_wrong
-from reference.four_bar.scenes import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 
 
 @pytest.mark.parametrize(

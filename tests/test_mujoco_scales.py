@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from engines.mujoco import DEFAULT, METHODS, MuJoCo, Shipped
-from engines.mujoco.methods import SKATES
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scenes import scene
+from reference.scenes.catalogue import scene
 
 POINTS = ("first_point", "second_point")
 
@@ -66,21 +65,12 @@ SCALES = ((1e-3, 1.0), (1e3, 1.0), (1.0, 1e-6), (1.0, 1e6))
 SCENES = ("free_four_bar", "driven_slider_crank", "sleigh", "cart")
 # All that hold loops, slots, skates and drives by numbers of the mechanism's own.
 OWN = tuple(engine for engine in METHODS if not isinstance(engine.stiffness, Shipped))
-CONTACTS = ("friction blade", "thin wheel")  # whose contacts are as shipped, to a millimetre
 
 
 @pytest.mark.parametrize("engine", OWN, ids=lambda engine: engine.variant)
 @pytest.mark.parametrize("name", SCENES)
 def test_units_of_length_and_mass_change_no_method(name: str, engine: MuJoCo) -> None:
     mechanism = scene(name).mechanism()
-    own = numbers(engine, mechanism, 1.0, 1.0)
-    for length, mass in SCALES:
-        same(numbers(engine, mechanism, length, mass), own, mass)
-
-
-@pytest.mark.parametrize("engine", [engine for engine in SKATES if engine.variant not in CONTACTS])
-def test_units_of_length_and_mass_change_no_construction_of_a_skate(engine: MuJoCo) -> None:
-    mechanism = scene("sleigh").mechanism()
     own = numbers(engine, mechanism, 1.0, 1.0)
     for length, mass in SCALES:
         same(numbers(engine, mechanism, length, mass), own, mass)

@@ -14,13 +14,12 @@ from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.methods import SLOTS
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.pendulum.link import BarPendulum, PointPendulum
-from reference.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reference.person.one_foot import OneFoot
-from reference.person.two_feet import TwoFeet
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.slider_crank.slotted_lever import SlottedLever
+from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes.pendulum.link import BarPendulum, PointPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reference.scenes.person import OneFoot, TwoFeet
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy
 
 FREE_COORDINATES = replace(EXTENDED, coordinates="free")

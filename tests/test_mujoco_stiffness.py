@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engines.mujoco import Hardened, MuJoCo, Shipped, TiedToStep
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from tests.mechanisms import four_bar
 
 FREE = FreeFourBar()

@@ -1,7 +1,10 @@
-"""The kept mistakes: each is in step with the code, and a mistake's fate is told as it is."""
+"""The deliberate mistakes: each can be made in the code as it is, and what the tests say to it is told as it is."""
 
 from __future__ import annotations
 
+import ast
+import json
+import struct
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -9,169 +12,184 @@ from pathlib import Path
 import pytest
 
 from tests.mutants import __main__ as command
-from tests.mutants.__main__ import ALLOWED, chosen, table
-from tests.mutants.catalogue import BadList, Mutant, faults, read, wider_tests
-from tests.mutants.trial import Fate, Verdict, ask, copy_tree, trial
+from tests.mutants import by_hand, matrix, tracing
+from tests.mutants.generated import drawn, generated
+from tests.mutants.sources import ROOT, SOURCES, Mistake, Source
+from tests.mutants.tracing import Traced
+from tests.mutants.trial import Question, asked
 
-MUTANTS = read()
-
-# A package of one function, with tests that see its sign, its factor, and not its name.
+HAND = by_hand.read()
 AREA = '''"""Areas."""
 
 
 def area(width: float, height: float) -> float:
-    label = "area"
-    return width * height
+    if width < 0:
+        return 0.0
+    return 2 * abs(width) * height
 '''
-TESTS = """from shapes.area import area
+TESTS = """import time
+from area import area
 
 
-def test_an_area_is_positive():
+def test_positive():
     assert area(2.0, 3.0) > 0
 
 
-def test_an_area_is_the_product():
-    assert area(2.0, 3.0) == 6.0
+def test_product():
+    assert area(2.0, 3.0) == 12.0
 """
-POSITIVE = "tests/test_area.py::test_an_area_is_positive"
-SOUND = Mutant("sign", "shapes/area.py", "the sign is wrong", "return width", "return -width", (POSITIVE,))
+
+
+def wrong(old: str, new: str) -> Mistake:
+    start = AREA.index(old)
+    return Mistake(f"{old} is {new}", "area.py", "area", 5, start, start + len(old), new)
 
 
 @pytest.fixture
 def tree(tmp_path) -> Path:
-    """A copy of a small tree, as mistakes are made in."""
-    root = tmp_path / "root"
-    for name, text in (("shapes/__init__.py", ""), ("shapes/area.py", AREA), ("tests/test_area.py", TESTS)):
-        (root / name).parent.mkdir(parents=True, exist_ok=True)
-        (root / name).write_text(text)
-    (root / "pyproject.toml").write_text("[tool.pytest.ini_options]\npythonpath = ['.']\n")
-    return copy_tree(root, tmp_path / "copy")
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "area.py").write_text(AREA)
+    (tmp_path / "tests" / "test_area.py").write_text(TESTS)
+    (tmp_path / "pyproject.toml").write_text("[tool.pytest.ini_options]\nmarkers = ['slow', 'crosscheck']\n")
+    return tmp_path
 
 
-@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
-def test_every_mistake_is_in_step_with_the_code_and_names_tests_that_exist(mutant):
-    assert faults(mutant) == []
+@pytest.mark.parametrize("entry", HAND, ids=lambda entry: entry.mistake.replace(" ", "-"))
+def test_every_mistake_by_hand_is_in_step_with_the_code(entry):
+    found = by_hand.found(entry)
+    assert ast.dump(ast.parse(found.text(ROOT))) != ast.dump(ast.parse((ROOT / found.file).read_bytes()))
 
 
-def test_at_least_two_hundred_mistakes_are_kept_in_all_three_packages():
-    counts = Counter(mutant.file.split("/")[0] for mutant in MUTANTS)
-    assert counts.total() >= 200
-    assert min(counts[name] for name in ("reference", "engines", "reports")) >= 60
-
-
-def test_no_more_than_a_twentieth_may_survive_and_each_says_why():
-    reasons = [mutant.survives for mutant in MUTANTS if mutant.survives]
-    assert len(reasons) <= ALLOWED * len(MUTANTS)
+def test_at_least_a_hundred_mistakes_are_kept_by_hand_and_hardly_any_survives():
+    counts = Counter(by_hand.found(entry).file.split("/")[0] for entry in HAND)
+    assert counts.total() >= 100
+    assert min(counts[layer] for layer in matrix.LAYERS) >= 10
+    reasons = [entry.survives for entry in HAND if entry.survives]
+    assert len(reasons) <= command.ALLOWED * len(HAND)
     assert all(len(reason.split()) > 5 for reason in reasons)
 
 
-def test_a_mistake_is_caught_by_the_test_named_beside_it_and_taken_back(tree):
-    verdict = trial(SOUND, tree)
-    assert (verdict.fate, verdict.by) == (Fate.CAUGHT, POSITIVE)
-    assert (tree / "shapes/area.py").read_text() == AREA
-    assert ask(tree, SOUND.tests, 60).passed
-
-
-def test_what_the_named_test_lets_through_is_looked_for_by_the_others_of_the_package(tree):
-    double = replace(SOUND, name="factor", new="return 2 * width")
-    (tree / "tests" / "test_volume.py").write_text("def test_nothing():\n    assert True\n")
-    assert wider_tests(double, tree) == ("tests/test_area.py",)
-    verdict = trial(double, tree)
-    assert (verdict.fate, verdict.by) == (Fate.ELSEWHERE, "tests/test_area.py::test_an_area_is_the_product")
-
-
-def test_a_survivor_is_good_with_a_reason_only_and_a_reason_that_is_not_needed_is_told(tree):
-    unseen = replace(SOUND, name="label", old='"area"', new='"volume"', tests=("tests/test_area.py",))
-    assert trial(unseen, tree).fate is Fate.SURVIVED
-    assert trial(replace(unseen, survives="nobody reads the label"), tree).fate is Fate.KNOWN
-    assert trial(replace(SOUND, survives="signs are a matter of taste"), tree).fate is Fate.NEEDLESS
-
-
-def test_a_mistake_that_can_not_be_imported_or_never_ends_is_caught(tree, monkeypatch):
-    assert trial(replace(SOUND, old="def area", new="import nowhere\n\n\ndef area"), tree).fate is Fate.CAUGHT
-    monkeypatch.setattr("tests.mutants.trial.LIMIT", 1.0)
-    endless = trial(replace(SOUND, old='    label = "area"', new="    while True:\n        pass"), tree)
-    assert (endless.fate, endless.by) == (Fate.CAUGHT, "no end within 1 s")
-
-
 @pytest.mark.parametrize(
-    ("change", "telling"),
+    ("function", "old", "new", "telling"),
     [
-        ({"old": "return depth"}, "stands 0 times"),
-        ({"old": "width"}, "stands 2 times"),
-        ({"file": "shapes/volume.py"}, "stands 0 times in shapes/volume.py"),
-        ({"new": "return ("}, "no Python"),
-        ({"new": "return width"}, "equal"),
-        ({"tests": ("tests/test_area.py::test_an_area_is_blue",)}, "there is no test"),
-        ({"tests": ("tests/test_volume.py",)}, "there is no test"),
+        ("perpendicular", "return depth", "", "stands 0 times"),
+        ("perpendicular", "vector", "0", "stands 2 times"),
+        ("Pin.no_such_function", "vector", "0", "stands 0 times"),
+        ("perpendicular", "vector[..., 0]", "(", "no Python"),
     ],
 )
-def test_a_mistake_that_can_not_be_made_is_not_applicable_and_says_why(tree, change, telling):
-    verdict = trial(replace(SOUND, **change), tree)
-    assert verdict.fate is Fate.STALE
-    assert telling in verdict.by
+def test_a_mistake_by_hand_that_can_not_be_made_says_why(function, old, new, telling):
+    with pytest.raises(by_hand.BadList, match=telling):
+        by_hand.found(by_hand.Written(function, "some mistake", old, new))
 
 
-@pytest.mark.parametrize(
-    ("text", "telling"),
-    [
-        ('[a]\nfile = "x"\nmistake = "y"\nold = "1"\nnew = "2"\n', "a: it has no tests"),
-        ('[a]\nfile = "x"\nmistake = "y"\nold = "1"\nnew = "2"\ntests = []\n', "a: it names no test"),
-        ('[a]\nfile = "x"\nmistake = "y"\nold = "1"\nnew = "2"\ntests = ["t"]\nodd = 1\n', "a: odd is no field"),
-    ],
-)
-def test_a_list_that_lacks_something_is_refused_with_the_name_of_the_mistake(tmp_path, text, telling):
-    (tmp_path / "list.toml").write_text(text)
-    with pytest.raises(BadList, match=telling):
-        read([tmp_path / "list.toml"])
+@pytest.mark.parametrize("fields", ["mistake = 'a'\nold = '1'", "mistake = 'a'\nold = '1'\nnew = '2'\nodd = 1"])
+def test_a_list_with_other_fields_is_refused(tmp_path, fields):
+    (tmp_path / "list.toml").write_text(f"[[area]]\n{fields}\n")
+    with pytest.raises(by_hand.BadList, match="area"):
+        by_hand.read(tmp_path / "list.toml")
 
 
-def test_mistakes_are_chosen_by_name_or_by_the_beginning_of_their_file():
-    other = replace(SOUND, name="other", file="engines/lagrange/engine.py")
-    assert chosen((SOUND, other), []) == (SOUND, other)
-    assert chosen((SOUND, other), ["engines/"]) == (other,)
-    assert chosen((SOUND, other), ["sign"]) == (SOUND,)
-    assert chosen((SOUND, other), ["volume"]) == ()
+def test_generated_mistakes_are_named_by_place_and_operator_and_not_by_line():
+    def made(text: str) -> dict[str, str]:
+        source = Source("area.py", text.encode(), ast.parse(text))
+        return {m.name: text[: m.start] + m.new + text[m.end :] for m in generated(source)}
 
-
-def test_the_status_tells_whether_all_is_as_it_should_be(tree, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(command, "ROOT", tree)
-    told = {}
-    for name, mutants in (
-        ("caught", (SOUND,)),
-        ("stale", (SOUND, replace(SOUND, name="moved", old="return depth"))),
-        ("survived", (replace(SOUND, old='"area"', new='"volume"'),)),
-        ("too many", (SOUND, replace(SOUND, name="label", old='"area"', new='"volume"', survives="nobody reads it"))),
-    ):
-        monkeypatch.setattr(command, "read", lambda mutants=mutants: mutants)
-        told[name] = (command.main([]), capsys.readouterr())
-    assert {name: status for name, (status, _) in told.items()} == {
-        "caught": 0,
-        "stale": 1,
-        "survived": 1,
-        "too many": 1,
+    found = made(AREA)
+    assert {name.removeprefix("area:area:") for name in found} == {
+        *("never:1", "turned:1", "factor:1", "abs:1", "constant:1"),
     }
-    assert "moved: its text stands 0 times in shapes/area.py" in told["stale"][1].out
-    assert "| label |" in (tmp_path / "crosscheck-results" / "mutants.md").read_text()
-    assert command.main(["nowhere/"]) == 2
+    assert "return (abs(width)) * height" in found["area:area:factor:1"]
+    assert "return 2 * (width) * height" in found["area:area:abs:1"]
+    assert "if (width >= 0):" in found["area:area:turned:1"]
+    assert set(made(AREA.replace("2 * abs(width) * height", "(\n        2 * abs(width) * height\n    )"))) == set(found)
+
+
+def test_a_draw_takes_a_place_of_every_file_first_and_is_the_same_each_time():
+    files = SOURCES[::25]
+    found = list(drawn("1", files))
+    assert found == list(drawn("1", files))
+    having = {mistake.file for mistake in found}
+    assert [mistake.file for mistake in found[: len(having)]] != [
+        m.file for m in list(drawn("2", files))[: len(having)]
+    ]
+    assert {mistake.file for mistake in found[: len(having)]} == having
+    assert len({mistake.name for mistake in found}) == len(found)
+    for mistake in found[::20]:
+        assert ast.dump(ast.parse(mistake.text(ROOT))) != ast.dump(ast.parse((ROOT / mistake.file).read_bytes()))
+
+
+def test_a_mistake_is_noticed_by_the_tests_that_fail_and_taken_back(tree):
+    tests = ("tests/test_area.py",)
+    mistakes = [None, wrong("2 * ", "-2 * "), wrong("2 * ", "3 * "), wrong("width < 0", "width < -1")]
+    answers = asked([Question(tests, mistake, first=False) for mistake in mistakes], [tree])
+    positive, product = (f"tests/test_area.py::test_{name}" for name in ("positive", "product"))
+    assert [answer.noticed for answer in answers] == [(), (positive, product), (product,), ()]
+    assert (tree / "area.py").read_text() == AREA
+    [first] = asked([Question(tests, mistakes[1])], [tree])
+    assert first.noticed == (positive,)
+
+
+def test_a_mistake_that_can_not_be_imported_or_never_ends_is_noticed(tree):
+    endless, broken = wrong("if width < 0", "while True"), wrong("def area", "import nowhere\n\n\ndef area")
+    [answer] = asked([Question(("tests/test_area.py",), endless, limit=3.0)], [tree])
+    assert answer.end == "no end within 3 s" or answer.noticed
+    [answer] = asked([Question(("tests/test_area.py",), broken)], [tree])
+    assert answer.noticed == ("tests/test_area.py",)
+
+
+def test_the_likely_tests_run_the_mistakes_own_block_and_the_most_particular_comes_first(tmp_path):
+    file = "reference/plane.py"
+    mistake = next(mistake for mistake in drawn("1", [file]) if mistake.function == "rotated")
+    [body, *_] = (node.body for name, node in by_hand.named((file,))["rotated"] for node in [node])  # type: ignore[attr-defined]
+    block = SOURCES.index(file) * tracing.MOST + tracing.named(body)
+    (tmp_path / "hits").mkdir()
+    (tmp_path / tracing.SEEN).write_text(json.dumps({each: tracing.digest(each) for each in SOURCES}))
+    ran = {"tests/test_a.py::wide": [block, 1, 2, 3], "tests/test_b.py::narrow": [block], "tests/test_c.py::other": [1]}
+    with (tmp_path / "results.jsonl").open("w") as results:
+        for number, (test, blocks) in enumerate({**ran, "tests/test_d.py::failing": [block]}.items()):
+            (tmp_path / "hits" / f"{number}.name").write_text(test)
+            (tmp_path / "hits" / f"{number}").write_bytes(struct.pack(f"{len(blocks)}i", *blocks))
+            print(json.dumps([test, "failed" if "failing" in test else "passed", 0.1]), file=results)
+    assert Traced(tmp_path).likely(mistake, 10.0) == ("tests/test_b.py::narrow", "tests/test_a.py::wide")
+
+
+def test_the_matrix_tells_who_alone_notices_something_and_goes_on_where_it_was(tmp_path, monkeypatch):
+    def row(name: str, *noticed: str) -> matrix.Row:
+        return matrix.Row(name, "reference/plane.py", 1, ("tests/a.py", "tests/b.py"), 4, noticed, 1.0, "")
+
+    rows = [row("1", "tests/a.py::x[1]", "tests/b.py::y"), row("2", "tests/a.py::x[1]", "tests/a.py::x[2]"), row("3")]
+    assert dict(matrix.alone(rows)) == {"tests/a.py::x": ["2"]}
+    assert matrix.cover(rows) == ["tests/a.py::x"]
+    text = matrix.reading(rows)
+    assert "| reference | 3 | 2 | 67% |" in text
+    assert "* 3 (reference/plane.py:1; 4 tests)" in text
+    assert "| tests/b.py | 3 | 1 | 0 |" in text
+    kept = tmp_path / "matrix.jsonl"
+    given = [wrong("2 * ", f"{factor} * ") for factor in (3, 4)]
+    monkeypatch.setattr(Traced, "likely", lambda *_: ())
+    matrix.filled(given, Traced(tmp_path), kept, [], 1.0, first=False)
+    assert [(each.mistake, each.caught) for each in matrix.read(kept)] == [(each.name, False) for each in given]
+
+
+@pytest.mark.parametrize(
+    ("name", "test", "reason", "status"),
+    [
+        ("by hand", "test_product", "", 0),
+        ("by hand", "test_positive", "", 1),
+        ("by hand", "test_positive", "nobody looks", 0),
+        ("area:area:factor:1", "test_product", "", 0),
+        ("area:area:factor:1", "test_positive", "", 1),
+    ],
+)
+def test_the_status_tells_whether_all_is_as_it_should_be(tree, monkeypatch, capsys, name, test, reason, status):
+    monkeypatch.chdir(tree)
+    monkeypatch.setattr(Traced, "likely", lambda *_: (f"tests/test_area.py::{test}",))
+    mistake = replace(wrong("2 * ", "3 * "), name=name)
+    assert command.tried([(mistake, reason)], Traced(tree), [tree]) == status
+    assert (name in (command.KEPT / "fates.md").read_text()) == (test == "test_positive")
+
+
+def test_words_that_choose_nothing_are_told(capsys):
+    assert command.main(["run", "nowhere/"]) == 2
     assert "nowhere/" in capsys.readouterr().err
-
-
-def test_tests_that_fail_without_a_mistake_stop_everything(tree, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(command, "ROOT", tree)
-    (tree / "shapes" / "area.py").write_text(AREA.replace("return width", "return -1 + 0 * width"))
-    monkeypatch.setattr(command, "read", lambda: (replace(SOUND, old="return -1", new="return -2"),))
-    assert command.main([]) == 2
-    assert f"without any mistake, {POSITIVE} fails already" in capsys.readouterr().err
-
-
-def test_the_table_begins_with_what_is_not_as_it_should_be():
-    verdicts = [Verdict(SOUND, Fate.CAUGHT, "t", 1.0), Verdict(replace(SOUND, name="other"), Fate.SURVIVED, "", 2.0)]
-    text = table(verdicts, 90.0)
-    assert "2 mistakes in 1.5 minutes" in text
-    wrong, _, everything = text.partition("## All")
-    assert "| other |" in wrong
-    assert "| sign |" not in wrong
-    assert "| sign |" in everything

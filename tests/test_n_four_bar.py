@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
-from reference.pendulum.link import Pendulum
+from reference.checks import InvalidMechanism
+from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 SCENES = [NFourBar(loops=1), NFourBar(), NFourBar(loops=3, length=0.7, mass=2.0, speed=-2.5), TenFourBars()]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,22 +11,22 @@ import pytest
 
 from engines import entry_points, registry
 from engines.loading import load
-from reference.four_bar.scenes import FreeFourBar
-from reference.scene import Scene
-from reference.scenes import SCENES, scene
-from reference.variation import told_apart, with_settings
+from reference.scene import Scene, told_apart, with_settings
+from reference.scenes.catalogue import SCENES, scene
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.terminal import PULSE, Terminal, progress
 from reports.model import catalogue
 from reports.model.ending import FINE, REFUSED
 from tests.present import present
 from tests.test_command_line import call, one_line
+from tests.toys import Toy
 
 # Files as a user writes them: a scene and an engine in a few lines, made of ours.
 FALLING = """
 from dataclasses import dataclass
 from typing import ClassVar
 
-from reference.pendulum.link import BarPendulum
+from reference.scenes.pendulum.link import BarPendulum
 from engines.lagrange import Lagrange
 
 @dataclass(frozen=True)
@@ -88,12 +89,24 @@ def test_the_folder_of_an_engine_hides_no_module_that_is_installed(here):
     assert not str(present(find_spec("this")).origin).startswith(str(here))
 
 
+@pytest.mark.parametrize("word", ["", "  ", "two\nlines", None])
+def test_a_name_that_can_not_be_printed_in_a_table_is_no_engines_name(word):
+    for field in ("name", "variant"):
+        wrong = replace(Toy(), **{field: word})
+        assert registry.trouble(wrong).startswith(f"its {field} is {word!r}; it must be a string that is not empty")
+    assert registry.trouble(Toy()) == ""
+
+
 @pytest.mark.parametrize(
     ("text", "reference", "telling"),
     [
         ("", "broken.py", "nothing at the top level of this file is one"),
         ("ENGINES = ()", "broken:ENGINES", "it is empty"),
-        ("ENGINE = 'pymunk'", "broken:ENGINE", "a value of the type str is no engine: it lacks name, variant"),
+        (
+            "ENGINE = 'pymunk'",
+            "broken:ENGINE",
+            "the type str is no engine: it does not inherit from engines.Engine",
+        ),
         ("from engines.lagrange import Lagrange", "broken:Lagrange", "it is a class; give an engine made of it"),
         ("", "broken:ENGINE", "broken has no ENGINE"),
         ("", "broken:", "names nothing; give package.module:NAME"),
@@ -255,7 +268,7 @@ class Registered:
     [
         ("absent_module:ENGINE", "absent_module can't be imported: ModuleNotFoundError"),
         ("theirs_4:NOTHING", "theirs_4 has no NOTHING"),
-        ("theirs_4:FALLING", "is no engine: it lacks"),
+        ("theirs_4:FALLING", "is no engine: it does not inherit"),
         ("theirs_4:OURS", "'pymunk default' is left out, since planar-crosscheck has one of this name"),
         ("theirs_4:TWICE", "'mine rk4 projection' is left out, since theirs has one of this name"),
     ],

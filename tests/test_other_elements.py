@@ -12,10 +12,10 @@ import pytest
 
 from engines import Engine, Promise, Unsupported, registry
 from engines.lagrange import TRUTH
-from reference.andrews.scene import Andrews
 from reference.forces import Torque, TorsionSpring
 from reference.joints import Gear, Pin, Weld
 from reference.mechanism import Body, Mechanism
+from reference.scenes.andrews import Andrews
 from tests.all_elements import ALL, ALONE, DAMPED, GRAVITY
 from tests.test_other_engines import QUICKLY, installed, shipped
 

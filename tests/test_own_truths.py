@@ -17,7 +17,7 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.check.checked import check
 from reports.check.judging import often, refuse_disagreement
 

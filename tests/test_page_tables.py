@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import pytest
 
 from engines import Holder, Softness
-from reference.four_bar import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.gate.prediction import COMPLIANCE, DAMPING, MOST_BODIES, STIFFNESS, Softened, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
@@ -230,7 +230,7 @@ def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
 
 
 def test_the_judge_is_not_asked_where_it_would_take_minutes():
-    from reference.pendulum.scenes import HundredLinks
+    from reference.scenes.pendulum.scenes import HundredLinks
 
     assert len(HundredLinks().mechanism().bodies) > MOST_BODIES
 

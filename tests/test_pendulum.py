@@ -11,11 +11,11 @@ import mpmath
 import numpy as np
 import pytest
 
+from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.numerics.elliptic import incomplete, jacobi, quarter_period
-from reference.pendulum.link import BarPendulum, Pendulum, PointPendulum
+from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 
 FREQUENCY = 3.0
 STARTS = [  # angle, rate: swinging, whirling both ways, at the top, on the separatrix, several turns away

@@ -10,13 +10,13 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
-from reference import outlines
-from reference.centrodes import Centrodes
+from reference import trajectory as outlines
+from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingEllipse, RollingOnCircle
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling_charts

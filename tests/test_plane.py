@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reference.numerics.cauchy import derivative
+from reference.numerics.calculus import derivative
 from reference.plane import components, from_complex, perpendicular, rotated, rotation_acceleration, rotation_velocity
 
 RNG = np.random.default_rng(3)

@@ -16,10 +16,10 @@ from engines import Size
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
-from engines.pymunk.batched import Recorder
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
+from engines.pymunk.running import Recorder
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.trajectory import Trajectory, energy
 from tests.mechanisms import bar, four_bar, pendulum
 
@@ -62,15 +62,6 @@ def order(method, mechanism: Mechanism, truth: Trajectory, quantity: str, every:
 
 
 # What is built
-
-
-@every_method
-@pytest.mark.parametrize("mechanism", [FREE, MOVING, DRIVEN, elbow()])
-def test_the_first_sample_is_the_mechanisms_start(method, mechanism):
-    trajectory = method.build(mechanism, 1e-3)(2, 1)
-    assert np.array_equal(trajectory.pose[0], mechanism.pose)
-    assert np.array_equal(trajectory.twist[0], mechanism.twist)
-    assert trajectory.t == pytest.approx([0, 1e-3, 2e-3])
 
 
 def test_the_default_is_the_engine_as_shipped():
@@ -133,14 +124,6 @@ def test_bodies_are_recorded_in_the_order_asked_for_whatever_the_order_in_which_
 
 
 # When it reads
-
-
-@pytest.mark.parametrize("method", [DEFAULT, TUNED, LEAPFROG], ids=lambda method: method.variant)
-@pytest.mark.parametrize("mechanism", [MOVING, DRIVEN])
-def test_how_often_a_run_is_sampled_changes_no_sample(method, mechanism):
-    often, seldom = method.build(mechanism, 1e-3)(60, 1), method.build(mechanism, 1e-3)(12, 5)
-    for quantity in ("pose", "twist", "reaction"):
-        assert np.array_equal(getattr(often, quantity)[::5], getattr(seldom, quantity))
 
 
 def pendulum_truth(t: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -62,26 +62,6 @@ def test_an_error_bias_that_would_abort_the_process_is_refused(error_bias):
         Pymunk("mine", error_bias=error_bias)
 
 
-@pytest.mark.parametrize("dt", [0.0, -1e-3, float("nan"), float("inf"), "1"])
-@every_method
-def test_a_step_that_is_no_time_is_refused(method, dt):
-    with pytest.raises(ValueError, match=r"build: dt is"):
-        method.build(FREE, dt)
-
-
-@pytest.mark.parametrize("counts", [(0, 1), (1, 0), (-1, 1), (1.5, 1)])
-def test_counts_that_are_no_counts_are_refused(counts):
-    with pytest.raises(ValueError, match="whole number"):
-        TUNED.build(FREE, 1e-3)(*counts)
-
-
-def test_a_run_is_one_shot():
-    run = TUNED.build(FREE, 1e-3)
-    run(2, 2)
-    with pytest.raises(RuntimeError, match="one shot"):
-        run(2, 2)
-
-
 @every_method
 def test_a_motion_that_blows_up_is_a_result_and_not_an_exception(method):
     heavy = replace(MOVING, bodies=(*MOVING.bodies[:2], replace(MOVING.bodies[2], mass=1e-6, inertia=1e-9)))

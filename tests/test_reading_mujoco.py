@@ -12,8 +12,8 @@ import pytest
 
 from engines import Unsupported
 from engines.mujoco.reading import read
-from engines.mujoco.reading.other_settings import switch_off
-from engines.mujoco.reading.places import positions
+from engines.mujoco.reading.obstacles import positions
+from engines.mujoco.reading.settings import switch_off
 from engines.reading import Obstacle, Reading
 from reports.check.judging import apart, refuse_disagreement, soft_motion
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from reference.joints import Drive
-from reference.rolling.scenes import RollingDisc
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.rolling.scenes import RollingDisc
 from tests.samples import SCENES_OF_LIMITS
 
 # Exponents of length, time and mass of each field's unit; what is not here has none.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from engines import mujoco, pymunk
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
 from reports.model.cells import Cell
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome

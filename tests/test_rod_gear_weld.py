@@ -11,11 +11,11 @@ from engines import registry
 from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco.methods import DEFAULT, EXTENDED
 from engines.tree import spanning_tree
+from reference.checks import InvalidMechanism
 from reference.forces import Torque
 from reference.joints import Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism
-from reference.pendulum.link import Pendulum
-from reference.validation import InvalidMechanism
+from reference.scenes.pendulum.link import Pendulum
 from tests.all_elements import ALL, ALONE, GEAR, GRAVITY, WELD
 
 TINY = 1e-100

@@ -10,12 +10,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Placed
-from reference.curves.ellipse import Ellipse
-from reference.curves.open import Catenary, LogSpiral, Parabola
+from reference.checks import InvalidMechanism
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
-from reference.validation import InvalidMechanism
+from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 
 # Poses are a few roundings of lengths near 1 m, times the turns.
 ROUNDING = 1e-13

@@ -13,9 +13,8 @@ from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle
-from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import DiscInHole, RollingDisc, RollingEllipse, RollingOnCircle, SquareOnCatenaries
 from reports.model.cells import Cell
 from reports.model.measure import measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
-from reference.curves.cam import Cam
-from reference.curves.circles_lines import Circle, Line, Ring
-from reference.curves.ellipse import Ellipse
-from reference.rolling.body import GRAVITY, RollingBody
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.checks import InvalidMechanism
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
-from reference.rolling.scenes import (
+from reference.scenes.rolling.body import GRAVITY, RollingBody
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -26,7 +26,6 @@ from reference.rolling.scenes import (
     RollingOnCircle,
 )
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from tests.present import present
 
 SCENES = [RollingEllipse(), RollingDisc(), RollingCam(), RollingDownhill(), RollingInRing(), RollingOnCircle()]

@@ -11,13 +11,14 @@ import pytest
 
 from engines import rolling_table
 from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Placed
-from reference.curves.ellipse import Ellipse
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import (
+from reference.scene import Scene
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
+    DiscInHole,
     RollingCam,
     RollingDisc,
     RollingDownhill,
@@ -25,8 +26,6 @@ from reference.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.rolling.singular_cases import DiscInHole
-from reference.scene import Scene
 
 
 def rolling_of(scene: Scene) -> Rolling:

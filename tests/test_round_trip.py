@@ -15,17 +15,17 @@ from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
 from engines.mujoco.model import Model
 from engines.mujoco.reading import read as read_mujoco
-from engines.mujoco.written_urdf import urdf
+from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.joints.drive import find_cranks
 from engines.pymunk.reading import read as read_pymunk
 from engines.pymunk.written_script import script
-from reference import outlines
+from reference import trajectory as outlines
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Roll, Skate, Slot, Weld
 from reference.mechanism import Body, Mechanism
-from reference.scenes import SCENES
-from reference.validation import InvalidMechanism
+from reference.scenes.catalogue import SCENES
 from reports.check.judging import accelerations
 from reports.search.mechanisms import mechanism as random_mechanism
 

@@ -6,12 +6,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from reference.four_bar import DrivenFourBar, FreeFourBar
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.row_system import rank, reactions, solve_symmetric, undetermined
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.rows import rank, reactions, solve_symmetric, undetermined
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 
 RNG = np.random.default_rng(7)
 

@@ -10,10 +10,10 @@ import pytest
 
 from engines import Unsupported
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import FreeFourBar
-from reference.pendulum.many_links import LongPendulum
-from reference.pendulum.scenes import LinkPendulum
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.cli.selection import QUICK_MOST, choose_cells
 from reports.model.cells import Cell, estimated_seconds
 from reports.model.measure import measure

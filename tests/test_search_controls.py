@@ -8,23 +8,21 @@ step, and MJX to that of one instant.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 
-from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio, registry
-from engines.altered import Altered
-from engines.conformance.changes import Isometry
-from reference.mechanism import Mechanism
-from reference.validation import InvalidMechanism
+from engines import Engine, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
+from engines.conformance.same import Isometry
+from reference.checks import InvalidMechanism
+from reports.gate.change import Altered
 from reports.search import instant_mujoco, relations
 from reports.search.mechanisms import RUN, SHAPES, of_a_shape
 from reports.search.recipe import build
 from reports.search.subjects import Adapted, Told
-from tests.mistakes import FORCES, Planted
+from tests.mistakes import FORCES, plant, planted
 
 SEED = 1
 SMALL = 1e-4
@@ -57,11 +55,11 @@ PLANTED = [(engine, kind) for engine, kinds in LEAST.values() for kind in kinds]
 
 @pytest.mark.parametrize(("engine", "kind"), PLANTED, ids=lambda value: getattr(value, "name", value))
 def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> None:
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     kinds = ("pin",) if kind in ("pin", "inertia") else ("pin", kind)
     # The first that shows it ends this; gears of Bullet are between bodies on the ground alone, so most are refused.
-    assert is_found(Altered(engine, Planted(kind, SMALL)), kinds, 60, "motions")
+    assert is_found(Altered(engine, planted(kind, SMALL)), kinds, 60, "motions")
     right = list(islice(asked(engine, kinds, 40, "motions"), 2))
     assert right
     assert not [told for told in right if told.faults]
@@ -71,22 +69,21 @@ def test_a_planted_fault_is_found_in_the_motion(engine: Engine, kind: str) -> No
 def test_a_planted_fault_of_a_thousandth_is_found_in_single_precision(kind: str, monkeypatch: Any) -> None:
     """Ten times as large as elsewhere: of 60 mechanisms of pins an inertia off by 1e-3 is found in 26, by 1e-4 in 5."""
     engine = box2d.DEFAULT
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     kinds = ("pin",) if kind in ("pin", "inertia") else ("pin", kind)
     right = list(asked(engine, kinds, 40, "instant"))
     assert len(right) >= 4  # of slots, whose bodies seldom have no other joint
     assert not [told for told in right if told.faults]
-    build, change = box2d.Box2D.build, Planted(kind, 1e-3)
-    monkeypatch.setattr(box2d.Box2D, "build", lambda self, mechanism, dt: build(self, change(mechanism), dt))
+    plant(monkeypatch, planted(kind, 1e-3))
     assert is_found(engine, kinds, 40, "instant")
 
 
 def test_what_box2d_rounds_grows_with_the_distance() -> None:
     """So that differences of two descriptions are rounded places, and nothing that the shift itself does."""
     engine = box2d.DEFAULT
-    if registry.missing(engine):
-        pytest.skip(registry.missing(engine))
+    if engine.missing:
+        pytest.skip(engine.missing)
     subject = Adapted(engine)
     growth = []
     for number in (7, 20, 31, 44, 60):
@@ -106,8 +103,8 @@ def test_what_box2d_rounds_grows_with_the_distance() -> None:
 
 @pytest.fixture
 def compiled() -> None:
-    if registry.missing(mjx.DEFAULT):
-        pytest.skip(registry.missing(mjx.DEFAULT))
+    if mjx.DEFAULT.missing:
+        pytest.skip(mjx.DEFAULT.missing)
 
 
 @pytest.mark.slow
@@ -127,13 +124,7 @@ def test_mjx_lacks_the_velocity_term_of_loops_and_nothing_else() -> None:
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("kind", ["inertia", "force"])
 def test_a_fault_planted_in_mjx_is_found(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right, change = mjx.Mjx.model, Planted(kind, SMALL)
-
-    def wrong(self: mjx.Mjx, mechanism: Mechanism, dt: float) -> Any:
-        model, held = right(self, change(mechanism), dt)
-        return replace(model, mechanism=mechanism), held
-
-    monkeypatch.setattr(mjx.Mjx, "model", wrong)
+    plant(monkeypatch, planted(kind, SMALL))
     found = {
         check for number in range(4) for check in Adapted(mjx.TUNED).ask(_shaped(number), number, ("instant",)).faults
     }
@@ -145,8 +136,8 @@ def _shaped(number: int) -> Any:
 
 
 def test_cases_of_a_shape_differ_in_numbers_alone() -> None:
-    if registry.missing(mjx.DEFAULT):
-        pytest.skip(registry.missing(mjx.DEFAULT))
+    if mjx.DEFAULT.missing:
+        pytest.skip(mjx.DEFAULT.missing)
     cases = [_shaped(number) for number in range(SHAPES * RUN)]
     shapes = {tuple((link.kind, link.first, link.second) for link in case.links) for case in cases}
     assert len(shapes) <= SHAPES

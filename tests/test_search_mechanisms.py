@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH
+from reference.checks import InvalidMechanism
 from reference.forces import Spring, TorsionSpring
 from reference.joints import Slot
-from reference.validation import InvalidMechanism
 from reports.search.mechanisms import ALL, mechanism, recipe, renumbered
 from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim, as_text, from_text, ladder
 from reports.search.recipe import LEAST_RANK, build

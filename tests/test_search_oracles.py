@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from engines import Promise, Run
-from engines.altered import Altered
 from engines.lagrange import Lagrange
-from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
-from engines.mujoco.joints import rod_gear_weld
-from engines.mujoco.joints import slot as mujoco_slot
+from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco.running import MuJoCoRun
-from engines.pymunk import LEAPFROG, Pymunk
+from engines.mujoco.user_rows import RowWriter
+from engines.pymunk import LEAPFROG
 from engines.pymunk import model as pymunk_model
-from engines.pymunk.model import Model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
+from reports.gate.change import Altered
 from reports.search import instant_mujoco, motions, raw, raw_law, relations
 from reports.search.mechanisms import ALL
 from reports.search.relations import NAMES
 from reports.search.scripts import script
 from reports.search.shrinking import shrunk
 from reports.search.subjects import OURS, Adapted, Alone, Told
-from tests.mistakes import Off
-from tests.wrong_adapters import Spoiled
+from tests.mistakes import Heavier, Stronger, plant
+from tests.wrong_adapters import Spoiled, Wrong
 
 SEED = 1
 
@@ -67,54 +64,31 @@ def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
 # ------------------------------------------------------------------------------------- mistakes put into adapters
 
 
-HEAVIER_TO_TURN = Off("bodies", "inertia", 1e-4)
-
-
-@dataclass(frozen=True)
-class Otherwise(MuJoCo):
-    """Builds its model of a mechanism that is changed, and reads it out as if it were right."""
-
-    change: Callable[[Mechanism], Mechanism] = HEAVIER_TO_TURN
-
-    def build(self, mechanism: Mechanism, dt: float) -> MuJoCoRun:
-        run = super().build(self.change(mechanism), dt)
-        return replace(run, model=replace(run.model, mechanism=mechanism))
-
-
-@dataclass(frozen=True)
-class OtherwiseThere(Pymunk):
-    """The same in pymunk."""
-
-    change: Callable[[Mechanism], Mechanism] = HEAVIER_TO_TURN
-
-    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Any) -> Model:
-        return super().swept_model(self.change(mechanism), dt, sweeping)
-
-
-@pytest.mark.parametrize("engine", [Otherwise("default"), OtherwiseThere("leapfrog", leapfrog=True)])
-def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any) -> None:
+@pytest.mark.parametrize("engine", [DEFAULT, LEAPFROG], ids=lambda engine: engine.name)
+def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    plant(monkeypatch, Heavier(1e-4))
     assert faults(engine, ("pin",), 6) & {"acceleration", "velocity"}
 
 
 def test_a_sign_flipped_in_a_row_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    right: Callable[..., Any] = mujoco_slot.slot_rows
+    right = RowWriter.write
 
-    def flipped(*given: Any) -> Any:
-        rows = right(*given)
-        return lambda t, first, second: [(*row[:2], -row[2], *row[3:]) for row in rows(t, first, second)]
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        jacobian[-self.size * len(v) :: len(v)] *= -1.0  # of the first coordinate
 
-    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    monkeypatch.setattr(RowWriter, "write", flipped)
     assert "instant" in faults(EXTENDED, ("slot",), 8)  # MuJoCo then has a row that is none of the mechanism's
 
 
 def test_a_velocity_term_of_the_wrong_sign_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    right: Callable[..., Any] = mujoco_slot.slot_rows
+    right = RowWriter.write
 
-    def flipped(*given: Any) -> Any:
-        rows = right(*given)
-        return lambda t, first, second: [(*row[:6], -row[6]) for row in rows(t, first, second)]
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        reference[-self.size :] *= -1.0
 
-    monkeypatch.setattr(mujoco_slot, "slot_rows", flipped)
+    monkeypatch.setattr(RowWriter, "write", flipped)
     assert "acceleration" in faults(EXTENDED, ("slot",), 8)
 
 
@@ -139,50 +113,42 @@ def test_a_reaction_read_at_the_wrong_time_is_found(monkeypatch: pytest.MonkeyPa
     assert "reaction" in faults(DEFAULT, ("pin",), 6)
 
 
-@dataclass(frozen=True)
-class Downwards(Pymunk):
-    """Gravity as strong as asked for, and downwards whatever its direction."""
-
-    def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return super().build(replace(mechanism, gravity=(0.0, -math.hypot(*mechanism.gravity))), dt)
-
-
 def test_a_direction_of_the_world_that_is_taken_for_granted_is_found() -> None:
-    subject = Adapted(Downwards("tuned"))
+    subject = Adapted(Wrong("gravity points down"))
     case = next(case for case in (subject.draw(SEED, n, ("pin",), 0) for n in range(20)) if case.gravity[0])
     assert subject.ask(case, NAMES.index("turned"), ("relations",)).faults == ("turned",)
 
 
 @dataclass(frozen=True)
-class InItsUnits(Lagrange):
-    """Takes a fixed mass [kg], or arm [m], for granted on every body beside what it is told."""
+class InItsUnits:
+    """A fixed mass [kg], or arm [m], is taken for granted on every body beside what is told."""
 
     mass: float = 0.0
     arm: float = 0.0
 
-    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
         bodies = tuple(
             replace(body, mass=body.mass + self.mass, inertia=body.inertia + body.mass * self.arm**2)
             for body in mechanism.bodies
         )
-        return super().build(replace(mechanism, bodies=bodies), dt)
+        return replace(mechanism, bodies=bodies)
 
 
 @pytest.mark.parametrize(
     ("name", "wrong"),
     [
-        ("in other masses", InItsUnits("rk4", "projection", mass=0.01)),
-        ("in other lengths", InItsUnits("rk4", "projection", arm=0.01)),
+        ("in other masses", InItsUnits(mass=0.01)),
+        ("in other lengths", InItsUnits(arm=0.01)),
     ],
 )
-def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: Lagrange) -> None:
+def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: InItsUnits) -> None:
     def found(engine: Any) -> set[str]:
         subject, number = Adapted(engine), NAMES.index(name)
         cases = [subject.draw(SEED, case, ("pin",), 0) for case in range(8)]
         return {fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults}
 
     assert found(Lagrange("rk4", "projection")) == set()
-    assert found(wrong) == {name}
+    assert found(Altered(Lagrange("rk4", "projection"), wrong)) == {name}
 
 
 @pytest.mark.parametrize("name", ["in other masses", "in other lengths"])
@@ -236,8 +202,7 @@ def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_
         one for one, soft in zip(told(TUNED, kinds, len(cases), "motions"), gives_way(DEFAULT), strict=True) if soft
     ]
     assert any(one.errors for one in loops)
-    harder = Otherwise("tuned", **{f.name: getattr(TUNED, f.name) for f in fields(TUNED) if f.name != "variant"})
-    assert faults(harder, kinds, len(cases), "motions")
+    assert faults(Altered(TUNED, Heavier(1e-4)), kinds, len(cases), "motions")
 
 
 @dataclass(frozen=True)
@@ -254,15 +219,29 @@ def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
 
 
 @dataclass(frozen=True)
-class Careless(Lagrange):
-    """Gives an exception where it can't go on."""
+class Admitting(Boasting):
+    """As wrong as that, and says so in the finer runs alone, or in the coarse one alone."""
+
+    finer: bool = True
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
-        raise KeyError("body 7")
+        rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
+        words = ("it is wrong",) if (dt < 0.75 * rough) is self.finer else ()
+        return Spoiled(super().build(mechanism, dt), lambda given: replace(given, warnings=words))
+
+
+@pytest.mark.parametrize("finer", [True, False])
+def test_a_motion_of_which_any_run_warns_is_not_held_against_the_engine(finer: bool) -> None:
+    for one in told(Admitting("euler", "projection", finer=finer), ("pin",), 3, "motions"):
+        assert one.faults == ()
+        assert any("something is wrong" in reason for reason in one.not_asked)
 
 
 def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
-    [one] = told(Careless(), ALL, 1, "motions")
+    def loses(mechanism: Mechanism) -> Mechanism:
+        raise KeyError("body 7")
+
+    [one] = told(Altered(Lagrange(), loses), ALL, 1, "motions")
     assert one.faults == ("raised",)
     assert "body 7" in one.words
 
@@ -298,18 +277,8 @@ def test_adapters_obey_the_law_with_rods_gears_welds_and_forces(engine: Any, kin
 
 def test_a_rods_velocity_term_that_is_left_out_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """As MuJoCo's own equality of a tendon leaves it out; here with the damping of slip, which is rounding."""
-    right = rod_gear_weld.rod_rows
-
-    def without(*given: Any) -> Any:
-        rows = right(*given)
-
-        def still(t: float, first: Any, second: Any) -> Any:
-            resting = rows(t, (*first[:3], 0.0, 0.0, 0.0), (*second[:3], 0.0, 0.0, 0.0))
-            return [(*row[:6], rest[6]) for row, rest in zip(rows(t, first, second), resting, strict=True)]
-
-        return still
-
-    monkeypatch.setattr(rod_gear_weld, "rod_rows", without)
+    right = RowWriter.write
+    monkeypatch.setattr(RowWriter, "write", lambda self, q, v, *arrays: right(self, q, 0.0 * v, *arrays))
     assert "acceleration" in faults(EXTENDED, ("pin", "rod"), 12)
 
 
@@ -355,8 +324,11 @@ def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("kind", ["rod", "gear", "weld", "spring", "force"])
-def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(kind: str) -> None:
-    assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True), ("pin", kind), 12)
+def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Heavier(1e-4))
+    assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
 
 
 @pytest.mark.parametrize(
@@ -373,19 +345,23 @@ def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(ki
         ("second_point", "force"),
     ],
 )
-def test_a_force_element_off_by_one_in_ten_thousand_is_found(name: str, kind: str) -> None:
-    off = Off("forces", name, 1e-4)
-    assert "acceleration" in faults(Otherwise("tuned", change=off), ("pin", kind), 12)
+def test_a_force_element_off_by_one_in_ten_thousand_is_found(
+    name: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Stronger(name, 1e-4))
+    assert "acceleration" in faults(TUNED, ("pin", kind), 12)
     if "damp" not in kind:  # which pymunk takes among its sweeps, so that no law of a step is asked for
-        assert "velocity" in faults(OtherwiseThere("leapfrog", leapfrog=True, change=off), ("pin", kind), 12)
+        assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
 
 
-def test_a_spring_that_pushes_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
+def test_a_stiffer_spring_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
     """An engine that declares nothing at an instant is held to the judge's motion."""
-    assert faults(
-        Altered(Lagrange("rk4", "projection"), Off("forces", "stiffness", 0.01)), ("pin", "spring"), 4, "motions"
-    ) & {"motion", "reactions"}
-    assert faults(Lagrange("rk4", "projection"), ("pin", "spring"), 4, "motions") == set()
+    right = Lagrange("rk4", "projection")
+    assert faults(Altered(right, Stronger("stiffness", 0.01)), ("pin", "spring"), 4, "motions") & {
+        "motion",
+        "reactions",
+    }
+    assert faults(right, ("pin", "spring"), 4, "motions") == set()
 
 
 # --------------------------------------------------------------------------------------------- faults of MuJoCo's own

@@ -17,7 +17,7 @@ import pytest
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 
-from reference.centrodes import from_poses
+from reference.chapter.centrodes import from_poses
 from reports import __main__ as command_line
 from reports.pages.centrodes.page import returned
 from reports.write.templates import TEMPLATES

@@ -18,7 +18,7 @@ import pytest
 
 from engines.lagrange import Lagrange
 from engines.registry import trouble
-from reference.four_bar import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.ending import FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown

@@ -18,8 +18,8 @@ import pytest
 
 from engines import Engine, Unsupported, mujoco, pymunk
 from engines.mujoco.stiffness import STIFFEST, TiedToStep
-from reference.four_bar import DrivenFourBar
 from reference.scene import Scene
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.model.tasks import answered
 from reports.site.build import build
 from reports.site.drawn import measure_of

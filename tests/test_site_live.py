@@ -16,15 +16,15 @@ from engines import Unsupported
 from engines import mujoco as mujoco_engine
 from engines import pymunk as pymunk_engine
 from engines.pymunk.methods import SKATE_GROOVE
-from reference.curves.circles_lines import Circle
-from reference.four_bar import DrivenFourBar
 from reference.plane import rotated
+from reference.rolling.curves import Circle
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scene import Scene
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.site.drawn import demanded, loose, measure_of, opened, place_of
 from reports.site.embed import forces
 from reports.site.lessons import LESSONS

@@ -12,10 +12,10 @@ import pytest
 
 import reports.pages
 from engines.lagrange import Lagrange
-from reference.scenes import SCENES
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.skate.slopes import HeldBySkates, SkateOnSlope
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
+from reference.scenes.catalogue import SCENES
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reports.cli.selection import choose_cells, known_engines
 from reports.model.cells import Cell
 from reports.model.measure import measure

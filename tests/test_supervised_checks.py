@@ -28,7 +28,7 @@ class Aborting(Wrong):
         if dt == 0:
             os.write(2, b"Aborting due to Wrong error: dt is zero\n")
             os.abort()
-        return self.inner.build(mechanism, dt)
+        return self.engine.build(mechanism, dt)
 
 
 ABORTING = Aborting("aborts where a step is zero")

@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import Unsupported, mujoco, pymunk, registry
-from reference.scenes import SCENES
+from engines import Unsupported, mujoco, pymunk
+from reference.scenes.catalogue import SCENES
 from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.gate.prediction import all_tasks
@@ -187,9 +187,7 @@ def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
 
 def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
     """But those of engines whose package is not here."""
-    every = {
-        task for page in PAGES for task in all_tasks(page) if task.engine is None or not registry.missing(task.engine)
-    }
+    every = {task for page in PAGES for task in all_tasks(page) if task.engine is None or not task.engine.missing}
     assert set(choose_tasks(SCENES, choose_engines(None, None, known_engines(PAGES)), PAGES, full=True)) == every
     assert not any(isinstance(cell, Task) for cell in choose_cells(SCENES[:1], (), PAGES, full=True))
 

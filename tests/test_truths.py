@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.model import truths
 from reports.model.cells import Cell
 from reports.model.measure import measure

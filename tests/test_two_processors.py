@@ -14,9 +14,9 @@ import pytest
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar
-from reference.slider_crank import DrivenSliderCrank
-from reference.wheels.cart import Cart
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.wheels.cart import Cart
 from reports.gate.change import Old, change
 from reports.gate.theory import cases
 from reports.model.catalogue import PAGES

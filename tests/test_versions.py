@@ -15,8 +15,8 @@ from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco import model as mujoco_model
 from engines.mujoco.written_model import Written
-from reference.four_bar import FreeFourBar
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli import compare
 from reports.cli.commands import invoke
 from reports.cli.terminal import Terminal
@@ -105,6 +105,16 @@ def test_a_cost_sets_the_status_where_a_limit_is_given(here):
         invoke([*words, "--cost", "0.9"])
     with pytest.raises(BadInput, match="--cost is 0; give a number above 0"):
         invoke([*words, "--cost", "0"])
+
+
+def test_two_builds_of_one_name_are_told_apart(here, capfd):
+    for folder, error in (("old", 1.0), ("new", 50.0)):
+        toy(here / folder, "1.0", f"def error(): return {error}\n")
+    with pytest.raises(
+        Broken, match=r"^B: toyengine 1\.0 \(1\.0\) is worse than A: toyengine 1\.0 \(1\.0\) in 3 numbers"
+    ):
+        invoke(["compare", "old/1.0", "new/1.0", "--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"])
+    assert "From A: toyengine" in capfd.readouterr().out
 
 
 def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):

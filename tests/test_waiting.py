@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engines.registry import VARIANTS
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
 from reports.cli.selection import choose_cells
 from reports.model import spending
 from reports.model.catalogue import PAGES

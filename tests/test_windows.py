@@ -7,7 +7,7 @@ import pytest
 
 from reference.numerics import integration, windows
 from reference.numerics.integration import IntegrationFailed, hopeless
-from reference.pendulum.scenes import LinkPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
 
 EXTENDED = np.finfo(np.longdouble).eps < 1e-18
 FAST = np.longdouble(700)

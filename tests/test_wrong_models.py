@@ -13,11 +13,11 @@ import pytest
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar
 from reference.mechanism import Mechanism
-from reference.pendulum.link import BarPendulum, PointPendulum
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.queue import usable
 from reports.run.supervisor import supervise

@@ -38,18 +38,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from engines import Promise, Size, refuse_forces
+from engines import Engine, Promise, Size, refuse_forces
 from reference.trajectory import Trajectory
-from reference.validation import Count, Fraction, Name, Positive, Valid, validated
+from reference.checks import Count, Fraction, Name, Positive, Valid, validated
 
 
 @dataclass(frozen=True)
-class Impulses(Valid):
+class Impulses(Engine, Valid):
     variant: Name
     share: Fraction
-    name: ClassVar[str] = "impulses"
-    family: ClassVar[str] = "impulses"
-    packages: ClassVar[tuple[str, ...]] = ("their-suite", "numpy")
+    name = "impulses"
+    packages = ("their-suite", "numpy")
 
     def order(self, mechanism):
         return Promise(1, differences=1)
@@ -59,9 +58,6 @@ class Impulses(Valid):
 
     def holder(self, joint, mechanism):
         return "engine"
-
-    def softness(self, mechanism, dt):
-        return None
 
     @validated
     def build(self, mechanism: object, dt: Positive):
@@ -117,7 +113,7 @@ from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
-from reference.validation import Positive
+from reference.checks import Positive
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Holder, Promise, Size, Softness, Unpromised, Unsupported
+from engines import Engine, Holder, Promise, Size, Unpromised, Unsupported
 from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
@@ -67,18 +67,10 @@ class ToyRun:
         return self._spoil(turning(self._mechanism, t), self._dt)
 
 
-class Plain:
+class Plain(Engine):
     """What the contract asks of an engine beside a name and a model, as plainly as can be: for engines of tests."""
 
-    name: str
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ()
-
-    @property
-    def family(self) -> str:
-        return self.name
+    packages = ()
 
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
         return Unpromised("nobody thought about it")
@@ -88,9 +80,6 @@ class Plain:
 
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         return "engine"
-
-    def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
-        return None
 
 
 @dataclass(frozen=True)

@@ -9,33 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine, Run, Unsupported
+from engines import Around, Engine, Run, Unsupported
 from engines.pymunk import LEAPFROG
+from reference.checks import Count, validated
 from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 from tests.mistakes import Mistake
 
 Build = Callable[[Mechanism, float], Any]
 
 
 @dataclass(frozen=True)
-class Wrong:
+class Wrong(Around):
     """A right engine whose `build` or whose run is spoiled as MISTAKES says of its variant."""
 
     variant: str
-    inner: Engine = LEAPFROG
-    name: str = "wrong"
-
-    def __getattr__(self, member: str) -> Any:
-        """What is not spoiled is that of the right engine."""
-        if member.startswith("__") or member == "inner":
-            raise AttributeError(member)
-        return getattr(self.inner, member)
+    engine: Engine = LEAPFROG
+    name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return {**MISTAKES, **SMALL}[self.variant](self.inner, mechanism, dt)
+        return {**MISTAKES, **SMALL}[self.variant](self.engine, mechanism, dt)
 
 
 class Spoiled:

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from engines import Softness, Unpromised
+from engines import Around, Engine, Softness, Unpromised
 from engines.pymunk import LEAPFROG
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
@@ -15,18 +15,19 @@ from tests.wrong_adapters import Wrong
 
 @dataclass(frozen=True)
 class TwoLines(Wrong):
-    family: str = "two\nlines"
+    family: str = "two\nlines"  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 @dataclass
-class Changeable:
+class Changeable(Around):
     """Not frozen."""
 
     variant: str = "changeable"
-    name: str = "wrong"
+    engine: Engine = LEAPFROG
+    name: str = "wrong"  # pyright: ignore[reportIncompatibleMethodOverride]
 
-    def __getattr__(self, member: str) -> Any:
-        return getattr(LEAPFROG, member)
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        return self.engine.build(mechanism, dt)
 
     __hash__ = object.__hash__
 
@@ -59,15 +60,15 @@ class Forgetful(Wrong):
         object.__setattr__(self, "_factor", 0.5)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update({**state, "_factor": 1.0})
+        vars(self).update({**state, "_factor": 1.0})
 
     def build(self, mechanism: Mechanism, dt: float) -> Any:
-        return self.inner.build(replace(mechanism, gravity=(0.0, self._factor * mechanism.gravity[1])), dt)
+        return self.engine.build(replace(mechanism, gravity=(0.0, vars(self)["_factor"] * mechanism.gravity[1])), dt)
 
 
 @dataclass(frozen=True)
 class Imported(Wrong):
-    packages: tuple[str, ...] = ("_pymunk_cffi_backend",)
+    packages: tuple[str, ...] = ("_pymunk_cffi_backend",)  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from engines import Engine
-from engines.conformance import members, moving, pushed, refusing, same, sampled
+from engines.conformance import members, moving, refusing, same, sampled
 from engines.conformance.check import Case, Check, Result, Status, Subject
 
 CHECKS: tuple[Check, ...] = (
     *refusing.CHECKS,
-    *pushed.CHECKS,
     *members.CHECKS,
     *sampled.CHECKS,
     *moving.CHECKS,

@@ -41,10 +41,7 @@ class Subject:
         self._kept: dict[tuple[Any, ...], Trajectory] = {}
 
     def __str__(self) -> str:
-        return f"{self._told('name')} {self._told('variant')}"
-
-    def _told(self, name: str) -> str:
-        return str(getattr(self.engine, name, f"without a {name}"))
+        return f"{self.engine.name} {self.engine.variant}"
 
     def build(self, mechanism: Mechanism, dt: float = STEP) -> Run:
         """Raises Unsupported if the engine does, Fails for any other exception."""

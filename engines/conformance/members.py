@@ -20,18 +20,10 @@ SAME = 1e-9  # whether two runs agree to the last bit is another check's
 ADDRESS = re.compile(r" at 0x[0-9a-f]+", re.IGNORECASE)
 
 
-def _member(subject: Subject, name: str) -> Any:
-    if not hasattr(subject.engine, name):
-        raise Fails(
-            f"no member {name!r}", "one, as the contract of `engines` says", "the contract has got a member since"
-        )
-    return getattr(subject.engine, name)
-
-
 def has_a_name(subject: Subject) -> None:
     """`name`, `variant` and `family` are words that can be printed in one line."""
     for name in ("name", "variant", "family"):
-        value = _member(subject, name)
+        value = getattr(subject.engine, name, None)
         if not (isinstance(value, str) and value.strip() and value.isprintable()):
             raise Fails(
                 f"{name} = {value!r}", "a string that is not empty and can be printed", "it is made from a setting"
@@ -85,7 +77,7 @@ def can_be_pickled(subject: Subject) -> None:
 
 def names_its_packages(subject: Subject) -> None:
     """`packages` is a tuple of installed distributions, whose versions are printed under the numbers."""
-    packages = _member(subject, "packages")
+    packages = getattr(subject.engine, "packages", None)
     if not (isinstance(packages, tuple) and all(isinstance(name, str) for name in packages)):
         raise Fails(f"packages = {packages!r}", "a tuple of strings", "a comma is missing in a tuple of one")
     for name in packages:
@@ -102,7 +94,7 @@ def names_its_packages(subject: Subject) -> None:
 def promises_an_order(subject: Subject, world: World) -> None:
     """`order` gives a Promise, or Unpromised with one sentence that says why."""
     subject.build(world.mechanism)
-    order = _member(subject, "order")(world.mechanism)
+    order = subject.engine.order(world.mechanism)
     if isinstance(order, Unpromised):
         require_a_sentence(str(order.reason), "Unpromised")
         return
@@ -115,7 +107,7 @@ def promises_an_order(subject: Subject, world: World) -> None:
 def tells_what_a_step_costs(subject: Subject, world: World) -> None:
     """`step_cost` is a finite time above zero [s], and the same each time that it is asked."""
     subject.build(world.mechanism)
-    costs = [_member(subject, "step_cost")(world.mechanism) for _ in range(2)]
+    costs = [subject.engine.step_cost(world.mechanism) for _ in range(2)]
     usable = all(isinstance(cost, int | float) and math.isfinite(cost) and cost > 0 for cost in costs)
     if not (usable and costs[0] == costs[1]):
         raise Fails(f"costs of {costs[0]!r} and {costs[1]!r}", "one finite time above zero", "it is measured")
@@ -125,7 +117,7 @@ def tells_who_holds_a_joint(subject: Subject, world: World) -> None:
     """`holder` says of every joint who holds it, in the words of the contract."""
     subject.build(world.mechanism)
     for joint in world.mechanism.joints:
-        found = _member(subject, "holder")(joint, world.mechanism)
+        found = subject.engine.holder(joint, world.mechanism)
         if found not in get_args(Holder):
             raise Fails(
                 f"{found!r} for a {type(joint).__name__}",
@@ -137,7 +129,7 @@ def tells_who_holds_a_joint(subject: Subject, world: World) -> None:
 def tells_how_joints_give_way(subject: Subject, world: World) -> None:
     """`softness` gives None, or a Softness of finite numbers for every row of the mechanism."""
     subject.build(world.mechanism)
-    soft = _member(subject, "softness")(world.mechanism, STEP)
+    soft = subject.engine.softness(world.mechanism, STEP)
     if soft is None:
         return
     if not isinstance(soft, Softness):

@@ -9,11 +9,10 @@ from typing import Any
 
 from engines import Unsupported
 from engines.conformance.check import Check, Fails, NotAsked, Subject, require_a_sentence, stepped
-from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World
-from engines.conformance.worlds.rolls import rolling
-from reference.curves.circles_lines import Circle, Line
+from engines.conformance.worlds import MOVING, SPINNING, WORLDS, World, rolling
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.rolling.curves import Circle, Line
 from reference.rolling.roll import Roll
 
 BAD_STEPS: tuple[Any, ...] = (0.0, -0.01, math.nan, math.inf, "0.01", None, True)

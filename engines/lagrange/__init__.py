@@ -6,24 +6,16 @@ shows what integration alone does to an ideal constraint, without stabilisation,
 projection onto the joints after every step.
 
 Stepping is in machine code where the extra `fast` (numba) is installed, and in numpy where it is not; both give the
-same numbers up to rounding, and tests hold the one against the other. `batch` steps many mechanisms of one shape,
-which `varied` makes from one of them and arrays of what differs.
+same numbers up to rounding, and tests hold the one against the other.
 """
 
-from engines.lagrange.batch import Batch, Stack, batch, stacked
 from engines.lagrange.engine import METHODS, TRUTH, VARIANTS, Integrator, Lagrange, Stabilisation
-from engines.lagrange.varied import varied
 
 __all__ = [
     "METHODS",
     "TRUTH",
     "VARIANTS",
-    "Batch",
     "Integrator",
     "Lagrange",
     "Stabilisation",
-    "Stack",
-    "batch",
-    "stacked",
-    "varied",
 ]

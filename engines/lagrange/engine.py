@@ -9,17 +9,26 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import EXACT, Holder, Promise, Size, Softness, Unpromised
-from engines.lagrange.compiled_run import Machine, not_held
-from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Dynamics, Step, adaptive, runge_kutta, semi_implicit_euler
+from engines import EXACT, Engine, Holder, OneShot, Promise, Size, Softness, Unpromised
+from engines.lagrange.dynamics import (
+    FIXED_DOP853,
+    NONE,
+    PROJECTION_ITERATIONS,
+    RK4,
+    Dynamics,
+    Step,
+    adaptive,
+    runge_kutta,
+    semi_implicit_euler,
+)
 from engines.lagrange.loading import compiled, installed
-from engines.lagrange.tableaus import FIXED_DOP853, NONE, RK4
+from engines.lagrange.machine import Machine, not_held
 from engines.motions import is_prescribed, over_three
+from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
 from reference.kinds import Rule
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, InvalidMechanism, Positive, Valid, validated
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4", "dop853"]
@@ -40,7 +49,7 @@ TABLEAUS = {"euler": NONE, "rk4": RK4, "dop853": FIXED_DOP853}
 
 
 @dataclass(frozen=True)
-class Lagrange(Valid):
+class Lagrange(Engine, Valid):
     """Ideal constraints by exact multipliers; raises ValueError for settings that don't exist.
 
     integrator: "euler" (semi-implicit, order 1), "rk4" (order 4), "dop853" (order 8), all with the given fixed step;
@@ -50,6 +59,8 @@ class Lagrange(Valid):
     in what another tolerance changes.
     compiled: in machine code where numba is installed; False: in numpy, which gives the same numbers up to rounding.
     """
+
+    name = "lagrange"
 
     integrator: Integrator = "dop853"
     stabilisation: Stabilisation = "projection"
@@ -64,11 +75,7 @@ class Lagrange(Valid):
             )
 
     @property
-    def name(self) -> str:
-        return "lagrange"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
+    def packages(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
         return ("numpy", "scipy", "numba") if self.in_machine_code else ("numpy", "scipy")
 
     @property
@@ -80,10 +87,6 @@ class Lagrange(Valid):
         """Have the machine code read, or compiled where that is not done: ten seconds that belong to no model."""
         if self.in_machine_code:
             compiled()
-
-    @property
-    def family(self) -> str:
-        return "lagrange"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -120,7 +123,7 @@ class Lagrange(Valid):
         return "engine"
 
     @property
-    def variant(self) -> str:
+    def variant(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
         adaptive, slow = " adaptive" * (self.tolerance is not None), " in numpy" * (not self.compiled)
         return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
 
@@ -137,9 +140,9 @@ class Lagrange(Valid):
         return _LagrangeRun(self, mechanism, dt)
 
 
-class _LagrangeRun:
+class _LagrangeRun(OneShot):
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
-        self._engine, self._mechanism, self._dt, self._over = engine, mechanism, dt, False
+        self._engine, self._mechanism, self._dt = engine, mechanism, dt
         self._baumgarte = 1 / (BAUMGARTE_STEPS * dt) if engine.stabilisation == "baumgarte" else 0.0
         self._machine = Machine.of(mechanism) if engine.in_machine_code else None
         if self._machine is not None and self._baumgarte:
@@ -168,9 +171,7 @@ class _LagrangeRun:
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
         self._mechanism.require_room(samples)
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         shape = (samples + 1, *self._mechanism.pose.shape)
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         started = time.process_time()

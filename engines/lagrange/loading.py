@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import inspect
 import os
 import sys
 import tempfile
@@ -25,7 +24,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from engines.lagrange import flat, ordering, rolls
+from engines.lagrange import arrays
 
 SOURCES = Path(__file__).parent
 READY = "ready"  # a file that says that all is compiled
@@ -38,33 +37,28 @@ def installed() -> bool:
 
 
 def _entry() -> Any:
-    # By its name as it stands, here and in other engines: so fingerprints of rows know what they depend on.
+    # By its name as it stands: so fingerprints of rows know what they depend on.
     return import_module("engines.lagrange.compiled.entry")
 
 
 @cache
-def compiled(entry: Callable[[], Any] = _entry) -> Callable[..., int]:
-    """`run` of `compiled.entry`, or of that which another engine's `entry` imports and which uses the same code.
-
-    Its sources are the folder `compiled` beside that function's own. Raises ImportError without numba.
-    """
-    folder = _folder(entry)
+def compiled() -> Callable[..., int]:
+    """`run` of `compiled.entry`. Raises ImportError without numba."""
+    folder = _folder()
     with _alone(folder), _kept_in(folder):
-        run = entry().run
+        run = _entry().run
         if folder is not None:
             with contextlib.suppress(OSError):  # a full disk: the next process compiles again
                 (folder / READY).touch()
     return run
 
 
-def _digest(entry: Callable[[], Any] = _entry) -> str:
+def _digest() -> str:
     """Of the sources of the compiled code, and of the constants that it takes from elsewhere."""
     digest = hashlib.sha256()
-    folders = dict.fromkeys((SOURCES / "compiled", Path(inspect.getfile(entry)).parent / "compiled"))
-    for source in (each for folder in folders for each in sorted(folder.glob("*.py"))):
+    for source in sorted((SOURCES / "compiled").glob("*.py")):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    sources = flat, ordering, rolls
-    constants = {(name, value) for part in sources for name, value in vars(part).items() if type(value) is int}
+    constants = {(name, value) for name, value in vars(arrays).items() if type(value) is int}
     digest.update(repr(sorted(constants)).encode())
     return digest.hexdigest()[:16]
 
@@ -73,13 +67,13 @@ def _beside() -> Path:
     return SOURCES / "__pycache__"
 
 
-def _folder(entry: Callable[[], Any] = _entry) -> Path | None:
+def _folder() -> Path | None:
     """Where compiled code is kept, made if need be; None if nowhere can be written to."""
     named = os.environ.get("NUMBA_CACHE_DIR")
     users = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     places = [Path(named)] if named else [_beside(), Path(users) / "planar-crosscheck"]
     for place in places:
-        folder = place / f"{entry.__module__.split('.')[1]}-{_digest(entry)}"
+        folder = place / f"lagrange-{_digest()}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()

@@ -12,33 +12,37 @@ from typing import Literal
 
 import mujoco
 
-from engines import Holder, Promise, Size, Softness, Unpromised
+from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised
 from engines.finer import Division, division
-from engines.motions import over_three
-from engines.mujoco import theory
+from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco.joints.drive import DriveBy
-from engines.mujoco.joints.rod_gear_weld import RodBy
-from engines.mujoco.joints.roll import CompletedContact, RollBy, RollContact, RollEquality
+from engines.mujoco.joints.links import RodBy
+from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
-from engines.mujoco.joints.slot import SlotBy
+from engines.mujoco.joints.slot import SlotBy, resting_line
 from engines.mujoco.model import Coordinates, Model, Settings, build_model
-from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.running import ORDER, MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, ease
 from engines.mujoco.stiffness import Hardened, Shipped, Stiffness, TiedToStep
 from engines.mujoco.written_file import as_text
 from engines.tree import Tree, spanning_tree
-from reference.joints import Joint, Rod, Skate
+from reference.checks import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
+from reference.joints import Drive, Joint, Rod, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, InvalidMechanism, Name, NonNegative, Positive, Valid, validated
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 Solver = Literal["Newton", "CG", "PGS"]
 Factorisation = Literal["auto", "dense", "sparse"]
 
+# A loop closed by a spring of some steps: its gap falls as the square of the step, whatever integrates it.
+SPRUNG = Promise(1, gap=2)
+# The same in a motion that is prescribed, where a pose is wrong by its gap alone.
+SPRUNG_PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1)
+
 
 @dataclass(frozen=True)
-class MuJoCo(Valid):
+class MuJoCo(Engine, Valid):
     """A mechanism in MuJoCo; every field but `variant` is a setting.
 
     `coordinates`: "tree" hinges bodies on one another and closes only the loops, "free" gives every body three
@@ -47,14 +51,16 @@ class MuJoCo(Valid):
     a velocity servo of `servo_gain` [N m s/rad]; or because its state is overwritten after every step, which the solver
     is not told ("overwrite"; measured in `engines.mujoco.joints.drive`). `solvers` are tried at the start in this
     order, and the first that solves it is taken. `tolerance`: MuJoCo's, relative to the inertia of what is not driven.
-    `rolls`: what holds a rolling contact, `rods` a rod. `skates`: see `engines.mujoco.joints.skate`;
-    `euler_for_skates`: rows that change once a step are stepped by Euler, whatever the integrator otherwise, since four
-    stages of the same stale row cost more and gain nothing. `estimates`: a run of steps twice as long, and where
-    that leaves it open one of half steps, tell the error, if it falls with the fourth power of the step; where it is
-    above `engines.CLAIM` the motion is unresolved. A motion that becomes faster than its start lets expect takes more
-    steps (`engines.finer`), unless its estimate shows that it needs none.
+    `slots`, `skates`, `rolls`, `rods`: what holds them, see `engines.mujoco.joints`; skates whose rows change once a
+    step are stepped by Euler, since four stages of the same stale row cost more and gain nothing. `estimates`: a run of
+    steps twice as long, and where that leaves it open one of half steps, tell the error, if it falls with the fourth
+    power of the step; where it is above `engines.CLAIM` the motion is unresolved. A motion that becomes faster than its
+    start lets expect takes more steps (`engines.finer`), unless its estimate shows that it needs none.
     Raises ValueError for a setting that MuJoCo would not understand.
     """
+
+    name = "mujoco"
+    packages = ("mujoco-core",)
 
     variant: Name
     integrator: Integrator = "Euler"
@@ -70,7 +76,6 @@ class MuJoCo(Valid):
     islands: bool = True
     slots: SlotBy = "halves"
     skates: SkateBy = "blade"
-    euler_for_skates: bool = True
     rolls: RollBy = field(default_factory=RollContact)
     estimates: bool = False
     rods: RodBy = "tendon"
@@ -81,31 +86,62 @@ class MuJoCo(Valid):
             raise InvalidMechanism("MuJoCo: solvers is (); it must be a tuple of at least one of Newton, CG and PGS")
 
     @property
-    def name(self) -> str:
-        return "mujoco"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("mujoco-core",)
-
-    @property
-    def family(self) -> str:
-        return "mujoco"
+    def touches(self) -> bool:
+        return isinstance(self.rolls, RollContact)
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """See `engines.mujoco.theory`."""
-        return theory.promise(self, mechanism, self._tree(mechanism))
+        """The integrator's order, unless the rows of skates, contacts or loops know less than it asks for."""
+        tree = self._tree(mechanism)
+        skating, rolling = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
+        driven = any(isinstance(joint, Drive) and joint not in tree.kept for joint in mechanism.joints)
+        if driven and self.drive != "inertia":
+            return Unpromised(
+                "a servo's gain misses the rate at any step"
+                if self.drive == "servo"
+                else "a state that is overwritten between steps obeys no equation of which an order is known"
+            )
+        order = ORDER if self.integrator == "RK4" else 1
+        # A contact's row knows the velocity and not how it changes: first order at best, whatever integrates it.
+        if rolling and isinstance(self.rolls, RollContact):
+            return Promise(1)
+        gap = None if tree.closed or rolling else EXACT
+        if skating and self.skates != "rows":
+            # A row that is held at the ends of steps; one at the pose that the velocity leads to has less slip.
+            return Promise(1, gap=gap, slip=2 if self.skates == "predicted tendon" else None)
+        if tree.closed and isinstance(self.stiffness, TiedToStep):
+            if order > 1:
+                return Promise(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)
+            return SPRUNG_PRESCRIBED if is_prescribed(mechanism) else SPRUNG
+        if tree.closed or rolling or skating:
+            return Promise(order, gap=gap)
+        if turns_steadily(mechanism):
+            return Promise(EXACT)  # its coordinates turn at a constant rate, which any integrator adds up
+        return Promise(order, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """About how long a step takes [s]: a completed contact is read and written entry by entry in every stage."""
-        return (40e-6 if isinstance(self.rolls, CompletedContact) else 12e-6) * over_three(mechanism)
+        """About how long a step takes [s]."""
+        return 12e-6 * over_three(mechanism)
 
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
-        """See `engines.mujoco.theory`."""
-        return theory.holder(self, joint, self._tree(mechanism))
+        """Coordinates of the tree, connects, fixed tendons, contacts and servos are MuJoCo's; rows that callbacks or
+        hooks write are shared; a state that is worked out beside MuJoCo is ours.
+        """
+        tree = self._tree(mechanism)
+        match joint:
+            case Drive() if joint not in tree.kept and self.drive == "overwrite":
+                return "ours"
+            case Slot() if tree.closes_by(joint) and self.slots == "rows" and resting_line(joint, tree) is None:
+                return "engine, our rows"
+            case Rod() if self.rods == "rows":
+                return "engine, our rows"
+            case Skate() if self.skates != "blade":
+                return "engine, our rows"
+            case Roll() if self.rolls == "rows":
+                return "engine, our rows"
+        return "engine"
 
     def _tree(self, mechanism: Mechanism) -> Tree:
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
@@ -116,12 +152,11 @@ class MuJoCo(Valid):
         soft = [tree.closes_by(joint) or isinstance(joint, Skate | Roll) for joint in mechanism.joints]
         if not any(soft):
             return None
-        stiffness, rolling = self.stiffness, any(isinstance(joint, Roll) for joint in mechanism.joints)
-        if rolling and isinstance(self.rolls, RollContact):
-            stiffness = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps)
-        lacking = rolling and isinstance(self.rolls, RollContact | RollEquality)
+        stiffness, lacking = self.stiffness, False
+        if isinstance(self.rolls, RollContact) and any(isinstance(joint, Roll) for joint in mechanism.joints):
+            stiffness, lacking = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
         skating = any(isinstance(joint, Skate) for joint in mechanism.joints)
-        lacking |= skating and self.skates in ("blade", "wheel", "servo", "tendon", "tendon friction")
+        lacking |= skating and self.skates in ("blade", "tendon friction")
         lacking |= self.rods == "tendon" and any(isinstance(joint, Rod) for joint in mechanism.joints)
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(
@@ -145,7 +180,7 @@ class MuJoCo(Valid):
             solver_rows=data.nefc,
         )
         promised = self.order(mechanism) if self.estimates else None
-        fourth = isinstance(promised, Promise) and promised.order >= theory.ORDER
+        fourth = isinstance(promised, Promise) and promised.order >= ORDER
         if not fourth:
             return MuJoCoRun(model, data, size)
 
@@ -156,7 +191,7 @@ class MuJoCo(Valid):
             return MuJoCoRun(model, data, size, plain)  # how far a contact turns in a step is known, and told
 
         def divided(duration: float) -> Division:
-            return division(self, lambda own: plain(own).roughly, mechanism, duration, theory.ORDER, finest=64)
+            return division(self, lambda own: plain(own).roughly, mechanism, duration, ORDER, finest=64)
 
         return MuJoCoRun(model, data, size, plain, divided)
 
@@ -175,7 +210,7 @@ class MuJoCo(Valid):
 
     def _model(self, mechanism: Mechanism, dt: float, as_text: bool) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
-        integrator = "Euler" if stepwise and self.euler_for_skates else self.integrator
+        integrator = "Euler" if stepwise else self.integrator
         options = {
             "integrator": getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}"),
             "jacobian": getattr(mujoco.mjtJacobian, f"mjJAC_{self.jacobian.upper()}"),

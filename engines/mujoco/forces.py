@@ -16,7 +16,6 @@ import mujoco
 import numpy as np
 
 from engines.mujoco.construction import Building
-from engines.mujoco.joints.rod_gear_weld import add_site
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 AUTOMATIC = -1.0  # a springlength that MuJoCo replaces by the length at the start
@@ -27,11 +26,11 @@ def add_forces(building: Building) -> None:
     for force in building.mechanism.forces:
         match force:
             case Spring():
-                tendon = _between_sites(building, force)
+                tendon = building.add_between(_name(force), force)
                 tendon.springlength = [force.rest_length] * 2
                 _set(tendon, "stiffness", force.stiffness)
             case Damper():
-                _set(_between_sites(building, force), "damping", force.damping)
+                _set(building.add_between(_name(force), force), "damping", force.damping)
             case TorsionSpring():
                 _add_torsion_spring(building, force)
             case TorsionDamper():
@@ -56,23 +55,10 @@ def _set(tendon: Any, name: str, value: float) -> None:
     setattr(tendon, name, value if size == 1 else [value, *[0.0] * (size - 1)])
 
 
-def _between_sites(building: Building, force: Spring | Damper) -> Any:
-    """A spatial tendon between the element's two points."""
-    tendon = building.spec.add_tendon(name=_name(force))
-    for name, point, end in ((force.first, force.first_point, "first"), (force.second, force.second_point, "second")):
-        tendon.wrap_site(add_site(building, f"{_name(force)} {end}", name, point))
-    return tendon
-
-
 def _turning(building: Building, force: TorsionSpring | TorsionDamper | Torque, sense: float = 1.0) -> Any:
     """A fixed tendon as long as the second body has turned against the first; None if it can't turn against it."""
     signs = building.tree.turning(force.first, force.second)
-    if not signs:
-        return None
-    tendon = building.spec.add_tendon(name=_name(force))
-    for column, sign in signs.items():
-        tendon.wrap_joint(f"coordinate {column}", sense * sign)
-    return tendon
+    return building.add_sum(_name(force), {column: sense * sign for column, sign in signs.items()}) if signs else None
 
 
 def _add_torsion_spring(building: Building, force: TorsionSpring) -> None:
@@ -89,8 +75,8 @@ def _add_torsion_spring(building: Building, force: TorsionSpring) -> None:
 
 
 def _add_force(building: Building, force: Force) -> None:
-    site = add_site(building, f"{_name(force)} at", force.second, force.second_point)
-    origin = add_site(building, f"{_name(force)} from", None, (0.0, 0.0))
+    site = building.add_site(f"{_name(force)} at", force.second, force.second_point)
+    origin = building.add_site(f"{_name(force)} from", None, (0.0, 0.0))
     _push(building, force, mujoco.mjtTrn.mjTRN_SITE, [*force.force, *[0.0] * 4], target=site, refsite=origin)
 
 

@@ -6,13 +6,17 @@ them; what each way is stands in `engines.mujoco.joints`.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from engines.mujoco.engine import MuJoCo
-from engines.mujoco.joints.roll import CompletedContact, RollContact, RollEquality, RollRows
+from engines.mujoco.joints.roll import RollContact
+from engines.mujoco.model import Model
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
+from reference.checks import Positive, validated
+from reference.mechanism import Mechanism
 
 DEFAULT = MuJoCo("default")
+CONTACT = RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic")
 TUNED = MuJoCo(
     "tuned",
     "RK4",
@@ -22,7 +26,7 @@ TUNED = MuJoCo(
     jacobian="dense",
     islands=False,
     skates="predicted tendon",
-    rolls=RollContact(friction=10.0, steps=2.0, stick=True, cone="elliptic"),
+    rolls=CONTACT,
 )
 EXTENDED = MuJoCo(
     "extended",
@@ -36,7 +40,7 @@ EXTENDED = MuJoCo(
     islands=False,
     slots="rows",
     skates="rows",
-    rolls=RollRows(),
+    rolls="rows",
     estimates=True,
     rods="rows",
 )
@@ -57,33 +61,27 @@ DRIVES = (
     replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),
 )
 
-# What written rows and completed contacts need: MuJoCo's Newton solver, whose later steps refine what a compliance of
-# 1e-8 loses in the first; more of them bring nothing, and no tolerance would stop them.
-NEWTON = replace(EXTENDED, solvers=("Newton",), iterations=5, tolerance=1e-20)
-
-# A skate by every construction that we found in use, from the least exact to the most, each beside the integrator that
-# suits it: the orders of the integrators differ.
-SKATES = (
-    replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),
-    replace(TUNED, variant="thin wheel", skates="wheel", integrator="Euler"),
-    replace(TUNED, variant="velocity servo", skates="servo", integrator="implicit"),
-    replace(TUNED, variant="tendon friction", skates="tendon friction"),
-    replace(TUNED, variant="tendon", skates="tendon"),
-    replace(TUNED, variant="tendon RK4", skates="tendon", euler_for_skates=False),
-    replace(NEWTON, variant="leapfrog", skates="leapfrog"),
-    replace(TUNED, variant="applied force", skates="force"),
-    replace(EXTENDED, variant="passive force", skates="passive"),
-    # Nearly all of its error is the softness that it declares, which an estimate of the step's error would count in.
-    replace(EXTENDED, variant="rows, shipped compliance", stiffness=Hardened(softening=1.0), estimates=False),
-)
-
-ROLLS = (
-    replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),
-    replace(
-        TUNED, variant="joint equality, rewritten", integrator="Euler", stiffness=TiedToStep(2.0), rolls=RollEquality()
-    ),
-    replace(NEWTON, variant="contact, completed", rolls=CompletedContact()),
-)
-
+# A skate beside the variants': the blade of DEFAULT as fast as the step allows, and by the integrator that suits it.
+SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)
+ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
 # A slot whose line moves as a row of ours. It is no setting of MuJoCo's, so it is not what `TUNED` itself takes.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)
+
+
+@dataclass(frozen=True)
+class LimitedTendon(MuJoCo):
+    """A skate that slips when it would have to give more than `limit` [N]: the friction loss of MuJoCo's tendon."""
+
+    limit: Positive = 1.0
+
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
+        model = super().model(mechanism, dt, as_text)
+        model.compiled.tendon_frictionloss[:] = self.limit / model.unit
+        return model
+
+
+@validated
+def limited_tendon(limit: Positive) -> LimitedTendon:
+    """The tendon with a limit [N] on its friction."""
+    settings = {name: value for name, value in vars(TUNED).items() if name not in ("variant", "skates")}
+    return LimitedTendon("tendon with friction loss", **settings, skates="tendon friction", limit=limit)

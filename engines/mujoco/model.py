@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from importlib import import_module
 from typing import Any, Literal
 
 import mujoco
@@ -15,21 +17,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.mujoco.construction import Building, Hooks, in_turn
+from engines.mujoco.construction import Building, Hooks
 from engines.mujoco.forces import add_forces
 from engines.mujoco.joints.drive import DriveBy, DrivenCoordinate, add_drives, add_geared_drives, driven_coordinates
-from engines.mujoco.joints.pin import add_pins
-from engines.mujoco.joints.rod_gear_weld import RodBy, add_gears, add_rods, add_welds
-from engines.mujoco.joints.roll import RollBy
+from engines.mujoco.joints.links import RodBy, add_gears, add_pins, add_rods, add_welds
+from engines.mujoco.joints.roll import RollBy, add_rolls
 from engines.mujoco.joints.skate import SkateBy, add_skates
 from engines.mujoco.joints.slot import SlotBy, add_slots
 from engines.mujoco.releases import NO_ISLANDS
-from engines.mujoco.row_callback import reserve_plan, row_callback
 from engines.mujoco.stiffness import Stiffness
-from engines.mujoco.unit_of_mass import lighter, unit_of_mass
 from engines.mujoco.written_model import Written, new_specification
-from engines.mujoco.written_rows import add_placeholders, installed
 from engines.tree import Tree, spanning_tree
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -73,9 +72,18 @@ class Model:
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
     written_as: Written | None = None  # the model as text, where that was asked for
 
-    def hooked(self) -> AbstractContextManager[None]:
-        """The callbacks in place while this is entered: every step and every reading needs them."""
-        return installed(in_turn(self.hooks.control), in_turn(self.hooks.passive))
+    @contextmanager
+    def hooked(self) -> Iterator[None]:
+        """The callback in place while this is entered: every step and every reading needs it.
+
+        MuJoCo's, which is global, is as it was afterwards, whatever happens.
+        """
+        before = mujoco.get_mjcb_control()
+        mujoco.set_mjcb_control(self.hooks.control)
+        try:
+            yield
+        finally:
+            mujoco.set_mjcb_control(before)
 
     def loads(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2], as the compiled model has them."""
@@ -99,8 +107,8 @@ class Model:
         for place, rate in self.start_rates:
             data.qvel[place] = rate
         with self.hooked():
-            for prepare in (*self.hooks.before, *self.hooks.start, *self.hooks.before):
-                prepare(self.compiled, data)
+            if self.hooks.before:
+                self.hooks.before(self.compiled, data)
             mujoco.mj_forward(self.compiled, data)
         return data
 
@@ -109,25 +117,15 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
     whole, unit = mechanism, 1.0 if settings.as_text else unit_of_mass(mechanism)
     mechanism = lighter(mechanism, unit)
-    drives: list[Drive] = []
-    skating: list[Skate] = []
-    rolling: list[Roll] = []
     for joint in mechanism.joints:
-        match joint:
-            case Pin() | Slot() | Weld():
-                pass  # in the tree, or one of its loops
-            case Rod() | Gear():
-                pass  # a row beside the tree
-            case Drive():
-                drives.append(joint)
-            case Skate():
-                skating.append(joint)
-            case Roll():
-                rolling.append(joint)
-            case _:
-                raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
+        if not isinstance(joint, Pin | Slot | Weld | Rod | Gear | Drive | Skate | Roll):
+            raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
+
+    def of(kind: type[Any]) -> list[Any]:
+        return [joint for joint in mechanism.joints if isinstance(joint, kind)]
+
     tree = spanning_tree(mechanism, hanging=settings.coordinates == "tree")
-    single = [joint for joint in drives if joint not in (*tree.kept, *tree.geared)]
+    single = [joint for joint in of(Drive) if joint not in (*tree.kept, *tree.geared)]
     driven = driven_coordinates(tree, single)
 
     spec = _spec(tree, dt, settings)
@@ -136,17 +134,15 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     add_pins(building, [joint for joint in tree.loops if isinstance(joint, Pin)])
     add_slots(building, [joint for joint in tree.loops if isinstance(joint, Slot)], settings.slots)
     add_welds(building, [joint for joint in tree.loops if isinstance(joint, Weld)])
-    add_rods(building, [joint for joint in mechanism.joints if isinstance(joint, Rod)], settings.rods)
-    add_gears(building, [joint for joint in mechanism.joints if isinstance(joint, Gear)])
+    add_rods(building, of(Rod), settings.rods)
+    add_gears(building, of(Gear))
     add_forces(building)
     clocks = add_geared_drives(building, tree.geared, settings.drive, settings.armature)
-    add_skates(building, skating, settings.skates)
-    if rolling:
-        settings.rolls.add(building, rolling)
-    # The placeholders come last: what stands before them in the solver is then known.
-    add_placeholders(spec, tree, building.written, settings.stiffness.impedance)
+    add_skates(building, of(Skate), settings.skates)
+    add_rolls(building, of(Roll), settings.rolls)
     if building.written:
-        reserve_plan(spec, tree, building.written)
+        # The placeholders come last: what stands before them in the solver is then known.
+        user_rows().add_placeholders(building)
     compiled = _compiled(building)
     places = [int(compiled.joint(f"coordinate {column}").qposadr[0]) for column in range(tree.coordinates)]
     steady = [*(places[one.column] for one in driven), *(int(compiled.joint(clock).dofadr[0]) for clock in clocks)]
@@ -155,8 +151,8 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         scale[:] *= settings.stiffness.softening  # connects, joints, tendons
     hooks = sum((bind(compiled, places) for bind in building.binders), Hooks())
     if building.written:
-        write = row_callback(compiled, tree, places, building.written, settings.stiffness.softening)
-        hooks += Hooks(control=(write,))
+        write = user_rows().row_callback(compiled, tree, places, building.written, settings.stiffness.softening)
+        hooks += Hooks(control=write)
     rates = tuple((int(compiled.joint(name).dofadr[0]), rate) for name, rate in building.start_rates.items())
     return Model(
         whole,
@@ -167,7 +163,7 @@ def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
         settings.drive,
         hooks,
         building.size + sum(joint.size for joint in building.written),
-        building.writes,
+        bool(building.written),
         rates,
         unit,
         tuple(building.halves),
@@ -197,7 +193,7 @@ def _compiled(building: Building) -> Any:
         option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     dense = option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
     whole = option.disableflags & NO_ISLANDS == NO_ISLANDS
-    if building.writes and not (dense and whole):
+    if building.written and not (dense and whole):
         raise Unsupported(
             "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
         )
@@ -241,3 +237,35 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):
         compiled.opt.tolerance *= float(free.sum() / compiled.dof_M0.sum())
+
+
+def user_rows() -> Any:
+    """The module that writes rows, imported where one is written: it imports numba."""
+    return import_module("engines.mujoco.user_rows")
+
+
+def unit_of_mass(mechanism: Mechanism) -> float:
+    """About the mechanism's mass [kg]: a power of two, so that no number is rounded for it.
+
+    A regularisation below mjMINVAL (1e-15) is not taken, and it has a unit: that of an inverse mass.
+    """
+    return 2.0 ** round(math.log2(sum(body.mass for body in mechanism.bodies)))
+
+
+def lighter(mechanism: Mechanism, unit: float) -> Mechanism:
+    """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
+    bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
+    return replace(mechanism, bodies=tuple(bodies), forces=tuple(_weaker(force, unit) for force in mechanism.forces))
+
+
+def _weaker(force: ForceElement, unit: float) -> ForceElement:
+    """The same element where masses are counted in this unit [kg]."""
+    match force:
+        case Spring() | TorsionSpring():
+            return replace(force, stiffness=force.stiffness / unit)
+        case Damper() | TorsionDamper():
+            return replace(force, damping=force.damping / unit)
+        case Torque():
+            return replace(force, torque=force.torque / unit)
+        case Force():
+            return replace(force, force=(force.force[0] / unit, force.force[1] / unit))

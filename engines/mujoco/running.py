@@ -17,18 +17,17 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Size
 from engines.finer import Division, tells_itself
-from engines.mujoco.construction import in_turn
-from engines.mujoco.joints.roll.roll_warnings import roll_warnings
+from engines.mujoco.joints.roll import roll_warnings
 from engines.mujoco.model import Model
 from engines.mujoco.releases import marks
 from engines.mujoco.solver_check import unsolved
-from engines.mujoco.theory import ORDER
+from reference.checks import Count, validated
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int_]  # of steps since the start, rising, or places in such an array
 
+ORDER = 4  # of RK4, and so of every run with an estimate
 # A joint that opens by more than this part of the mechanism's length is no longer an error of integration: we say so.
 TORN = 1e-3
 # A solver that misses the accelerations by more than this part of them has not converged, whatever it reports.
@@ -92,7 +91,9 @@ class MuJoCoRun:
         mechanism, sampled = self.model.mechanism, np.arange(samples + 1) * every
         if self.other is None:
             return self._as_built(sampled, sampled)
-        watched = _watched(samples * every)
+        # After every second step, or WATCHED of these.
+        half = (samples * every + 1) // 2
+        watched = 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
         counts = np.union1d(sampled, watched)
         at_samples, at_watched = np.searchsorted(counts, sampled), np.searchsorted(counts, watched)
         run, spent, (found, apart) = self, 0.0, self._doubled(counts, sampled)
@@ -242,7 +243,7 @@ class MuJoCoRun:
         now_position, now_velocity, advance = data.qpos, data.qvel, mujoco.mj_step
         position[0], velocity[0], clock[0] = now_position, now_velocity, data.time
         overwrite = self.model.drive == "overwrite" and self.model.driven
-        before = in_turn(self.model.hooks.before)
+        before = self.model.hooks.before
         steps = list(enumerate(np.diff(counts).tolist(), 1))
         begin = time.process_time()
         if before:
@@ -282,12 +283,10 @@ class MuJoCoRun:
         largest = min(mechanism.length_scale, 1.0) / mechanism.time_scale**2
         for sample in np.flatnonzero(sound):
             data.qpos[:], data.qvel[:], data.time = position[sample], velocity[sample], t[sample]
-            for prepare in self.model.hooks.before:
-                prepare(compiled, data)
+            if self.model.hooks.before:
+                self.model.hooks.before(compiled, data)
             mujoco.mj_forward(compiled, data)
             acceleration[sample] = data.qacc
-            if self.model.hooks.read:
-                position[sample], velocity[sample], acceleration[sample] = self.model.hooks.read(compiled, data)
             data.qacc_warmstart[:] = data.qacc
             size = float(np.abs(data.qacc).max())
             largest = max(largest, size)
@@ -308,12 +307,6 @@ class MuJoCoRun:
         if not missed <= UNSOLVED:
             doubts.append(f"ours: the solver missed the accelerations by {missed:.1g} of themselves")
         return doubts
-
-
-def _watched(steps: int) -> Counts:
-    """After how many of the steps an estimate is made, however often somebody samples: every second, or WATCHED."""
-    half = (steps + 1) // 2
-    return 2 * np.unique(np.linspace(0, half, min(half, WATCHED) + 1).round().astype(int))
 
 
 def _at(found: Trajectory, places: Counts) -> Trajectory:

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from reference.checks import Positive, Valid, validated
 from reference.mechanism import Mechanism
-from reference.validation import Positive, Valid, validated
 
 # MuJoCo clamps its impedance d here (mjMAXIMP); both ends of its range are this, so that d is constant.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)

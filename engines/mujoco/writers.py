@@ -1,19 +1,22 @@
-"""What `crosscheck export` and `view` ask of MuJoCo: files that run without this suite, and its viewer."""
+"""What `crosscheck export` and `view` ask of MuJoCo: MJCF and URDF that run without this suite, and its viewer."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+from xml.etree import ElementTree as xml
 
 from engines import Unsupported
 from engines.mujoco.methods import VARIANTS
-from engines.mujoco.written_urdf import urdf
+from engines.tree import Link, spanning_tree
 from reference.mechanism import Mechanism
 
 
@@ -68,3 +71,73 @@ def show(text: str) -> None:
 
 
 MJCF, URDF = Mjcf(), Urdf()
+
+
+def urdf(mechanism: Mechanism) -> str:
+    """The file's text. Raises Unsupported for loops, free bodies, prescribed motions, and forces."""
+    tree = spanning_tree(mechanism)
+    for joint in (
+        *tree.loops,
+        *(each for each in mechanism.joints if type(each).__name__ in ("Rod", "Gear", "Skate", "Roll")),
+    ):
+        raise Unsupported(f"joint {joint.name!r} closes a loop or is none of a tree; URDF has neither")
+    driven = [joint for joint in mechanism.joints if type(joint).__name__ == "Drive" and joint not in tree.kept]
+    if driven:
+        raise Unsupported(f"drive {driven[0].name!r} prescribes a motion, which URDF has no word for")
+    if mechanism.forces:
+        raise Unsupported(f"force {mechanism.forces[0].name!r}: URDF has no springs and no applied forces")
+    root = xml.Element("robot", {"name": "crosscheck"})
+    xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _row(*_upright(*mechanism.gravity))})
+    if mechanism.twist.any():
+        root.append(
+            xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
+        )
+    xml.SubElement(root, "link", {"name": "world"})
+    for link in tree.links:
+        _add(root, mechanism, link)
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode") + "\n"
+
+
+def _add(root: xml.Element, mechanism: Mechanism, link: Link) -> None:
+    """A body's frame is its joint's point, parallel to the world at the start."""
+    body = mechanism.bodies[link.body]
+    if link.kind == "free" or (link.kind == "slot" and link.turns):
+        raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
+    element = xml.SubElement(root, "link", {"name": body.name})
+    inertial = xml.SubElement(element, "inertial")
+    xml.SubElement(inertial, "origin", {"xyz": _row(*_upright(-link.anchor[0], -link.anchor[1])), "rpy": "0 0 0"})
+    xml.SubElement(inertial, "mass", {"value": repr(float(body.mass))})
+    tensor = {name: repr(float(body.inertia)) for name in ("ixx", "iyy", "izz")} | dict.fromkeys(
+        ("ixy", "ixz", "iyz"), "0"
+    )
+    xml.SubElement(inertial, "inertia", tensor)
+    kind = "prismatic" if link.kind == "slot" else "continuous" if link.turns else "fixed"
+    parent = "world" if link.parent is None else mechanism.bodies[link.parent].name
+    joint = xml.SubElement(root, "joint", {"name": f"joint of {body.name}", "type": kind})
+    xml.SubElement(joint, "parent", {"link": parent})
+    xml.SubElement(joint, "child", {"link": body.name})
+    at = link.arm
+    if link.parent is not None:
+        base = _anchor(mechanism, link.parent)
+        at = (at[0] - base[0], at[1] - base[1])
+    xml.SubElement(joint, "origin", {"xyz": _row(*_upright(*at)), "rpy": "0 0 0"})
+    axis = (0.0, -1.0, 0.0) if link.kind == "hinge" else _upright(*link.direction)
+    if kind != "fixed":
+        xml.SubElement(joint, "axis", {"xyz": _row(*axis)})
+    if link.kind == "slot":
+        xml.SubElement(joint, "limit", {"lower": "-1e9", "upper": "1e9", "effort": "1e9", "velocity": "1e9"})
+
+
+def _anchor(mechanism: Mechanism, body: int) -> tuple[float, float]:
+    """The joint's point of a body's own link from its centre of mass, with world directions at the start [m]."""
+    return next(link.anchor for link in spanning_tree(mechanism).links if link.body == body)
+
+
+def _upright(x: float, y: float) -> tuple[float, float, float]:
+    """A vector of the plane in URDF's frame."""
+    return (x, 0.0, y)
+
+
+def _row(*values: Any) -> str:
+    return " ".join(repr(float(value) if not math.isclose(value, 0.0, abs_tol=0.0) else 0.0) for value in values)

@@ -1,17 +1,23 @@
-"""A model of ours as an MJCF file that runs without us: its options, its bodies under their names, its start."""
+"""A model of ours as an MJCF file that runs without us: its options, its bodies under their names, its start, and bars
+and points that let it be seen. Nothing touches these, and they have no mass.
+"""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as xml
 
 import mujoco
+import numpy as np
 
 from engines import Unsupported
-from engines.mujoco.visuals import add_visuals
+from reference.joints import Slot, Vector
+from reference.mechanism import Mechanism
+from reference.plane import rotated
 
 if TYPE_CHECKING:
     from engines.mujoco.model import Model
@@ -19,13 +25,15 @@ if TYPE_CHECKING:
 INTEGRATORS = {"EULER": "Euler", "RK4": "RK4", "IMPLICIT": "implicit", "IMPLICITFAST": "implicitfast"}
 SOLVERS = {"PGS": "PGS", "CG": "CG", "NEWTON": "Newton"}
 FLAGS = ("contact", "island")
+THICKNESS = 0.02  # of bars, in the mechanism's lengths
+UNTOUCHED = {"contype": "0", "conaffinity": "0", "mass": "0"}
 REFERRING = ("name", "body", "body1", "body2")
 
 
 def as_text(model: Model, softening: float) -> str:
     """The file's text. Raises Unsupported for a model that our code helps while it is stepped."""
     hooks = model.hooks
-    if hooks.control or hooks.passive or hooks.before or hooks.start or model.written or model.drive == "overwrite":
+    if hooks.control or hooks.before or model.drive == "overwrite":
         raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
     if softening != 1:
         raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
@@ -84,3 +92,51 @@ def _rename(root: xml.Element, model: Model) -> None:
 
 def _row(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
+
+
+def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
+    """Bars through the joints of every "body i" of a model that has no shapes yet, and the view onto its plane."""
+    size = repr(THICKNESS * mechanism.length_scale)
+    visual = xml.Element("visual")
+    xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
+    xml.SubElement(visual, "headlight", {"ambient": "0.5 0.5 0.5"})
+    root.insert(1, visual)
+    world = root.find("worldbody")
+    assert world is not None
+    for index, body in enumerate(mechanism.bodies):
+        element = next(each for each in world.iter("body") if each.get("name") == f"body {index}")
+        if element.find("geom") is not None:
+            continue
+        # The file's bodies stand parallel to the world at the start.
+        ends = [_place(rotated(body.pose[2], np.array(point))) for point in _points(mechanism, body.name)]
+        for first, second in pairwise(ends):
+            look = {"type": "capsule", "fromto": f"{first} {second}", "size": size, "rgba": "0.3 0.5 0.8 1"}
+            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+        if len(ends) == 1:
+            look = {"type": "sphere", "size": repr(3 * float(size)), "rgba": "0.3 0.5 0.8 1"}
+            element.append(xml.Element("geom", {**look, **UNTOUCHED}))
+    for point in _points(mechanism, None):
+        look = {
+            "type": "sphere",
+            "pos": _place(np.array(point)),
+            "size": repr(1.5 * float(size)),
+            "rgba": "0.5 0.5 0.5 1",
+        }
+        world.append(xml.Element("geom", {**look, **UNTOUCHED}))
+
+
+def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
+    """Joint points of a body, with its centre of mass where there is at most one; those of the ground alone."""
+    points = [
+        tuple(getattr(joint, which))
+        for joint in mechanism.joints
+        for owner, which in ((joint.first, "first_point"), (joint.second, "second_point"))
+        if owner == name and hasattr(joint, which) and not (isinstance(joint, Slot) and which == "first_point")
+    ]
+    if name is not None and len(set(points)) < 2:
+        points.append((0.0, 0.0))
+    return list(dict.fromkeys(points))
+
+
+def _place(point: np.ndarray) -> str:
+    return f"{float(point[0])!r} {float(point[1])!r} 0.0"

@@ -37,8 +37,8 @@ from engines.pymunk.engine import SHIPPED_ERROR_BIAS, SHIPPED_ITERATIONS, Pymunk
 from engines.pymunk.extended import Extended
 from engines.pymunk.joints.roll import Contact
 from engines.pymunk.methods import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, VARIANTS
+from reference.checks import Count, Positive, validated
 from reference.mechanism import Mechanism
-from reference.validation import Count, Positive, validated
 
 
 @validated

@@ -27,11 +27,12 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
+from engines.remembered import by_identity
+from reference.checks import LARGEST_COUNT, Count, Numbers, validated
 from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
-from reference.row_system import RANK_TOLERANCE
-from reference.validation import LARGEST_COUNT, Count, Numbers, validated
+from reference.rows import RANK_TOLERANCE
 
 Array = NDArray[np.float64]
 
@@ -41,6 +42,7 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
+STAGES = 6  # more of them show less, but longer: what shows of these is over at the tenth step, often the first sample
 # What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no
 # part of rho: five sweeps leave a disc on a plane without half of its force, ten leave nothing to be seen.
 CONTACT_CONVERGED = 1000
@@ -48,15 +50,12 @@ CONTACT_CONVERGED = 1000
 Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 Contraction = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
-_latest: list[tuple[Mechanism, float]] = []  # an extrapolation builds the same mechanism several times in a row
 
-
+@by_identity()
 @validated
 def contraction(mechanism: Mechanism) -> float:
     """rho of the mechanism at its start, 0 if no joint feels another; dependent rows are left out."""
-    if not (_latest and _latest[0][0] is mechanism):
-        _latest[:] = [(mechanism, contraction_at(mechanism, mechanism.pose))]
-    return _latest[0][1]
+    return contraction_at(mechanism, mechanism.pose)
 
 
 @validated
@@ -158,6 +157,19 @@ class Sweeping:
     left: float = 0.0
     converged: int = 1000
     unsettled: float = 0.0
+
+    def settling(self, steps: int) -> list[int]:
+        """Iterations at the beginning of a run: as many as leave nothing, then in STAGES of so many steps ever fewer.
+
+        What sweeps leave moves all poses by a series in the step, once some steps have passed. How it builds up is no
+        series, as that takes a number of steps and not a time. In many small stages it hardly shows; each ends at the
+        same time in all runs of an extrapolation.
+        """
+        first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
+        if not 0 < self.left <= LEFT:
+            return first
+        more = [ceil(self.iterations * (1 + log(STAGES / stage) / -log(self.left))) for stage in range(1, STAGES)]
+        return first + [min(each, self.converged) for each in more for _ in range(steps)]
 
 
 @validated

@@ -8,7 +8,7 @@ from typing import Literal
 import pymunk
 from pymunk.constraints import PivotJoint
 
-from engines import Holder, Promise, Softness, Unpromised
+from engines import Engine, Holder, Promise, Softness, Unpromised
 from engines.motions import over_three
 from engines.pymunk import theory
 from engines.pymunk.contraction import CONTACT_CONVERGED, FEWEST, Sweeping, Whole, sweeping, swept_by
@@ -18,10 +18,10 @@ from engines.pymunk.joints.skate import SkateConstruction
 from engines.pymunk.joints.slot import SlotConstruction
 from engines.pymunk.model import Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
+from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
-from reference.validation import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 
 
 def _shipped() -> tuple[int, float]:
@@ -41,13 +41,14 @@ STEP_COST, SWEEP_COST = 2e-6, 13e-9
 
 
 @dataclass(frozen=True)
-class Pymunk(Valid):
+class Pymunk(Engine, Valid):
     """An engine in the sense of `engines.Engine`.
 
     `iterations` sweeps over the joints in a step; `error_bias` in [0, 1], the fraction of a joint's gap that is left
     after one second; either may be "contraction": by how fast sweeps converge here (`engines.pymunk.contraction`).
     `fewest` sweeps are made by contraction, and more than `engines.pymunk.contraction.MOST` only while a step takes no
-    more `work`, sweeps times joints. `settled`: the first steps make as many sweeps as leave nothing.
+    more `work`, sweeps times joints. `settled`: how many steps has each stage at the beginning of a run, in which
+    sweeps become fewer, from as many as leave nothing; 0 for none.
     `leapfrog`: start half a step ahead, read velocities in between, and step without the checks in `Space.step`, which
     never apply to a model that does not change. `skate`, `roll` and `slot` name what stands for such a joint
     (`engines.pymunk.joints.skate`, `.roll`, `.slot`), `contact` how contact is set where it stands for a Roll.
@@ -57,6 +58,9 @@ class Pymunk(Valid):
 
     Raises ValueError for other values: the engine would abort the process.
     """
+
+    name = "pymunk"
+    packages = ("pymunk",)
 
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS
@@ -68,21 +72,13 @@ class Pymunk(Valid):
     roll: RollConstruction = "contact"
     slot: SlotConstruction = "exact"
     contact: Contact = SHIPPED_CONTACT
-    settled: bool = False
+    settled: Whole = 0
     fewest: Count = FEWEST
     work: Whole = 0
 
     @property
-    def name(self) -> str:
-        return "pymunk"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("pymunk",)
-
-    @property
-    def family(self) -> str:
-        return "pymunk"
+    def touches(self) -> bool:
+        return self.roll == "contact"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -96,7 +92,7 @@ class Pymunk(Valid):
 
     @validated
     def step_cost_within(self, mechanism: Mechanism, duration: Positive) -> float:
-        """The same in a motion of `duration` [s], swept for its worst pose: see `engines.finer.Lasting`."""
+        """The same in a motion of `duration` [s], swept for its worst pose."""
         return self._cost(mechanism, self.sweeping(mechanism, duration))
 
     def _cost(self, mechanism: Mechanism, swept: Sweeping) -> float:
@@ -112,8 +108,7 @@ class Pymunk(Valid):
 
         One step stops a slip and closes a share of a gap; a row of the pose before the drift has no term of velocities.
         """
-        rolling = any(isinstance(joint, Roll) for joint in mechanism.joints)
-        stale = (rolling and self.roll != "pivot") or self.skate == "stale groove"
+        stale = self.touches and any(isinstance(joint, Roll) for joint in mechanism.joints)
         closed = 1.0 if isinstance(self.error_bias, str) else 1 - self.error_bias**dt
         if not stale and (closed == 1 or not mechanism.holonomic.any()):
             return None
@@ -132,7 +127,12 @@ class Pymunk(Valid):
         )
 
     @validated
-    def sweeps(self, mechanism: Mechanism) -> int:
+    def settled_for(self, steps: Count) -> Pymunk:
+        """The same with stages of so many steps, if it settles: see `engines.extrapolated.Settling`."""
+        return replace(self, settled=steps) if self.settled else self
+
+    @validated
+    def iterations_of(self, mechanism: Mechanism) -> int:
         """Iterations in a step for this mechanism, as it starts."""
         return self.sweeping(mechanism).iterations
 
@@ -170,3 +170,22 @@ class Pymunk(Valid):
             self.contact,
         )
         return build_model(mechanism, settings)
+
+
+@dataclass(frozen=True)
+class LimitedGroove(Pymunk):
+    """A groove for a skate that slips when it would have to give more than `limit` [N], like dry friction."""
+
+    limit: Positive = 1.0
+
+    def swept_model(self, mechanism: Mechanism, dt: float, sweeping: Sweeping) -> Model:
+        model = super().swept_model(mechanism, dt, sweeping)
+        for constraint in model.space.constraints:
+            constraint.max_force = self.limit
+        return model
+
+
+@validated
+def limited_groove(limit: Positive) -> LimitedGroove:
+    """The groove with a limit [N] on its force."""
+    return LimitedGroove("groove with max_force", 5, 0.0, skate="groove", limit=limit)

@@ -18,9 +18,10 @@ from engines.pymunk.contraction import DENSE, contraction, contraction_at, contr
 from engines.pymunk.joints.roll import SHIPPED_CONTACT
 from engines.pymunk.model import Settings, build_model
 from engines.pymunk.running import record
+from engines.remembered import by_identity
+from reference.checks import NonNegative, validated
 from reference.joints import Roll
 from reference.mechanism import Mechanism
-from reference.validation import NonNegative, validated
 
 POSES, FEW_POSES = 16, 2  # for up to DENSE rows, and beyond
 ROUGH = 20  # steps in one radian of the fastest motion that is promised
@@ -31,18 +32,16 @@ SOFT = Settings(
 )
 TORN = 0.05  # of the mechanism's length: from there on it is another mechanism
 
-_latest: list[tuple[Mechanism, float, float]] = []  # an extrapolation asks for the same several times in a row
-
 
 @validated
 def worst_contraction(mechanism: Mechanism, duration: NonNegative) -> float:
     """The largest `contraction` over the start and what a rough run passes within `duration` [s]."""
-    duration = float(f"{duration:.12g}")  # the levels of an extrapolation round one duration differently
-    if not (_latest and _latest[0][0] is mechanism and _latest[0][1] == duration):
-        passed = _poses(mechanism, duration)
-        found = max([contraction(mechanism), *_all(mechanism, passed)])
-        _latest[:] = [(mechanism, duration, found)]
-    return _latest[0][2]
+    return _worst(mechanism, float(f"{duration:.12g}"))  # the levels of an extrapolation round it differently
+
+
+@by_identity()
+def _worst(mechanism: Mechanism, duration: float) -> float:
+    return max([contraction(mechanism), *_all(mechanism, _poses(mechanism, duration))])
 
 
 def _all(mechanism: Mechanism, poses: list[np.ndarray]) -> list[float]:

@@ -4,36 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engines import Holder, Promise, Run, Softness, Unpromised
+from engines import Engine, Holder, Promise, Run, Softness, Unpromised
 from engines.extrapolated import Extrapolated
+from reference.checks import Name, Positive, Valid, validated
 from reference.joints import Joint, Skate
 from reference.mechanism import Mechanism
-from reference.validation import Name, Positive, Valid, validated
 
 
 @dataclass(frozen=True)
-class Extended(Valid):
+class Extended(Engine, Valid):
     """An engine in the sense of `engines.Engine` that takes one of two others, by the mechanism's joints and forces.
 
     `skates`: skates, or dampers, which act at the end of a step instead of around it, so of first order. `pins`: all
     others.
     """
 
+    name = "pymunk"
+    packages = ("pymunk",)
+
     variant: Name
     skates: Extrapolated
     pins: Extrapolated
-
-    @property
-    def name(self) -> str:
-        return "pymunk"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("pymunk",)
-
-    @property
-    def family(self) -> str:
-        return "pymunk"
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -60,6 +51,9 @@ class Extended(Valid):
         if any(isinstance(joint, Skate) for joint in mechanism.joints) or mechanism.applied.dissipate:
             return self.skates
         return self.pins
+
+    def within(self, mechanism: Mechanism) -> Engine:
+        return self.chosen(mechanism).within(mechanism)
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:

@@ -1,6 +1,6 @@
 """Every method of pymunk as a value: the three variants, what lies between them, and each construction of a joint.
 
-METHODS are for every scene. SKATES, ROLLS and SLOTS hold one kind of joint in one way each, for a page that compares
+METHODS are for every scene. What stands below them holds one kind of joint in one way each, for a page that compares
 them; what each way is stands in `engines.pymunk.joints`.
 """
 
@@ -22,7 +22,7 @@ LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate
 # What is extrapolated has to be smooth in the step from the first sample on, and stable: about two milliseconds a step
 # for the few mechanisms whose rows nearly depend on each other, where 300 sweeps leave nearly all.
 WORK = 200_000
-SETTLED = replace(LEAPFROG, settled=True, work=WORK)
+SETTLED = replace(LEAPFROG, settled=1, work=WORK)
 # Skates and hinges in one loop pass impulses round: with fewer sweeps, what they leave shows before the step's error.
 # To aim a groove takes as long as these forty.
 AIMED = Pymunk(
@@ -31,7 +31,7 @@ AIMED = Pymunk(
     "contraction",
     skate="groove",
     roll="pivot",
-    settled=True,
+    settled=1,
     fewest=40,
     work=WORK,
 )
@@ -45,54 +45,18 @@ EXTENDED = Extended(
 VARIANTS: tuple[Engine, ...] = (DEFAULT, TUNED, EXTENDED)
 METHODS: tuple[Engine, ...] = (DEFAULT, TUNED, LEAPFROG, EXTENDED)
 
-# A skate by every construction that we found in use.
+# A skate as users try it, by an impulse, and by pymunk's own joint.
 SKATE_CENTRE = Pymunk("skate: centre's velocity zeroed", skate="centre")
 SKATE_POINT = Pymunk("skate: point's velocity zeroed", skate="point")
 SKATE_PROJECTED = Pymunk("skate: impulse at the blade", skate="projection")
-SKATE_STALE_GROOVE = Pymunk("skate: groove, stale heading", skate="stale groove")
 SKATE_GROOVE = Pymunk("skate: groove, predicted heading", skate="groove")
-SKATE_FRICTION = Pymunk("skate: friction", skate="friction")
 SKATE_GROOVE_EXTRAPOLATED = Extrapolated(AIMED, "skate: groove, extrapolated", levels=FIVE, powers=(1, 2, 3, 4))
-SKATES: tuple[Engine, ...] = (
-    SKATE_CENTRE,
-    SKATE_POINT,
-    SKATE_PROJECTED,
-    SKATE_STALE_GROOVE,
-    SKATE_GROOVE,
-    SKATE_FRICTION,
-    SKATE_GROOVE_EXTRAPOLATED,
-)
+SKATES: tuple[Engine, ...] = (SKATE_CENTRE, SKATE_POINT, SKATE_PROJECTED, SKATE_GROOVE, SKATE_GROOVE_EXTRAPOLATED)
 
 # A round body is one shape without corners, so the methods that differ in corners only are one method for it.
 CORNERS = (8, 32, 128, 512)
-ROLL_SHIPPED = Pymunk("roll: contact as shipped", roll="contact")
 ROLL_FACETED = tuple(
     Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=Contact(1.0, 1.0, vertices=corners))
     for corners in CORNERS
 )
-ROLL_THIN_GROUND = Pymunk(
-    "roll: contact, 512 corners, thin ground", roll="contact", contact=Contact(1.0, 1.0, vertices=512, thickness=0.0)
-)
-ROLL_STALE_PIVOT = Pymunk("roll: pivot, stale contact", 5, 0.0, leapfrog=True, roll="stale pivot")
 ROLL_PIVOT = Pymunk("roll: pivot, predicted contact", 5, 0.0, leapfrog=True, roll="pivot")
-ROLL_PIVOT_EXTRAPOLATED = Extrapolated(ROLL_PIVOT, "roll: pivot, extrapolated", levels=FIVE, powers=(2, 3, 4, 5))
-ROLLS: tuple[Engine, ...] = (
-    ROLL_SHIPPED,
-    *ROLL_FACETED,
-    ROLL_THIN_GROUND,
-    ROLL_STALE_PIVOT,
-    ROLL_PIVOT,
-    ROLL_PIVOT_EXTRAPOLATED,
-)
-
-# On a slider of its own, with the groove at its centre, both are the same; on the end of a rod the first is a trap.
-SLOT_GROOVE = Pymunk("slot: groove at the point", slot="groove")
-SLOT_GROOVE_TUNED = Pymunk("slot: groove at the point, tuned", "contraction", "contraction", slot="groove")
-SLOT_EXACT = Pymunk("slot: exact row", "contraction", "contraction", leapfrog=True)
-SLOT_GROOVE_EXTRAPOLATED = Extrapolated(
-    Pymunk("slot: groove at the point", 10, 0.0, leapfrog=True, slot="groove"),
-    "slot: groove at the point, extrapolated",
-    levels=FIVE,
-    powers=(2, 3, 4, 5),
-)
-SLOTS: tuple[Engine, ...] = (SLOT_GROOVE, SLOT_GROOVE_TUNED, SLOT_EXACT, SLOT_GROOVE_EXTRAPOLATED)

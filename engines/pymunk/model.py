@@ -15,8 +15,7 @@ from pymunk.constraints import Constraint, GearJoint, GrooveJoint, PinJoint, Piv
 from engines import Size, Unsupported
 from engines.pymunk.forces import applied, spring
 from engines.pymunk.joints.drive import crank_body, find_cranks, find_turned, motor, turned_body
-from engines.pymunk.joints.pin import pin
-from engines.pymunk.joints.rod_gear_weld import gear, rod, weld
+from engines.pymunk.joints.pin import gear, pin, rod, weld
 from engines.pymunk.joints.roll import Contact, MovedPivot, RollConstruction, extent_of, touching
 from engines.pymunk.joints.skate import SkateConstruction, blade
 from engines.pymunk.joints.slot import SlotConstruction, slide
@@ -216,7 +215,7 @@ class _Builder:
     def _roll(self, joint: Roll, first: pymunk.Body, second: pymunk.Body) -> list[Constraint]:
         if self.settings.roll != "contact":
             origins = self._origin(joint.first), self._origin(joint.second)
-            pivot = MovedPivot(joint, first, second, origins, predicted=self.settings.roll == "pivot")
+            pivot = MovedPivot(joint, first, second, origins)
             self.aims.append(pivot)
             return [pivot.constraint]
         contact = self.settings.contact

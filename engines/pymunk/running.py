@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any
@@ -11,23 +11,67 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import lib
+from pymunk._chipmunk_cffi import ffi, lib
+from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
-from engines import Size
-from engines.pymunk.batched import Recorder
+from engines import OneShot, Size
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.model import Model
-from engines.read_reactions import reactions
+from engines.single_run import reactions
+from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validation import Count, validated
 
 Array = NDArray[np.float64]
 
-# Steps at the beginning of a run with sweeps that leave nothing: what the cold start of the impulses leaves otherwise
-# falls by a fifth only in a step, and is felt in the reactions of the first samples.
-SETTLING = 4
+VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
+# C grows an array a little before it is full, and ours are not its own to grow.
+SPARE = 64
 UNSETTLED = 1e-5  # of the slowest mode after the sweeps of the first reaction: beyond, it is told
+
+
+class Recorder:
+    """Copies the bodies of a space, in C, to the end of an array that is allocated before.
+
+    `lib.cpSpaceEachBody(space, visitor, states)`, or with `velocities`, copies one record.
+    """
+
+    def __init__(self, space: pymunk.Space, bodies: tuple[pymunk.Body, ...], states: int, velocities: int) -> None:
+        visited = visited_bodies(space)
+        self._order = [visited.index(body.id) for body in bodies]
+        self._count = len(visited)
+        length = (6 * states + 3 * velocities) * self._count
+        room = np.full(length + SPARE, np.nan)
+        self.values = room[:length]
+        floats = ffi.from_buffer("double[]", room)
+        integers = ffi.new("pmIntArray *")
+        target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
+        self._owned = (floats, integers, target)  # C holds bare pointers to these
+        self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
+        self.states, self.velocities = (
+            ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
+            for fields in (STATES, VELOCITIES)
+        )
+
+    def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
+        """States (samples + 1, bodies, 6) and the velocities one step before each (samples, bodies, 3).
+
+        In the array stands a state, then for every sample, if `with_velocities`, velocities and a state, else a state.
+        """
+        first, rest = np.split(self.values, [6 * self._count])
+        rest = rest.reshape(samples, -1)
+        split = 3 * self._count if with_velocities else 0
+        states = np.concatenate([first[None], rest[:, split:]]).reshape(samples + 1, self._count, 6)
+        before = rest[:, :split].reshape(samples, self._count, 3) if with_velocities else states[:-1, :, 3:]
+        return states[:, self._order], before[:, self._order]
+
+
+def visited_bodies(space: pymunk.Space) -> list[int]:
+    """The ids of a space's bodies in the order in which C visits them, which is not the order of adding."""
+    buffer = Buffer()
+    get_space_bodies(space, BodyFields.BODY_ID, buffer)
+    return list(memoryview(buffer.int_buf()).cast("P"))
 
 
 @dataclass(frozen=True)
@@ -47,11 +91,11 @@ def record(
     samples: int,
     every: int,
     raw: bool,
-    settling: int = 0,
+    settling: Sequence[int] = (),
 ) -> Recording:
     """Step samples * every times and keep every `every`-th state, with the velocities of the step before it.
 
-    With `settling`, the first SETTLING steps have so many iterations.
+    `settling`: the iterations of the first steps.
     """
     velocities = every > 1
     recorder = Recorder(model.space, model.bodies, samples + 1, samples if velocities else 0)
@@ -63,20 +107,16 @@ def record(
     steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
-    steps_left = SETTLING if settling else 0
+    first = list(reversed(settling))
 
     def settle(space: Any, dt: float) -> None:
-        nonlocal steps_left
-        if steps_left > 0:
-            lib.cpSpaceSetIterations(pointer, max(settling, own))
+        lib.cpSpaceSetIterations(pointer, first.pop() if first else own)
         step(space, dt)
-        lib.cpSpaceSetIterations(pointer, own)
-        steps_left -= 1
 
     begin = time.process_time()
     try:
         for _ in repeat(None, samples):
-            move = settle if steps_left > 0 else step
+            move = settle if first else step
             if velocities:
                 for _ in steps_between:
                     move(space, dt)
@@ -136,7 +176,7 @@ def loads(model: Model) -> tuple[Array, tuple[float, float]]:
     return inertias, (x / model.unit / model.unit, y / model.unit / model.unit)  # a unit squared may overflow
 
 
-class PymunkRun:
+class PymunkRun(OneShot):
     """One model, ready to be stepped once; see `engines.Run`."""
 
     def __init__(
@@ -146,11 +186,14 @@ class PymunkRun:
         make: Callable[[Sweeping], Model],
         swept: Callable[[float], Sweeping],
         leapfrog: bool,
-        settled: bool,
+        settled: int,
     ) -> None:
-        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds."""
+        """`make` builds the model, `swept` tells how it is swept in a motion of so many seconds.
+
+        `settled`: see `Sweeping.settling`.
+        """
         self._mechanism, self._dt, self._make, self._swept = mechanism, dt, make, swept
-        self._leapfrog, self._settled, self._over = leapfrog, settled, False
+        self._leapfrog, self._settled = leapfrog, settled
         self.size: Size = make(swept(0.0)).size
 
     def _started(self, sweeping: Sweeping) -> Model:
@@ -172,13 +215,11 @@ class PymunkRun:
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory:
         """The same, with reactions at every `each`-th sample alone, and NaN at the others."""
         self._mechanism.require_room(samples)
-        if self._over:
-            raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
-        self._over = True
+        self.begin()
         begin = time.process_time()
         sweeping = self._swept(samples * every * self._dt)
         planning = time.process_time() - begin
-        model, settling = self._started(sweeping), sweeping.converged if self._settled else 0
+        model, settling = self._started(sweeping), sweeping.settling(self._settled)
         recording = record(model, self._dt, samples, every, raw=self._leapfrog, settling=settling)
         pose, twist = recording.pose.copy(), recording.after.copy()
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist

@@ -30,10 +30,6 @@ PRESCRIBED = Promise(2, rate=1, slip=1, energy=1, reaction=1, differences=1)
 STEADY = Promise(2, rate=1, slip=1, reaction=1, differences=1)
 # Half a kick ahead: every step is symmetric in time.
 LEAPFROG = Promise(2, differences=1)
-# A pivot at the contact that is, instead of the one that will be, keeps half of the first order's error, but closes its
-# gap all the same; in a prescribed motion what a stale contact lacks is in the forces alone.
-STALE_PIVOT = Promise(1, gap=2, slip=2, differences=1)
-STALE_PRESCRIBED = Promise(2, reaction=1, differences=1)
 
 
 def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
@@ -59,8 +55,6 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
         return CLOSING if closing else STEPPED
     if not closing:
         return STEPPED
-    if rolling and engine.roll == "stale pivot":
-        return STALE_PRESCRIBED if is_prescribed(mechanism) else STALE_PIVOT
     if mechanism.applied.dissipate:
         return CLOSING
     if engine.leapfrog:
@@ -79,7 +73,7 @@ def holder(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Holder:
             return "engine, our rows"
         case Skate() if engine.skate in ("centre", "point", "projection"):
             return "ours"
-        case Skate() if engine.skate in ("groove", "stale groove"):
+        case Skate() if engine.skate == "groove":
             return "engine, our rows"
         case Roll() if engine.roll != "contact":
             return "engine, our rows"

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import DOP853
 
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 
 Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous

@@ -16,16 +16,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import lru_cache
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.numerics import integration
-from reference.numerics.collocation import Extended, Rule, legendre, rule_of
 from reference.numerics.integration import COARSER, IntegrationFailed, Rates, hopeless
 
 Array = NDArray[np.float64]
+Extended = NDArray[np.longdouble]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
 
 STAGES = 24
@@ -43,6 +44,40 @@ MOST_WINDOWS = 20_000  # a motion that needs more is creeping up to a singularit
 # cheaper, a tenth of a second lost.
 FEW_WINDOWS = 200
 COARSE_STAGES = 16  # of the rule that shows the error of the other
+
+
+class Rule(NamedTuple):
+    """Gauss's rule on a step of length 1."""
+
+    weights: Extended  # (stages,)
+    matrix: Extended  # (stages, stages) from slopes to increments at the stages
+    coefficients: Extended  # (stages, stages) from slopes to their Legendre coefficients
+
+
+def legendre(degree: int, x: Extended) -> Extended:
+    """Legendre polynomials of degrees 0 to `degree` at x, (degree + 1, points)."""
+    values: list[Any] = [np.ones_like(x), x]
+    for n in range(1, degree):
+        values.append(((2 * n + 1) * x * values[n] - n * values[n - 1]) / (n + 1))
+    return np.array(values)
+
+
+@lru_cache
+def rule_of(stages: int) -> Rule:
+    """The rule with so many stages, to the rounding of numpy.longdouble."""
+    nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
+    for _ in range(3):  # Newton: the table is in double
+        values = legendre(stages, nodes)
+        slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
+        nodes = nodes - values[stages] / slope
+    values = legendre(stages, nodes)
+    slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
+    weights = 2 / ((1 - nodes**2) * slope**2)
+    degrees = np.arange(stages, dtype=np.longdouble)[:, None]
+    to_coefficients = (2 * degrees + 1) / 2 * weights * values[:stages]
+    # The integral of P_n from -1 is (P_{n+1} - P_{n-1}) / (2 n + 1), and x + 1 for n = 0.
+    integrals = np.concatenate([(nodes + 1)[None], (values[2:] - values[:-2]) / (2 * degrees[1:] + 1)])
+    return Rule(weights / 2, integrals.T @ to_coefficients / 2, to_coefficients)
 
 
 class Motion(Protocol):

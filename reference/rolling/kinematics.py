@@ -10,14 +10,12 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Array, Curve, Placed, Vector
+from reference.checks import InvalidMechanism, Valid, validated
 from reference.kinds import of_shape
-from reference.numerics.monotone import solve_increasing
+from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
-from reference.rolling.contact import Contact
-from reference.rolling.fitting import first_fit, refuse_conformal, refuse_overlap
-from reference.validation import InvalidMechanism, Valid, validated
+from reference.rolling.contact import Contact, first_fit, refuse_conformal, refuse_overlap
+from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 
 
 def _round(curve: Curve) -> float | None:
@@ -32,7 +30,7 @@ Place = Annotated[ArrayLike, of_shape("...", 2)]
 
 @dataclass(frozen=True)
 class Rolling(Valid):
-    """The curve `body` rolls without slip on the fixed curve `ground`; see `reference.curves.curve` for the convention.
+    """The curve `body` rolls without slip on the fixed curve `ground`; convention: `reference.rolling.curves`.
 
     At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]; make one with `Rolling.at_angle` or
     `Rolling.at_arcs`, which find the third of these from two. Rotations are unwrapped, any number of turns.
@@ -219,12 +217,6 @@ class Rolling(Valid):
     def velocity(self, theta: ArrayLike, rate: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """(18.66) v = omega x r_{P/C} (..., 2) [m/s] of a point of the body at the rate omega (...) [rad/s]."""
         return rotation_velocity(rate, self._arm(self.contact(theta), point))
-
-    @validated
-    def contact_velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
-        """v_C = omega / (curvature_A + curvature_B) e_t (..., 2) [m/s]: of no material point."""
-        contact = self.contact(theta)
-        return (np.asarray(rate) * contact.rate)[..., None] * contact.tangent
 
     @validated
     def pinned_acceleration(

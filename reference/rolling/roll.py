@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.curves.curve import Vector
+from reference.checks import Name, Valid
 from reference.plane import components, rotation_velocity
 from reference.rolling.contact import Contact
+from reference.rolling.curves import Vector
 from reference.rolling.kinematics import Rolling
-from reference.validation import Name, Valid
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Roll(Valid):
     rotation.
 
     Rows: relative velocity at the contact along e_t, in which the first's curve is traversed, then along e_n towards
-    the interior of the second (see `reference.curves`). They are the derivatives of the gap where the gap is zero.
+    the interior of the second (see `reference.rolling.curves`). They are the derivatives of the gap where it is zero.
     Reactions on the second body [N]: friction along e_t, and the normal force, which presses where positive; this
     joint can pull.
     """

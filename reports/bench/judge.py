@@ -1,4 +1,4 @@
-"""What the judge costs: an evaluation, steps, long chains, many mechanisms at once, and truths, in CPU time.
+"""What the judge costs: an evaluation, steps, long chains, and truths, in CPU time.
 
 Each is the least of several runs, the first discarded. What is asked for stands beside it, from the goals that were set
 for an ordinary core of 2025; nothing is asserted.
@@ -8,26 +8,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engines import Engine
-from engines.lagrange import Lagrange, Stack, batch, varied
-from engines.lagrange.compiled_run import Machine
-from reference.four_bar.scenes import FreeFourBar
+from engines.lagrange import Lagrange
+from engines.lagrange.machine import Machine
 from reference.mechanism import Mechanism
-from reference.pendulum.many_links import LongPendulum
 from reference.scene import Scene
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
 from reports.model.cells import FULL, Cell, estimated_cost
 from reports.model.measure import measure
 
-Array = NDArray[np.float64]
 REPEATS = 7
 LEVELS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # rad
 COST_LIMIT = 0.3  # s that a cell may take: all levels are reached before
-CHECKED = 40  # mechanisms of a batch that are compared with the judge's own run of them
 
 
 @dataclass(frozen=True)
@@ -68,57 +65,6 @@ def figures(links: Iterable[int] = (100, 300, 1000)) -> list[Figure]:
         seconds = _least(_stepping(Lagrange("rk4"), chain, 5e-3, 1, 50)) / 50
         out.append(Figure(f"chain of {count} links: a step by rk4 projection", 1e3 * seconds, "ms", count / 1000))
     return out
-
-
-def batch_figures(count: int) -> list[Figure]:
-    """A second of `count` four-bars of different lengths to 1e-6 rad: CPU of making and of stepping them."""
-    random = np.random.default_rng(0)
-    scale = 1 + 0.05 * random.uniform(-1, 1, (count, 2))
-    usual, marks = FreeFourBar(duration=1.0), [time.process_time()]
-    stack = four_bars(usual, usual.crank * scale[:, 0], usual.rocker * scale[:, 1])
-    marks.append(time.process_time())
-    found = batch(stack, 0.1, 10, 1e-7)
-    marks.append(time.process_time())
-    worst = 0.0
-    checked = random.integers(0, count, CHECKED)
-    for number in checked:
-        a, b = scale[number].tolist()
-        alone = replace(usual, crank=usual.crank * a, rocker=usual.rocker * b).mechanism()
-        single = Lagrange(tolerance=1e-12).build(alone, 0.1)(10, 1)
-        difference = np.angle(np.exp(1j * (found.pose[number] - single.pose)[..., 2]))
-        worst = max(worst, float(np.abs(difference).max()))
-    making, stepping = np.diff(marks).tolist()
-    both = 1e5 / count * (making + stepping / 2)
-    return [
-        Figure(f"{count} four-bars: making them, on one core", making, "s"),
-        Figure(f"{count} four-bars: stepping them for a second", stepping, "s"),
-        Figure(f"100000 four-bars on two cores, made and stepped, from {count}", both, "s", 60.0),
-        Figure(f"{count} four-bars: largest error of {CHECKED} that are made one by one", worst, "rad", 1e-6),
-    ]
-
-
-def four_bars(usual: FreeFourBar, crank: Array, rocker: Array) -> Stack:
-    """Four-bars with cranks and rockers of other lengths (mechanisms,) [m], released from rest at the usual angle."""
-    coupler, ground = np.full_like(crank, usual.coupler), complex(*usual.ground)
-    corner = crank * np.exp(1j * usual.start)
-    across = ground - corner
-    along = (coupler**2 + np.abs(across) ** 2 - rocker**2) / (2 * np.abs(across))
-    other = corner + across / np.abs(across) * (along + 1j * usual.branch * np.sqrt(coupler**2 - along**2))
-    bars, middles = (corner, other - corner, other - ground), (corner / 2, (corner + other) / 2, (ground + other) / 2)
-    pose = np.array([(middle.real, middle.imag, np.angle(bar)) for middle, bar in zip(middles, bars, strict=True)])
-    length = np.stack([crank, coupler, rocker], axis=-1)
-    half = np.stack([length / 2, np.zeros_like(length)], axis=-1)
-    points = (
-        *(("A", "second_point", -half[:, 0]), ("B", "first_point", half[:, 0]), ("B", "second_point", -half[:, 1])),
-        *(("C", "first_point", half[:, 1]), ("C", "second_point", half[:, 2]), ("D", "second_point", -half[:, 2])),
-    )
-    joints: dict[str, dict[str, Array]] = {}
-    for name, end, values in points:
-        joints.setdefault(name, {})[end] = values
-    mass = usual.density * length
-    return varied(
-        usual.mechanism(), pose=np.moveaxis(pose, -1, 0), mass=mass, inertia=mass * length**2 / 12, joints=joints
-    )
 
 
 @dataclass(frozen=True)

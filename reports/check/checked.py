@@ -14,8 +14,8 @@ from engines import Unsupported
 from engines.entry_points import registered_by_key
 from engines.loading import Kind
 from engines.reading import Change, Reader, Reading
+from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 from reports.check.facts import Facts, facts_of
 from reports.check.judging import (
     Errors,

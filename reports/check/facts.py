@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Mechanism
-from reference.row_system import undetermined
+from reference.rows import undetermined
 from reference.trajectory import Trajectory
 from reports.check.judging import accelerations
 

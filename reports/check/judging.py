@@ -20,10 +20,10 @@ from engines import Unsupported
 from engines.lagrange import TRUTH
 from engines.lagrange.dynamics import Dynamics
 from engines.reading import Give, Reading
+from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.row_system import solve_symmetric, undetermined
+from reference.rows import solve_symmetric, undetermined
 from reference.trajectory import Trajectory, energy
-from reference.validation import InvalidMechanism
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding

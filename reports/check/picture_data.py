@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from reference.forces import Spring
 from reference.joints import Rod, Slot
 from reference.mechanism import Mechanism
-from reference.outlines import body_points, ground_points
 from reference.plane import rotated
+from reference.trajectory import body_points, ground_points
 from reports.check.checked import Checked, Tried
 from reports.check.judging import QUANTITIES, Errors
 

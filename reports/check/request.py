@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from engines import Unsupported
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.check.checked import check, read
 from reports.check.telling import Section, data, sections, verdict
 

@@ -17,19 +17,19 @@ JUDGE = "judge"  # instead of scenes
 
 def bench(
     scene: Scenes = None,
-    full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid; `judge`: more.")] = False,
+    full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid.")] = False,
     workers: Workers = None,
     site: Annotated[Path, typer.Option(help="A folder that `crosscheck site` wrote: its sizes and times.")] = SITE,
 ) -> None:
     """Time `run` against bare loops, and the site; asserts nothing.
 
     `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
-    times exact multipliers: an evaluation, steps, chains, many mechanisms at once, and the truths.
+    times exact multipliers: an evaluation, steps, chains, and the truths.
     """
     if scene == [JUDGE]:
         from reports.cli.bench_judge import bench_judge
 
-        bench_judge(full)
+        bench_judge()
         return
     if scene and scene[0] == SUITE:
         from reports.cli.bench_suite import bench_suite

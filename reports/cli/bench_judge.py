@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-FEW, MANY = 2_000, 100_000  # mechanisms of the batch
 DEAREST = 8
 WIDTH = 100  # characters of a scene's numbers
 
 
-def bench_judge(full: bool) -> None:
+def bench_judge() -> None:
     """Print the judge's figures beside what is asked for and beside other engines. Raises BadInput without numba."""
     from engines.registry import ENGINES
-    from reference.four_bar.scenes import FreeFourBar
-    from reports.bench.judge import batch_figures, beside_others, figures, truth_costs
+    from reference.scenes.four_bar.scenes import FreeFourBar
+    from reports.bench.judge import beside_others, figures, truth_costs
     from reports.cli.known import registered
     from reports.cli.selection import choose_cells
     from reports.cli.terminal import Terminal, print_table
@@ -33,7 +32,7 @@ def bench_judge(full: bool) -> None:
     print_table(console, title, ["scene", "CPU [s]"], dearest, 1)
     console.print()
     try:
-        found = [*figures(), *batch_figures(MANY if full else FEW)]
+        found = figures()
     except RuntimeError as reason:
         raise BadInput(str(reason)) from reason
     rows = [(each.what, number(each.measured), _asked(each.asked, number), each.unit) for each in found]

@@ -24,7 +24,7 @@ def errata(
     engines: Annotated[bool, typer.Option("--engines", help="What engines say of it too (some seconds).")] = False,
 ) -> None:
     """The chapter's printed slips: each formula's value as printed and as it must be, and what decides."""
-    from reference.errata.catalogue import ERRATA, WORD_SLIPS
+    from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.cli.terminal import Terminal, print_table
 
     known = sorted(slip.number for slip in (*ERRATA, *WORD_SLIPS))
@@ -59,7 +59,7 @@ def errata(
 
 def rows_of_slips() -> list[tuple[str, ...]]:
     """A row a slip under HEADER, by number; those in words have no values."""
-    from reference.errata.catalogue import ERRATA, WORD_SLIPS
+    from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS
     from reports.pages.errata.page import digits
     from reports.write.tables import number
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from engines import Engine, registry
 from engines.loading import is_reference, load
-from reference.scene import Scene
-from reference.variation import told_apart, with_settings
+from reference.scene import Scene, told_apart, with_settings
 from reports.cli.selection import known_engines
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from engines import Engine
+from reference.checks import LARGEST_COUNT
 from reference.scene import Scene
-from reference.validation import LARGEST_COUNT
 from reports.gate.prediction import all_tasks
 from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
 from reports.model.ending import BadInput, nearest
@@ -73,12 +73,12 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
-    from engines.registry import ENGINES, INSTALLED, missing
+    from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
     kept = (task.engine for page in pages for task in all_tasks(page) if task.engine is not None)
     named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *kept])
-    return tuple(engine for engine in named if not missing(engine))
+    return tuple(engine for engine in named if not engine.missing)
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
@@ -171,21 +171,19 @@ def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
     """Every cell that a page asks for; those that it borrows are asked for by other pages."""
-    from engines.registry import INSTALLED, missing
+    from engines.registry import INSTALLED
 
     cells: list[Cell] = []
     for scene in page.scenes:
         compared = page.engines_of(scene)
         cells += [*sweep_cells((scene,), compared, FULL), *usual_cells((scene,), compared)]
         cells += beside_cells((scene,), INSTALLED)
-    return tuple(dict.fromkeys([*cells, *(cell for cell in page.extra_cells() if not missing(cell.engine))]))
+    return tuple(dict.fromkeys([*cells, *(cell for cell in page.extra_cells() if not cell.engine.missing)]))
 
 
 def page_tasks(page: Page) -> tuple[Task, ...]:
     """Every task that a page asks for, but those of engines that are not installed here."""
-    from engines.registry import missing
-
-    return tuple(task for task in all_tasks(page) if task.engine is None or not missing(task.engine))
+    return tuple(task for task in all_tasks(page) if task.engine is None or not task.engine.missing)
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:

@@ -11,8 +11,8 @@ from reports.model.ending import BadInput, FileTrouble
 from reports.run.files import write_whole
 
 if TYPE_CHECKING:
-    from reference.centrodes import Centrodes
-    from reference.shapes import Shapes
+    from reference.chapter.centrodes import Centrodes
+    from reference.chapter.shapes import Shapes
 
 KINDS = ("csv", "svg", "dxf")
 MOST_POINTS = 1_000_000  # far more than a workshop can cut, far less than memory can hold
@@ -45,9 +45,9 @@ def shapes(
             raise FileTrouble(f"{path} is there already: give another --folder, or --force to replace it")
     text = _text(motion)
     # Here, since numpy and scipy take longer to load than all else.
-    from reference.centrodes import from_poses
-    from reference.shapes import as_csv, as_dxf, as_svg, poses_from_csv, shapes_of
-    from reference.validation import InvalidMechanism
+    from reference.chapter.centrodes import from_poses
+    from reference.chapter.shapes import as_csv, as_dxf, as_svg, poses_from_csv, shapes_of
+    from reference.checks import InvalidMechanism
 
     writers = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
     try:
@@ -66,7 +66,7 @@ def _told(curves: Centrodes, found: Shapes) -> list[str]:
     """What to say of the shapes before they are cut: how long, how exact, and whether they give the motion back."""
     import numpy as np
 
-    from reference.validation import InvalidMechanism
+    from reference.checks import InvalidMechanism
     from reports.pages.centrodes.page import returned
 
     size = float(np.ptp(np.vstack([found.space, found.body]), axis=0).max())

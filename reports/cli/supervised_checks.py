@@ -84,7 +84,7 @@ def asked(named: Named, limit: float = TIME_LIMIT) -> Iterator[tuple[Engine, Ite
     One worker at a time, so that what an engine has run is kept. Raises BadInput, and WorkersLost (`supervise`).
     """
     for place, engine in enumerate(named.engines()):
-        building = MODELS * getattr(engine, "building", 0.0)
+        building = MODELS * engine.building
         yield engine, _answers(named, place, engine, limit + building)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from statistics import median
@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from engines.altered import Altered
+from engines import Around, Engine, Run
 from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.checks import CHANGE, Check
@@ -149,6 +149,30 @@ SEEDS = (1, 2, 3)
 EPSILON = float(np.finfo(float).eps)
 
 Part = TypeVar("Part")
+
+
+@dataclass(frozen=True)
+class Altered(Around):
+    """An engine in the sense of `engines.Engine`: another one, which builds `change(mechanism)`.
+
+    It goes by the name of the engine inside and is held to what that one promises of the mechanism as it is. `change`
+    is itself a frozen dataclass that can be called, so that it is data: compared, printed, and sent to other processes.
+    """
+
+    engine: Engine
+    change: Callable[[Mechanism], Mechanism]
+
+    @property
+    def variant(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.variant
+
+    def within(self, mechanism: Mechanism) -> Engine:
+        """Itself: what is inside is not stepped as it is."""
+        return self
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:
+        """Raises whatever the change and the engine raise."""
+        return self.engine.build(self.change(mechanism), dt)
 
 
 @dataclass(frozen=True)

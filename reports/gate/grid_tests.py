@@ -32,7 +32,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
     """The verdict of a case; a skip where its engine is an extra that is not installed."""
-    if absent := registry.missing(case.engine):
+    if absent := case.engine.missing:
         pytest.skip(absent)
     return verdicts[case]
 

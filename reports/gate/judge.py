@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from engines import Softness
-from engines.lagrange.compiled_run import Machine
-from engines.lagrange.flat import SMALLEST
+from engines.lagrange.arrays import SMALLEST
+from engines.lagrange.dynamics import Tableau
 from engines.lagrange.loading import installed
-from engines.lagrange.tableaus import Tableau
-from reference.kept import fixed
+from engines.lagrange.machine import Machine
+from reference.checks import fixed
 from reference.mechanism import Mechanism
-from reference.row_system import RANK_TOLERANCE
+from reference.rows import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.errors import constraint_errors, motion_errors
@@ -150,7 +150,7 @@ def _compiled(
     if machine.march(tableau, 1 if project else 0, spacing / every, every, 0, poses, twists) < samples:
         return None
     reactions, _ = machine.reactions(spacing, poses, twists)
-    if not np.all(np.isfinite(reactions)) or machine.told(SMALLEST) < RANK_TOLERANCE:
+    if not np.all(np.isfinite(reactions)) or machine.status(SMALLEST) < RANK_TOLERANCE:
         return None
     return _trajectory(mechanism, spacing, poses, twists, reactions)
 

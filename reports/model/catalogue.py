@@ -16,8 +16,8 @@ from typing import Any
 from engines import Engine, registry
 from engines.entry_points import registered
 from engines.loading import Kind
+from reference.checks import InvalidMechanism, take
 from reference.scene import TIMES, Scene
-from reference.validation import InvalidMechanism, take
 from reports.model.page import Page
 
 # Letters of a page's name, which becomes the name of files; what can stand in a file's name and in a link.

@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 from typing import Literal
 
 from engines import Engine
+from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reference.validation import Count, Valid
 from reports.model.ending import BadInput, describe
 from reports.model.fingerprint import digest_of, modules_behind, modules_of
 
@@ -104,7 +104,7 @@ def estimated_cost(cell: Cell) -> float:
 
 def estimated_seconds(cell: Cell) -> float:
     """The same with the making of a model that takes long, as its engine says."""
-    return estimated_cost(cell) + getattr(cell.engine, "building", 0.0)
+    return estimated_cost(cell) + cell.engine.building
 
 
 @lru_cache(maxsize=4096)
@@ -144,7 +144,7 @@ SLOW_TO_BUILD = 1.0
 
 def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
     """The QUICK steps of engines that are no part of a scene's grid and stand beside it on its page."""
-    engines = tuple(engine for engine in engines if getattr(engine, "building", 0.0) < SLOW_TO_BUILD)
+    engines = tuple(engine for engine in engines if engine.building < SLOW_TO_BUILD)
     return tuple(
         cell
         for scene in scenes

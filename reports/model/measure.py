@@ -13,7 +13,7 @@ import numpy as np
 
 from engines import Unsupported
 from engines.contract import flaw
-from reference.kept import fixed
+from reference.checks import fixed
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
 from reference.scene import Scene
@@ -149,7 +149,7 @@ def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Meas
         try:
             mechanism = mechanism_of(cell.scene)
             with spending("preparing engines"):
-                getattr(cell.engine, "prepare", lambda: None)()
+                cell.engine.prepare()
             with spending("building"):
                 build, run = process_seconds(lambda: cell.engine.build(mechanism, cell.step))
             row = replace(row, build=build, **sizes(mechanism, run.size, _own_freedoms(cell.scene)))

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine, Promise
-from engines.registry import missing
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell, Purpose
@@ -68,7 +67,7 @@ class Material:
 
     def unfinished(self, task: Task) -> str:
         """Why a task has no numbers here, as a sentence: what its run said, or what is to be installed or run."""
-        absent = missing(task.engine) if task.engine is not None else ""
+        absent = task.engine.missing if task.engine is not None else ""
         if answer := self.answers.get(task):
             return f"Not finished, {answer.told}."
         return (

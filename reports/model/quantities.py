@@ -79,7 +79,7 @@ def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool
 
     `now` may have all its digits, `before` the DIGITS of a file. Of 4,280 rows that two processors gave 1,511 errors
     differ in print. Of those that can be compared eight numbers of four rows go beyond this room: of pivots that are
-    placed by a stale or a predicted contact, at 300 steps a sample and more, which feed rounding back. All others stay
+    placed where curves touch, at 300 steps a sample and more, which feed rounding back. All others stay
     within two thirds of it. Two values that are no numbers agree, and one that is a number never agrees with one that
     is not. Raises KeyError for another name.
     """

@@ -17,8 +17,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
-from reference.outlines import body_points, ground_points
 from reference.scene import Scene
+from reference.trajectory import body_points, ground_points
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 Array = NDArray[np.float64]

@@ -100,9 +100,8 @@ def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Ar
 
 def _is_written(compiled: Any, equality: int) -> bool:
     """Whether callbacks write the row of an equality, and not MuJoCo."""
-    if compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON:
-        return compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row")
-    return bool(compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT)
+    tendon = compiled.eq_type[equality] == mujoco.mjtEq.mjEQ_TENDON
+    return bool(tendon and compiled.tendon(compiled.eq_obj1id[equality]).name.startswith("written row"))
 
 
 def _within(lines: Array, rows: Array) -> NDArray[np.bool_]:

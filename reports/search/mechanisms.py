@@ -27,9 +27,9 @@ from typing import Annotated
 import numpy as np
 
 from engines import Engine, Unsupported
+from reference.checks import LARGEST_COUNT, InvalidMechanism, validated
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
-from reference.validation import LARGEST_COUNT, InvalidMechanism, validated
 from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim
 from reports.search.recipe import Held, Standing, build
 

@@ -1,6 +1,6 @@
 """A short motion and its reactions against the judge, at two steps, with the order that the engine promises.
 
-The judge moves one mechanism at a time: no two cases are of one shape, as `engines.lagrange.batch` asks.
+The judge moves one mechanism at a time: no two cases are of one shape.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
-from reports.search.relations import touches
 
 Array = NDArray[np.float64]
 
@@ -36,7 +35,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
 
     Raises NotAsked where nothing is promised or joints give way for good; Fault where a motion is lost in silence.
     """
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and touches(engine):
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
         raise NotAsked("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
     dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
     coarse = _run(engine, mechanism, dt, COARSE)

@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.checks import InvalidMechanism
 from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.validation import InvalidMechanism
 from reports.search.law import constrained
 from reports.search.parts import ladder
 from reports.search.raw import Equality, Model, RawBody, coordinates, wrapped, xml

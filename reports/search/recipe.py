@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.body import Body, Triple
-from reference.curves import Circle, Curve, Ellipse, Line, Placed, Ring
+from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Vector, Weld
+from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Skate, Slot, Triple, Vector, Weld
 from reference.mechanism import Mechanism
 from reference.plane import components, rotated
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scales import length_scale
-from reference.validation import InvalidMechanism
 from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, Link, Recipe, Rim, ladder
 
 Point = tuple[Decimal, Decimal]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
-from engines.conformance.changes import Change, Isometry, joints_swapped, relabelled
+from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reports.search.law import Fault, NotAsked, difference
@@ -44,13 +44,13 @@ NAMES = (*CHANGES, *UNITS)
 
 def bound(engine: Engine) -> float:
     """By how much descriptions may differ, relative to the motion."""
-    return max(SAME, ROUGHLY * getattr(engine, "precision", 0.0))
+    return max(SAME, ROUGHLY * engine.precision)
 
 
 def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
     """By what the poses and velocities differ, relative to the motion; raises NotAsked, Fault and Unsupported."""
     mechanism = build(recipe)
-    if any(isinstance(joint, Roll) for joint in mechanism.joints) and touches(engine):
+    if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
         raise NotAsked("whether two shapes that just touch do touch depends on rounding")
     name = NAMES[number % len(NAMES)]
     if name in UNITS:
@@ -93,7 +93,7 @@ def _rounded(engine: Engine, mechanism: Mechanism) -> float:
     With few digits it is seen: a joint closes the gap of rounded places, and turns a body by it over its radius of
     gyration. Differences between two descriptions are in proportion to how far away the mechanism stands.
     """
-    if not getattr(engine, "precision", 0.0):
+    if not engine.precision:
         return ROUNDED
     gyration = min(math.sqrt(body.inertia / body.mass) for body in mechanism.bodies)
     return SEEN / ROUGHLY * max(1.0, mechanism.length_scale / gyration)
@@ -108,12 +108,6 @@ def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tup
     run = _run(engine, other)
     unit = np.array([length, length, 1.0])
     return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit)
-
-
-def touches(engine: Engine) -> bool:
-    """Whether rolls may be held by contacts."""
-    rolls = getattr(engine, "rolls", None)
-    return getattr(engine, "roll", "") == "contact" or (rolls is not None and type(rolls).__name__ == "RollContact")
 
 
 def _has_lengths(engine: Engine) -> bool:

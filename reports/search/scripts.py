@@ -118,10 +118,9 @@ print("largest difference", np.abs(data.qacc - expected).max())
 def of_pymunk(engine: Any, recipe: Recipe) -> str:
     """The objects before one step, the step, and the velocities that its joints ask for; empty for other methods."""
     mechanism = build(recipe)
-    while not isinstance(engine, Pymunk):
-        engine = engine.chosen(mechanism) if hasattr(engine, "chosen") else getattr(engine, "engine", None)
-        if engine is None:
-            return ""
+    engine = engine.within(mechanism)
+    if not isinstance(engine, Pymunk):
+        return ""
     dt = instant_pymunk.STEP * mechanism.time_scale
     model, sweeps = engine.model(mechanism, dt), instant_pymunk.MOST_SWEEPS
     for aim in model.aims:

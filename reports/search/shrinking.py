@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from engines import Engine
-from reference.validation import InvalidMechanism
+from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
 from reports.search import raw
 from reports.search.chunk import Asked
@@ -168,7 +168,7 @@ class Shrink(Task):
 
     @property
     def cost(self) -> float:
-        return SECONDS + TRIED * getattr(self.engine, "building", 0.0)
+        return SECONDS + (TRIED * self.engine.building if self.engine else 0.0)
 
     @property
     def label(self) -> str:

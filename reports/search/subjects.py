@@ -5,27 +5,16 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from engines import Engine, Unsupported
+from engines import Around, Engine, Unsupported
 from engines.box2d import Box2D
-from engines.extrapolated import Extrapolated
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
-from reports.search import (
-    instant_box2d,
-    instant_mujoco,
-    instant_pymunk,
-    mechanisms,
-    motions,
-    raw,
-    raw_law,
-    relations,
-)
+from reports.search import instant_box2d, instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_law, relations
 from reports.search.law import Fault, NotAsked
 from reports.search.mechanisms import of_a_shape
 from reports.search.parts import EVERY, Recipe, as_text, from_text
@@ -137,7 +126,7 @@ Subject = Adapted | Alone
 
 def is_shaped(subject: Subject) -> bool:
     """Whether its cases are of few shapes, since a model takes seconds to build."""
-    return isinstance(subject, Adapted) and getattr(subject.engine, "building", 0.0) > 0
+    return isinstance(subject, Adapted) and subject.engine.building > 0
 
 
 def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], engine: Engine | None) -> Told:
@@ -162,28 +151,26 @@ def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], eng
     return Told(errors, tuple(left), "; ".join(words))
 
 
-def _passed_through(error: Exception, engine: Any) -> bool:
+def _passed_through(error: Exception, engine: Engine) -> bool:
     """Whether an exception came out of the engine's own code, and not of what asks it alone."""
     owners = set()
-    while engine is not None:
+    while True:
         module = type(engine).__module__
         # A package of an engine is all of it; beside modules of engines stand others, the judge's among them.
         owners.add(module if module.count(".") < 2 else module.rpartition(".")[0])
-        engine = getattr(engine, "engine", None)
+        if not isinstance(engine, Around):
+            break
+        engine = engine.engine
     called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
     return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)
 
 
-def at_an_instant(engine: Any, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:
+def at_an_instant(engine: Engine, mechanism: Mechanism) -> MuJoCo | Pymunk | Mjx | Box2D:
     """The engine that is stepped in the end: inside of those that choose and combine. Raises NotAsked."""
-    while not isinstance(engine, MuJoCo | Pymunk | Mjx | Box2D):
-        if hasattr(engine, "chosen"):
-            engine = engine.chosen(mechanism)
-        elif isinstance(engine, Extrapolated):
-            engine = engine.engine
-        else:
-            raise NotAsked("it declares no law of an instant")
-    return engine
+    stepped = engine.within(mechanism)
+    if not isinstance(stepped, MuJoCo | Pymunk | Mjx | Box2D):
+        raise NotAsked("it declares no law of an instant")
+    return stepped
 
 
 def _instant(engine: MuJoCo | Pymunk | Mjx | Box2D, mechanism: Mechanism) -> dict[str, tuple[float, float]]:

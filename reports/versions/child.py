@@ -77,9 +77,9 @@ def _engines(request: Any) -> Any:
         return Trouble(f"our adapter can't use it: {error}")
     found = [engine for engine in known if is_reference(request.engine) or engine.name == request.engine]
     for engine in found[:1]:
-        if registry.missing(engine):
-            return Trouble(f"our adapter can't use it: {registry.missing(engine)}")
-        for module in getattr(getattr(engine, "engine", engine), "modules", ()):  # extras import theirs when they build
+        if engine.missing:
+            return Trouble(f"our adapter can't use it: {engine.missing}")
+        for module in engine.modules:  # extras import theirs when they build
             try:
                 import_module(module)
             except Exception as error:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from engines import Promise
 from reports.model.cells import Cell, mechanism_of
 from reports.model.ending import BadInput
 from reports.model.measure import Measurement
@@ -83,4 +84,5 @@ def near(now: float, before: float, factor: float) -> bool:
 
 
 def _amplified(cell: Cell) -> float:
-    return getattr(cell.engine.order(mechanism_of(cell.scene)), "amplified", 1.0)
+    order = cell.engine.order(mechanism_of(cell.scene))
+    return order.amplified if isinstance(order, Promise) else 1.0

@@ -1,124 +1,109 @@
-"""Make every mistake of the lists, several at a time, and tell which got through.
+"""The commands.
 
-The status is 0 if every mistake was caught by a test named beside it, or survived with a reason, and no more than a
-twentieth did; 1 if not; 2 if the tests fail already without any mistake; 130 after an interruption.
+The status of `run` is 0 if every mistake by hand was caught, or survives with a reason, and nineteen of twenty drawn
+ones were; else 1. It is 2 for bad words, and 130 after an interruption.
 """
 
 from __future__ import annotations
 
 import argparse
-import queue
+import itertools
+import json
+import shutil
 import sys
 import tempfile
-import time
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeVar
 
-from tests.mutants.catalogue import ROOT, Mutant, faults, read
-from tests.mutants.trial import GOOD, Fate, Verdict, ask, copy_tree, stop, trial
+from tests.mutants import by_hand, generated, matrix, trial
+from tests.mutants.sources import ROOT, SOURCES, Mistake
+from tests.mutants.tracing import SEEN, Traced, digest
+from tests.mutants.trial import Answer, Question, asked
 
-ALLOWED = 0.05  # of the mistakes that were made may survive, each with its reason
-BASELINE_LIMIT = 1800.0  # s
-TABLE = Path("crosscheck-results") / "mutants.md"
-
-Item = TypeVar("Item")
-Result = TypeVar("Result")
-
-
-def chosen(mutants: Iterable[Mutant], only: Sequence[str]) -> tuple[Mutant, ...]:
-    """Those whose name is, or whose file begins with, one of these words; all of them for no word."""
-    return tuple(m for m in mutants if not only or any(m.name == word or m.file.startswith(word) for word in only))
+KEPT = Path("crosscheck-results") / "mutants"
+ALLOWED = 0.05  # of the drawn mistakes may get through: some change nothing that can be seen
+FIRST, MORE = 15.0, 150.0  # s of tests that are asked at first, and again by those who notice nothing
+APART = ("test_crosscheck.py", "test_mutants.py", "test_site_in_browser.py")  # the grid, this, and what needs a browser
 
 
-def in_trees(
-    function: Callable[[Item, Path], Result],
-    items: Sequence[Item],
-    trees: Sequence[Path],
-    done: Callable[[Result], None] = lambda result: None,
-) -> list[Result]:
-    """The results for all items in their order, each worked on in a tree of its own."""
-    free: queue.SimpleQueue[Path] = queue.SimpleQueue()
-    for tree in trees:
-        free.put(tree)
-
-    def work(item: Item) -> Result:
-        tree = free.get()
-        try:
-            return function(item, tree)
-        finally:
-            free.put(tree)
-
-    with ThreadPoolExecutor(len(trees)) as pool:
-        futures = [pool.submit(work, item) for item in items]
-        try:
-            for future in as_completed(futures):
-                done(future.result())
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            stop()
-            raise
-    return [future.result() for future in futures]
+def chosen(words: Sequence[str], drawn: int, seed: str) -> list[tuple[Mistake, str]]:
+    """The mistakes by hand, each with its reason to survive, then so many drawn ones; those that the words choose."""
+    files = [file for file in SOURCES if not words or any(file.startswith(word) for word in words)]
+    hand = [(by_hand.found(entry), entry.survives) for entry in by_hand.read()]
+    named = [pair for pair in hand if not words or pair[0].file in files or any(w in pair[0].name for w in words)]
+    exact = [m for m in generated.drawn(seed) if m.name in words] if any(":" in word for word in words) else []
+    return named + [(mistake, "") for mistake in (*exact, *itertools.islice(generated.drawn(seed, files), drawn))]
 
 
-def table(verdicts: Sequence[Verdict], seconds: float) -> str:
-    """All verdicts as a Markdown document: the counts, what is not as it should be, then every mistake."""
-    counts = {fate: sum(v.fate is fate for v in verdicts) for fate in Fate}
-    lines = ["# Deliberate mistakes", "", f"{len(verdicts)} mistakes in {seconds / 60:.1f} minutes.", ""]
-    lines += [f"* {fate}: {count}" for fate, count in counts.items() if count]
-    for title, part in (
-        ("Not as it should be", [v for v in verdicts if v.fate not in GOOD]),
-        ("All", verdicts),
-    ):
-        if part:
-            lines += ["", f"## {title}", "", "| name | file | mistake | fate | by | s |", "| --- " * 5 + "| --: |"]
-            lines += [
-                f"| {v.mutant.name} | {v.mutant.file} | {v.mutant.mistake} | {v.fate} | {v.by} | {v.seconds:.0f} |"
-                for v in part
-            ]
-    return "\n".join(lines) + "\n"
+def traced(workers: int, trees: Sequence[Path], anew: bool = False) -> Traced:
+    """The trace that is kept; else, or anew, all fast tests are run for one."""
+    folder = KEPT / "trace"
+    if anew:
+        shutil.rmtree(folder, ignore_errors=True)
+    if not (folder / "whole").exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / SEEN).write_text(json.dumps({file: digest(file) for file in SOURCES}))
+        files = [path.name for path in sorted((ROOT / "tests").glob("test_*.py")) if path.name not in APART]
+        questions = [Question((f"tests/{f}",), first=False, limit=900, traced=folder.resolve()) for f in files]
+
+        def tell(question: Question, answer: Answer) -> None:
+            print(f"traced {question.tests[0]}: {answer.ran} tests, {answer.seconds:.0f} s {answer.end}", flush=True)
+
+        asked(questions, trees, tell)
+        (folder / "whole").touch()
+    return Traced(folder)
+
+
+def tried(mistakes: Sequence[tuple[Mistake, str]], trace: Traced, trees: Sequence[Path]) -> int:
+    """Ask about every mistake, twice where nothing is noticed; write the report, and give the status."""
+    fates = KEPT / "fates.jsonl"
+    fates.unlink(missing_ok=True)
+    reasons = {mistake.name: reason for mistake, reason in mistakes if reason}
+    matrix.filled([mistake for mistake, _ in mistakes], trace, fates, trees, FIRST, first=True)
+    through = {row.mistake for row in matrix.read(fates) if not row.caught and row.tests} - set(reasons)
+    matrix.filled([m for m, _ in mistakes if m.name in through], trace, fates, trees, MORE, first=True, each=1000)
+    rows = matrix.read(fates)
+    by_rule = {row.mistake: not row.caught for row in rows if ":" in row.mistake}
+    wrong = [row for row in rows if not row.caught and row.mistake not in {*by_rule, *reasons}]
+    text = "\n".join(["# Deliberate mistakes", "", *matrix.shares(rows)])
+    (KEPT / "fates.md").write_text(text, encoding="utf-8")
+    told = f"{len(wrong)} by hand and {sum(by_rule.values())} of {len(by_rule)} drawn got through"
+    print(f"\n{told}; see {KEPT / 'fates.md'}")
+    return 1 if wrong or sum(by_rule.values()) > ALLOWED * len(by_rule) else 0
 
 
 def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__)
+    parser.add_argument("command", choices=("run", "matrix", "read", "list", "trace"))
     parser.add_argument("only", nargs="*", help="names of mistakes, or how their files begin; all without one")
+    parser.add_argument("--drawn", type=int, default=300, help="how many generated mistakes")
+    parser.add_argument("--seed", default="0", help="what draws them")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument(
-        "--skip-baseline", action="store_true", help="don't run the named tests without a mistake first"
-    )
     given = parser.parse_args(words)
-    mutants = chosen(read(), given.only)
-    if not mutants:
+    rows = KEPT / "matrix.jsonl"
+    if given.command == "read":
+        trace = Traced(KEPT / "trace") if (KEPT / "trace" / "whole").exists() else None
+        print(matrix.reading(matrix.read(rows), trace))
+        return 0
+    mistakes = chosen(given.only, given.drawn, given.seed)
+    if not mistakes:
         print(f"no mistake is called, and no file begins with, {' or '.join(given.only)}", file=sys.stderr)
         return 2
-    began = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        trees = [copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
-        if not given.skip_baseline:
-            tests = sorted({test for mutant in mutants if not faults(mutant, ROOT) for test in mutant.tests})
-            parts = [part for part in (tests[n :: len(trees)] for n in range(len(trees))) if part]
-            for answer in in_trees(lambda part, tree: ask(tree, part, BASELINE_LIMIT), parts, trees):
-                if not answer.passed:
-                    print(f"without any mistake, {answer.by} fails already", file=sys.stderr)
-                    return 2
-            print(f"{len(tests)} named tests pass without a mistake, {time.monotonic() - began:.0f} s", flush=True)
-
-        def tell(verdict: Verdict) -> None:
-            print(f"{verdict.fate}: {verdict.mutant.name} ({verdict.seconds:.0f} s) {verdict.by}", flush=True)
-
-        verdicts = in_trees(trial, mutants, trees, tell)
-    TABLE.parent.mkdir(exist_ok=True)
-    TABLE.write_text(table(verdicts, time.monotonic() - began), encoding="utf-8")
-    stale = [v.by for v in verdicts if v.fate is Fate.STALE]
-    if stale:
-        print("\nnot applicable, as the code has moved:", *stale, sep="\n  ")
-    known = sum(v.fate is Fate.KNOWN for v in verdicts)
-    wrong = [v for v in verdicts if v.fate not in GOOD]
-    print(
-        f"\n{len(verdicts)} mistakes, {len(wrong)} not as they should be, {known} survived with a reason; see {TABLE}"
-    )
-    return 1 if wrong or (known > ALLOWED * len(verdicts) and not given.only) else 0
+    if given.command == "list":
+        print(*(mistake for mistake, _ in mistakes), sep="\n")
+        return 0
+    trial.load_others()
+    with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
+        trees = [trial.copy_tree(ROOT, Path(folder) / str(number)) for number in range(max(1, given.workers))]
+        trace = traced(given.workers, trees, anew=given.command == "trace")
+        if given.command == "trace":
+            return 0
+        if given.command == "run":
+            return tried(mistakes, trace, trees)
+        known = {row.mistake for row in matrix.read(rows)}
+        left = [mistake for mistake, _ in mistakes if mistake.name not in known]
+        matrix.filled(left, trace, rows, trees, FIRST, first=False)
+        return 0
 
 
 if __name__ == "__main__":

@@ -1,58 +1,58 @@
-"""One mistake made in a copy of the tree, and what the tests say to it."""
+"""Tests asked in copies of the tree, each time in a process of its own, forked with other people's packages loaded."""
 
 from __future__ import annotations
 
 import compileall
+import importlib
+import json
 import os
 import py_compile
-import re
 import shutil
 import signal
-import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
-from tests.mutants.catalogue import Mutant, faults, wider_tests
+from tests.mutants import tracing
+from tests.mutants.sources import Mistake
 
-LIMIT = 240.0  # s of wall time for the named tests: they take seconds, so what needs more hangs
-WIDER_LIMIT = 1200.0  # s for the whole files of a package
-LEFT_OUT = (".git", ".venv", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
-
-
-class Fate(StrEnum):
-    """What became of a mistake."""
-
-    CAUGHT = "caught"
-    ELSEWHERE = "caught by another test than those named"
-    KNOWN = "survived, with a reason"
-    SURVIVED = "survived"
-    NEEDLESS = "caught, though a reason says that it survives"
-    STALE = "not applicable"
-
-
-GOOD = (Fate.CAUGHT, Fate.KNOWN)
+LEFT_OUT = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
+# What takes seconds to import, and is not ours.
+OTHERS = ("numpy", "scipy.integrate", "scipy.optimize", "scipy.sparse.linalg", "scipy.special", "mujoco", "pymunk")
+OTHERS += ("matplotlib.figure", "matplotlib.backends.backend_agg", "numba", "rich.table", "rich.progress", "typer")
+OTHERS += ("jinja2", "pytest", "ezdxf", "markdown_it")
+ONE_THREAD: dict[str, str] = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+OPTIONS = ("-q", "--no-header", "--tb=no", "-p", "no:cacheprovider", "-m", "not slow and not crosscheck")
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """A mistake's fate, by which test or why, and after how long [s]."""
+class Question:
+    """Tests to run, with a mistake or none, until the first fails or all of them, for `limit` seconds at most.
 
-    mutant: Mutant
-    fate: Fate
-    by: str
-    seconds: float
+    `traced`: the folder that a trace of them goes into.
+    """
+
+    tests: tuple[str, ...]
+    mistake: Mistake | None = None
+    first: bool = True
+    limit: float = 120.0
+    traced: Path | None = None
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether pytest was content with a run, and if not, which test failed or what happened instead."""
+    """Which tests failed, of how many that ran; `end`: what happened where pytest did not end by itself."""
 
-    passed: bool
-    by: str = ""
+    noticed: tuple[str, ...]
+    ran: int
+    seconds: float
+    end: str = ""
 
 
 def copy_tree(root: Path, folder: Path) -> Path:
@@ -62,61 +62,114 @@ def copy_tree(root: Path, folder: Path) -> Path:
     return folder
 
 
-_running: set[subprocess.Popen[str]] = set()
+class _Writer:
+    """A plugin of pytest: tells at once which tests ran and which failed."""
+
+    def __init__(self, path: Path) -> None:
+        self.file = path.open("a", buffering=1)
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        if report.when == "call" or report.failed:
+            print(json.dumps([report.nodeid, report.failed]), file=self.file)
+
+    def pytest_collectreport(self, report: Any) -> None:
+        if report.failed:
+            print(json.dumps([report.nodeid, True]), file=self.file)
 
 
-def stop() -> None:
-    """End the tests that are running: they are in sessions of their own, where an interruption doesn't reach them."""
-    for process in tuple(_running):
-        os.killpg(process.pid, signal.SIGKILL)
+def _run(question: Question, tree: Path, told: Path) -> int:
+    """In the new process: make the mistake, run the tests, take it back."""
+    silent = os.open(os.devnull, os.O_RDWR)
+    for stream in range(3):
+        os.dup2(silent, stream)
+    os.chdir(tree)
+    # Folders of tests in one of their own: pytest clears away what others have left in the one that all share.
+    os.environ.update(ONE_THREAD, PYTHONPATH=str(tree), PYTEST_DEBUG_TEMPROOT=str(told.parent))
+    # What is compiled is kept by a digest of its sources, beside the trees: to compile takes a minute.
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(tree.parent / "numba"))
+    sys.path.insert(0, str(tree))
+    plugins: list[object] = [_Writer(told)]
+    if question.traced is not None:
+        inject = question.traced / "inject"
+        for folder in (inject, question.traced / "hits"):
+            folder.mkdir(parents=True, exist_ok=True)
+        (inject / "sitecustomize.py").write_text(tracing.INJECTED)
+        os.environ.update({tracing.FOLDER: str(question.traced / "hits"), "PYTHONPATH": f"{tree}{os.pathsep}{inject}"})
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tests"]:
+        del sys.modules[name]
+    sys.modules["__main__"] = ModuleType("__main__")  # else processes that tests spawn import that of the mutants
+    if question.traced is not None:
+        plugins.append(importlib.import_module("tests.mutants.tracing").start())
+    import pytest
+
+    status = pytest.main([*OPTIONS, *(["-x"] if question.first else []), *question.tests], plugins)
+    return int(status)
 
 
-def ask(tree: Path, tests: Sequence[str], limit: float) -> Answer:
-    """Run tests in a tree until the first fails; what is not done after `limit` seconds counts as failed."""
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider"]
-    one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    with subprocess.Popen(
-        [*command, *tests],
-        cwd=tree,
-        env={**os.environ, **one, "PYTHONPATH": str(tree)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        _running.add(process)
-        try:
-            said, _ = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            return Answer(False, f"no end within {limit:g} s")
-        finally:
-            _running.discard(process)
-    if process.returncode == 0:
-        return Answer(True)
-    if failed := re.search(r"^(?:FAILED|ERROR) (tests/.+?)(?: - .*)?$", said, re.M):
-        return Answer(False, failed[1])
-    lines = said.strip().splitlines() or ["it said nothing"]
-    return Answer(False, f"pytest ended with {process.returncode}: {lines[-1]}")
+def load_others() -> None:
+    """Import what every question would import again."""
+    for name in OTHERS:
+        with suppress(ImportError):
+            importlib.import_module(name)
 
 
-def trial(mutant: Mutant, tree: Path) -> Verdict:
-    """Make the mistake, ask its tests and, if they are content, the other tests of its package; then take it back."""
-    began = time.monotonic()
-    path = tree / mutant.file
-    if wrong := faults(mutant, tree):
-        return Verdict(mutant, Fate.STALE, "; ".join(wrong), 0.0)
-    right = path.read_text(encoding="utf-8")
+def asked(
+    questions: Iterable[Question], trees: Sequence[Path], done: Callable[[Question, Answer], None] = lambda *_: None
+) -> list[Answer]:
+    """The answers in the order of the questions, one process a question and tree; `done` is called as each comes."""
+    free, running = list(trees), {}
+    answers: dict[int, Answer] = {}
+    waiting = list(enumerate(questions))[::-1]
     try:
-        path.write_text(mutant.applied(tree), encoding="utf-8")
-        answer, fate = ask(tree, mutant.tests, LIMIT), Fate.CAUGHT
-        others = [test for test in wider_tests(mutant, tree) if test not in mutant.tests]
-        if answer.passed and others and not mutant.survives:
-            answer, fate = ask(tree, others, WIDER_LIMIT), Fate.ELSEWHERE
+        while waiting or running:
+            while waiting and free:
+                number, question = waiting.pop()
+                tree = free.pop()
+                told = Path(tempfile.mkdtemp(prefix="mutants-")) / "told"
+                told.touch()
+                right = None
+                if question.mistake is not None:
+                    right = (tree / question.mistake.file).read_bytes()
+                    (tree / question.mistake.file).write_bytes(question.mistake.text(tree))
+                process = os.fork()
+                if process == 0:
+                    os.setsid()
+                    status = 70
+                    with suppress(BaseException):
+                        status = _run(question, tree, told)
+                    os._exit(status)
+                running[process] = number, question, tree, told, right, time.monotonic()
+            for process, (number, question, tree, told, right, began) in list(running.items()):
+                ended, status = os.waitpid(process, os.WNOHANG)
+                late = time.monotonic() - began > question.limit
+                if not ended and not late:
+                    continue
+                _kill(process, wait=not ended)
+                if right is not None and question.mistake is not None:
+                    (tree / question.mistake.file).write_bytes(right)
+                answers[number] = _answer(told, status if ended else None, question, time.monotonic() - began)
+                del running[process]
+                free.append(tree)
+                done(question, answers[number])
+            time.sleep(0.02)
     finally:
-        path.write_text(right, encoding="utf-8")
-    if answer.passed:
-        fate = Fate.KNOWN if mutant.survives else Fate.SURVIVED
-    elif mutant.survives:
-        fate = Fate.NEEDLESS
-    return Verdict(mutant, fate, answer.by or mutant.survives, time.monotonic() - began)
+        for process in running:
+            _kill(process, wait=True)
+    return [answers[number] for number in sorted(answers)]
+
+
+def _kill(process: int, wait: bool) -> None:
+    """End a process and what it has started, which are a session."""
+    with suppress(ProcessLookupError):
+        os.killpg(process, signal.SIGKILL)
+    if wait:
+        os.waitpid(process, 0)
+
+
+def _answer(told: Path, status: int | None, question: Question, seconds: float) -> Answer:
+    rows = [json.loads(row) for row in told.read_text().splitlines()]
+    shutil.rmtree(told.parent, ignore_errors=True)
+    end = f"no end within {question.limit:g} s" if status is None else ""
+    if status is not None and os.waitstatus_to_exitcode(status) not in (0, 1, 5) and not any(row[1] for row in rows):
+        end = f"pytest ended with {os.waitstatus_to_exitcode(status)}"
+    return Answer(tuple(dict.fromkeys(test for test, failed in rows if failed)), len(rows), round(seconds, 1), end)

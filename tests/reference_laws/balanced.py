@@ -12,10 +12,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.person.one_foot import OneFoot
-from reference.person.segments import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH
-from reference.person.two_feet import TwoFeet
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.person import HEAD_ARMS_TRUNK, SHANK, SHANK_AND_FOOT, THIGH, OneFoot, TwoFeet
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from tests.reference_laws.law import Law, Outside, angle, decades
 
 # A body: mass, inertia, direction of its x axis, turning rate. A pin: (body, its own point), twice; -1 is the ground.

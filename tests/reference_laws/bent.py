@@ -10,9 +10,9 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.curves import Circle, Curve, Ellipse, Ring
-from reference.curves.cam import Cam
-from reference.curves.open import Catenary, LogSpiral, Parabola
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Circle, Curve, Ring
+from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from tests.reference_laws.law import Law, Outside, decades
 
 
@@ -28,7 +28,7 @@ class Exact:
 
 
 def ellipse(a: Any, b: Any) -> Exact:
-    """As in `reference.curves.ellipse`, by Legendre's integral."""
+    """As in `reference.rolling.closed_curves`, by Legendre's integral."""
     if max(a / b, b / a) > 999:
         raise Outside
 

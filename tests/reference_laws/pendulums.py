@@ -7,9 +7,9 @@ import math
 import mpmath as mp
 import numpy as np
 
-from reference.n_four_bar import NFourBar
-from reference.pendulum.chain import Chain
-from reference.pendulum.link import Pendulum
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.link import Pendulum
 from tests.reference_laws.law import Law, Outside, angle, decades
 from tests.reference_laws.linkages import solved
 

@@ -13,9 +13,10 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.curves import Circle, Ellipse, Line, Ring
-from reference.curves.open import Catenary, LogSpiral, Parabola
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
+from reference.rolling.open_curves import Catenary, LogSpiral, Parabola
 from tests.reference_laws.bent import catenary, ellipse, line, parabola, round_curve, spiral
 from tests.reference_laws.law import DIGITS, Law, Outside, decades
 

@@ -8,20 +8,20 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.centrodes import instant_centre
-from reference.skate.parking import commutator_displacement, park, stops
-from reference.skate.pinned_body import PinnedBody
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.skate.slopes import SkateOnSlope
-from reference.wheels.casters import Casters
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import towed
+from reference.chapter.centrodes import instant_centre
+from reference.chapter.parking import commutator_displacement, park, stops
+from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.skates.slopes import SkateOnSlope
+from reference.scenes.wheels.cart import Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import towed
 from tests.reference_laws.law import DIGITS, Law, Outside, angle, decades
 from tests.reference_laws.pendulums import swung
 
 
 def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
-    """The drawbar's angle, the wheel's advance and its place, by the exponential of the 2 by 2 system."""
+    """The drawbar's angle and the wheel's place, by the exponential of the 2 by 2 system."""
     curvature = 1 / radius
     root = mp.sqrt(mp.mpc(1 - (length * curvature) ** 2))
     if root == 0:
@@ -35,19 +35,19 @@ def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
     heading = curvature * way + turned
     chord = 2 * radius * mp.sin(curvature * way / 2) * mp.expj(curvature * way / 2)
     wheel = chord - length * mp.expj(heading)
-    return [turned, length * mp.log(across**2 + along**2), wheel.real, wheel.imag]
+    return [turned, wheel.real, wheel.imag]
 
 
 def our_tow(length: float, start: float, radius: float, way: float) -> list[Any]:
     made = Tow(length, start, radius)
-    return [made.relative_angle(way), made.wheel_advance(way), *made.wheel(way)]
+    return [made.relative_angle(way), *made.wheel(way)]
 
 
 def tow_sizes(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
     """The angle is what is left of the start's, and the wheel a drawbar away from the hitch."""
-    turned, advance, x, y = tow(length, start, radius, way)
+    turned, x, y = tow(length, start, radius, way)
     place = max(abs(mp.mpc(x, y)), length)
-    return [max(abs(turned), abs(start)), advance, place, place]
+    return [max(abs(turned), abs(start)), place, place]
 
 
 def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
@@ -215,7 +215,7 @@ def our_centre(x: float, y: float, u: float, v: float, turning: float) -> list[A
 
 
 WHEELED = (
-    Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(2, 4),), angles=(0,), size=tow_sizes),
+    Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(1, 3),), angles=(0,), size=tow_sizes),
     Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
     Law("skate on a slope", drawn_slope, our_slope, slope, vectors=(slice(0, 2), slice(2, 4)), size=slope_sizes),
     Law("pinned body", drawn_pinned, our_pinned, pinned, vectors=(slice(1, 3),), size=pinned_sizes),

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.compiled.steps import accelerated, combined, projected, staged
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     ACCELERATION,
     COLUMNS,
     NEW_POSE,
@@ -21,15 +19,17 @@ from engines.lagrange.flat import (
     SMALLEST,
     STAGE_POSE,
     STAGE_TWIST,
+    STATUS,
     STEPS,
     STIFF,
     STOPPED,
-    TOLD,
     TWIST,
     TWIST_UNIT,
     VELOCITY,
     WANTED_ROLL,
 )
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.steps import accelerations, add_stages, evaluate_stage, project_onto_joints
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies
@@ -39,12 +39,12 @@ STIFF_PRODUCT, STIFF_STEPS = 6.1, 15  # step times largest eigenvalue at the bor
 
 
 @inner
-def controlled(
+def adaptive_steps(
     whole, real, cells, stages, weights, nodes, third, fifth, dense, project, tolerance, spacing, begin, poses, twists
 ):
     """From the sample `begin` on, samples `spacing` apart into rows of poses and twists; gives the last one done."""
     columns, pose, twist, new, fast = whole[COLUMNS], whole[POSE], whole[TWIST], whole[NEW_POSE], whole[NEW_TWIST]
-    velocity, acceleration, told = whole[VELOCITY], whole[ACCELERATION], whole[TOLD]
+    velocity, acceleration, status = whole[VELOCITY], whole[ACCELERATION], whole[STATUS]
     end = spacing * (len(poses) - 1)
     for k in range(columns):
         real[pose + k], real[twist + k] = poses[begin, k], twists[begin, k]
@@ -54,22 +54,22 @@ def controlled(
             step = _first_step(whole, real, cells, t, tolerance, min(spacing * 10, end - t))
         least = 16 * ROUNDING * max(abs(t), spacing)
         tries += 1
-        if not step > least or tries > MOST_STEPS or real[told + STEPS] > MOST_STEPS + EACH_SAMPLE * sample:
-            real[told + STOPPED] = t
+        if not step > least or tries > MOST_STEPS or real[status + STEPS] > MOST_STEPS + EACH_SAMPLE * sample:
+            real[status + STOPPED] = t
             return sample
         # Steps about as long as samples are apart end there, longer ones where the run does; a crumb is shared out.
         target = spacing * (sample + 1) if step < 2 * spacing else end
         rest = target - t
         dt = rest if 1.01 * step >= rest else (0.5 * rest if 2 * step > rest else step)
         goal = target if dt == rest else t + dt
-        real[told + SMALLEST] = 1.0
+        real[status + SMALLEST] = 1.0
         for stage in range(1, 12):
-            staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+            evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
         for k in range(columns):
             real[new + k], real[fast + k] = real[pose + k], real[twist + k]
-        combined(whole, real, weights, dt, new, fast)
+        add_stages(whole, real, weights, dt, new, fast)
         error = dt * _error(whole, real, third, fifth, tolerance)
-        if real[told + WANTED_ROLL] >= 0:
+        if real[status + WANTED_ROLL] >= 0:
             return sample
         if not error < 1:
             step = dt * (max(LEAST_FACTOR, SAFETY * error**-0.125) if error < 1e300 else LEAST_FACTOR)
@@ -81,13 +81,13 @@ def controlled(
         moved = 0.0
         for k in range(columns):
             moved = max(moved, abs(real[fast + k] - real[twist + k]) / real[whole[TWIST_UNIT] + k])
-        real[told + ROUNDED] += moved * ROUNDING / math.sqrt(max(real[told + SMALLEST], ROUNDING))
-        projected(whole, real, cells, new, fast, goal, project)
+        real[status + ROUNDED] += moved * ROUNDING / math.sqrt(max(real[status + SMALLEST], ROUNDING))
+        project_onto_joints(whole, real, cells, new, fast, goal, project)
         last, ahead = 12 * columns, 11 * columns
         for k in range(columns):
             real[velocity + last + k] = real[fast + k]
-        accelerated(whole, real, cells, new, fast, goal, acceleration + last)
-        if real[told + WANTED_ROLL] >= 0:
+        accelerations(whole, real, cells, new, fast, goal, acceleration + last)
+        if real[status + WANTED_ROLL] >= 0:
             return sample
         rates = states = 0.0
         for k in range(columns):
@@ -98,9 +98,9 @@ def controlled(
             states += _square((real[new + k] - real[whole[STAGE_POSE] + k]) / unit)
             states += _square((real[fast + k] - real[velocity + ahead + k]) / faster)
         stiff = stiff + 1 if dt * dt * rates > STIFF_PRODUCT * STIFF_PRODUCT * states and states > 0 else 0
-        if stiff >= STIFF_STEPS and math.isnan(real[told + STIFF]):
-            real[told + STIFF] = t
-        real[told + STEPS] += 1
+        if stiff >= STIFF_STEPS and math.isnan(real[status + STIFF]):
+            real[status + STIFF] = t
+        real[status + STEPS] += 1
         ready = False
         while sample < len(poses) - 1 and goal >= spacing * (sample + 1):
             if spacing * (sample + 1) == goal:
@@ -109,16 +109,16 @@ def controlled(
             else:
                 if not ready:
                     for stage in range(13, 16):
-                        staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+                        evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
                     ready = True
                 _between(whole, real, dense, dt, (spacing * (sample + 1) - t) / dt)
                 at, fast_at = whole[STAGE_POSE], whole[STAGE_TWIST]
-                projected(whole, real, cells, at, fast_at, spacing * (sample + 1), project)
+                project_onto_joints(whole, real, cells, at, fast_at, spacing * (sample + 1), project)
                 for k in range(columns):
                     poses[sample + 1, k], twists[sample + 1, k] = real[at + k], real[fast_at + k]
             sample += 1
             tries = 0
-            if real[told + WANTED_ROLL] >= 0:
+            if real[status + WANTED_ROLL] >= 0:
                 return sample - 1
             for k in range(columns):
                 if not math.isfinite(poses[sample, k]):
@@ -153,14 +153,14 @@ def _first_step(whole, real, cells, t, tolerance, longest):
     velocity, acceleration = whole[VELOCITY], whole[ACCELERATION]
     for k in range(columns):
         real[velocity + k] = real[twist + k]
-    accelerated(whole, real, cells, pose, twist, t, acceleration)
+    accelerations(whole, real, cells, pose, twist, t, acceleration)
     states = _size(whole, real, pose, twist, pose, twist, tolerance)
     rates = _size(whole, real, velocity, acceleration, pose, twist, tolerance)
     guess = min(longest, 1e-6 * longest if states < 1e-5 or rates < 1e-5 else 0.01 * states / rates)
     for k in range(columns):
         real[new + k] = real[pose + k] + guess * real[velocity + k]
         real[fast + k] = real[twist + k] + guess * real[acceleration + k]
-    accelerated(whole, real, cells, new, fast, t + guess, acceleration + columns)
+    accelerations(whole, real, cells, new, fast, t + guess, acceleration + columns)
     for k in range(columns):
         real[new + k] = (real[fast + k] - real[twist + k]) / guess
         real[fast + k] = (real[acceleration + columns + k] - real[acceleration + k]) / guess

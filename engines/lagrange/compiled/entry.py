@@ -7,10 +7,21 @@ from __future__ import annotations
 
 from numba import njit, types
 
-from engines.lagrange.compiled.adaptive import controlled
+from engines.lagrange.arrays import (
+    ACCELERATION,
+    COLUMNS,
+    CONTROL,
+    MARCH,
+    POSE,
+    REACTION,
+    ROWS,
+    STATUS,
+    TWIST,
+    WANTED_ROLL,
+)
+from engines.lagrange.compiled.adaptive import adaptive_steps
 from engines.lagrange.compiled.inner import straight
-from engines.lagrange.compiled.steps import accelerated, marched
-from engines.lagrange.flat import ACCELERATION, COLUMNS, CONTROL, MARCH, POSE, REACTION, ROWS, TOLD, TWIST, WANTED_ROLL
+from engines.lagrange.compiled.steps import accelerations, fixed_steps
 
 WHOLE, CELLS = types.int64[::1], types.complex128[:, ::1]
 LIST, TABLE = types.float64[::1], types.float64[:, ::1]
@@ -24,13 +35,13 @@ def run(
     task, whole, real, cells, stages, weights, nodes, third, fifth, dense,
     project, tolerance, dt, every, begin, poses, twists, out,
 ):  # fmt: skip
-    """MARCH: `steps.marched`. CONTROL: `adaptive.controlled`, `dt` between samples. REACT: fill `out` (samples, rows)
-    and `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
+    """MARCH: `fixed_steps`. CONTROL: `adaptive_steps`, `dt` between samples. REACT: fill `out` (samples, rows) and
+    `out`'s last columns with the reactions and accelerations at samples `dt` apart."""
     whole, real = straight(whole), straight(real)
     if task == MARCH:
-        return marched(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
+        return fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists)
     if task == CONTROL:
-        return controlled(
+        return adaptive_steps(
             whole,
             real,
             cells,
@@ -53,8 +64,8 @@ def run(
     for sample in range(begin, len(poses)):
         for k in range(columns):
             real[pose + k], real[twist + k] = poses[sample, k], twists[sample, k]
-        accelerated(whole, real, cells, pose, twist, sample * dt, acceleration)
-        if real[whole[TOLD] + WANTED_ROLL] >= 0:
+        accelerations(whole, real, cells, pose, twist, sample * dt, acceleration)
+        if real[whole[STATUS] + WANTED_ROLL] >= 0:
             return sample
         for row in range(rows):
             out[sample, row] = real[whole[REACTION] + row]

@@ -1,4 +1,4 @@
-"""Gaps, velocity rows J and bias terms -(dJ/dt) v of every joint, in one pass; the same rows as `reference.joints`.
+"""Gaps, velocity rows J and bias terms -(dJ/dt) v of every joint, as in `reference.joints`, and applied forces.
 
 The bias is written out for each joint: what the derivative of n . (v_second - v_first) leaves when accelerations are
 taken away, with the normal n of a line, its direction t and its points.
@@ -8,17 +8,28 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     BIAS,
     COLUMNS,
+    CONSTANTS,
+    DAMPER,
     DRIVE,
     ENDS,
+    FORCE,
+    FORCE_AT,
+    FORCE_NUMBERS,
+    FORCE_PARAMETERS,
+    FORCED,
+    FORCES,
     GAP,
     GEAR,
+    GRAVITY,
     JOINT,
     JOINT_AT,
     JOINTS,
+    MOBILITY,
+    ON_LINE,
+    ON_ROUND,
     PARAMETER_AT,
     PARAMETERS,
     PIN,
@@ -28,13 +39,16 @@ from engines.lagrange.flat import (
     ROLL_NUMBERS,
     ROLL_RECORD,
     SLOT,
-    TOLD,
+    SPRING,
+    STATUS,
+    TORQUE,
+    TORSION_SPRING,
     TURNED,
     WANTED_ANGLE,
     WANTED_ROLL,
     WELD,
 )
-from engines.lagrange.rolls import CONSTANTS, ON_LINE, ON_ROUND
+from engines.lagrange.compiled.inner import inner
 
 
 @inner
@@ -62,7 +76,7 @@ def rows(whole, real, cells, pose, twist, t):
             real[bias] = 0.0
             continue
         if kind == ROLL:
-            rolled(whole, real, cells, record, pose, twist)
+            roll_rows(whole, real, cells, record, pose, twist)
             continue
         c, d = real[turned + 2 * (first // 3)], real[turned + 2 * (first // 3) + 1]
         g, h = real[turned + 2 * (second // 3)], real[turned + 2 * (second // 3) + 1]
@@ -113,7 +127,7 @@ def rows(whole, real, cells, pose, twist, t):
 
 
 @inner
-def rolled(whole, real, cells, record, pose, twist):
+def roll_rows(whole, real, cells, record, pose, twist):
     """The rows of a Roll, along e_t and then e_n = -i e_t; vectors are complex numbers, as in `rolling_table`.
 
     With P(theta) the place of the second body in the frame R of the first, the pair is closed by r2 - r1 = R P.
@@ -166,7 +180,7 @@ def contact(whole, real, cells, which, theta):
     index = math.floor(position) - whole[record + 1] if abs(position) < 1e15 else -1
     if index < 0 or index >= whole[record + 2] or math.isnan(cells[whole[record + 3] + index, 0].real):
         if not math.isnan(theta):
-            real[whole[TOLD] + WANTED_ROLL], real[whole[TOLD] + WANTED_ANGLE] = which, theta
+            real[whole[STATUS] + WANTED_ROLL], real[whole[STATUS] + WANTED_ANGLE] = which, theta
         lost = complex(math.nan, math.nan)
         return lost, lost, lost, lost, math.nan
     c = whole[record + 3] + index
@@ -185,3 +199,57 @@ def contact(whole, real, cells, which, theta):
     length = abs(normal)
     turning = (normal.conjugate() * (thrice - 1j * twice)).imag / (length * length)
     return place, once, twice, normal * (1j / length), turning
+
+
+@inner
+def applied_accelerations(whole, real, pose, twist, out):
+    """Accelerations of all forces but those of joints, to `out`."""
+    for body in range(out, out + whole[COLUMNS] - 3, 3):
+        real[body], real[body + 1], real[body + 2] = real[whole[GRAVITY]], real[whole[GRAVITY] + 1], 0.0
+    for force in range(whole[FORCES]):
+        record, number = whole[FORCE_AT] + FORCED * force, whole[FORCE_NUMBERS] + FORCE_PARAMETERS * force
+        kind, first, second = whole[record], whole[record + 1], whole[record + 2]
+        size, other = real[number + 4], real[number + 5]
+        if kind in (SPRING, DAMPER, FORCE):
+            angle = real[pose + first + 2]
+            c, d = math.cos(angle), math.sin(angle)
+            angle = real[pose + second + 2]
+            g, h = math.cos(angle), math.sin(angle)
+            ax, ay = c * real[number] - d * real[number + 1], d * real[number] + c * real[number + 1]
+            bx, by = g * real[number + 2] - h * real[number + 3], h * real[number + 2] + g * real[number + 3]
+            if kind == FORCE:
+                push(whole, real, out, second, size, other, bx * other - by * size)
+                continue
+            x = real[pose + second] + bx - real[pose + first] - ax
+            y = real[pose + second + 1] + by - real[pose + first + 1] - ay
+            if kind == SPRING:
+                pull = size
+                if other != 0:
+                    pull -= size * other / math.sqrt(x * x + y * y)
+            else:
+                fast_x = real[twist + second] - real[twist + second + 2] * by
+                fast_x -= real[twist + first] - real[twist + first + 2] * ay
+                fast_y = real[twist + second + 1] + real[twist + second + 2] * bx
+                fast_y -= real[twist + first + 1] + real[twist + first + 2] * ax
+                pull = size * (x * fast_x + y * fast_y) / (x * x + y * y)
+            x, y = -pull * x, -pull * y
+            push(whole, real, out, second, x, y, bx * y - by * x)
+            push(whole, real, out, first, -x, -y, ay * x - ax * y)
+            continue
+        if kind == TORQUE:
+            torque = size
+        elif kind == TORSION_SPRING:
+            torque = -size * (real[pose + second + 2] - real[pose + first + 2] - other)
+        else:
+            torque = -size * (real[twist + second + 2] - real[twist + first + 2])
+        push(whole, real, out, second, 0.0, 0.0, torque)
+        push(whole, real, out, first, 0.0, 0.0, -torque)
+
+
+@inner
+def push(whole, real, out, body, x, y, torque):
+    """What a force and a torque at the centre of mass add to a body's accelerations; the ground has no mobility."""
+    mobility = whole[MOBILITY] + body
+    real[out + body] += real[mobility] * x
+    real[out + body + 1] += real[mobility + 1] * y
+    real[out + body + 2] += real[mobility + 2] * torque

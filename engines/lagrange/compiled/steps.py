@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled.forces import free
-from engines.lagrange.compiled.inner import inner
-from engines.lagrange.compiled.rows import rows
-from engines.lagrange.compiled.system import ALL, HOLONOMIC, along, missed, solved
-from engines.lagrange.flat import (
+from engines.lagrange.arrays import (
     ACCELERATION,
     BIAS,
     CHANGE,
@@ -24,13 +20,16 @@ from engines.lagrange.flat import (
     ROWS,
     SOFT,
     STAGE_POSE,
+    STATUS,
     STIFFNESS,
-    TOLD,
     TWIST,
     VELOCITY,
     WANTED_ROLL,
     WHICH,
 )
+from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.rows import applied_accelerations, rows
+from engines.lagrange.compiled.schur import ALL, HOLONOMIC, residual, row_times, solve
 
 # Newton's correction is squared by the next one: after one this small, in parts of the mechanism, the next is lost in
 # rounding. So is what a factor of the rows before it leaves of the slip, which is itself a small part of the speeds.
@@ -38,27 +37,27 @@ CLOSED = 1e-9
 
 
 @inner
-def accelerated(whole, real, cells, pose, twist, t, out):
+def accelerations(whole, real, cells, pose, twist, t, out):
     """Accelerations under all forces and the joints' reactions, to `out`; the rows and reactions there stay too."""
-    free(whole, real, pose, twist, out)
+    applied_accelerations(whole, real, pose, twist, out)
     if whole[ROWS] == 0:
         return
     rows(whole, real, cells, pose, twist, t)
-    missed(whole, real, out, whole[BIAS], whole[RIGHT])
+    residual(whole, real, out, whole[BIAS], whole[RIGHT])
     if whole[SOFT] > 0:
         for row in range(whole[ROWS]):
-            slip = along(whole, real, twist, row) - real[whole[RATE] + row]
+            slip = row_times(whole, real, twist, row) - real[whole[RATE] + row]
             value = real[whole[DAMPING] + row] * slip + real[whole[STIFFNESS] + row] * real[whole[GAP] + row]
             real[whole[RIGHT] + row] -= value + real[whole[LACKING] + row] * real[whole[BIAS] + row]
     whole[WHICH] = ALL
-    solved(whole, real, False, False)
+    solve(whole, real, False, False)
     change = whole[CHANGE]
     for k in range(whole[COLUMNS]):
         real[out + k] += real[change + k]
 
 
 @inner
-def projected(whole, real, cells, pose, twist, t, most):
+def project_onto_joints(whole, real, cells, pose, twist, t, most):
     """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most."""
     if whole[ROWS] == 0:
         return
@@ -70,12 +69,12 @@ def projected(whole, real, cells, pose, twist, t, most):
         last, largest = iteration == holonomic, 0.0
         rows(whole, real, cells, pose, twist, t)
         if last:
-            missed(whole, real, twist, whole[RATE], right)
+            residual(whole, real, twist, whole[RATE], right)
         else:
             for row in range(whole[ROWS]):
                 real[right + row] = -real[gaps + row]
         whole[WHICH] = ALL if last else which
-        solved(whole, real, True, last and kept)
+        solve(whole, real, True, last and kept)
         if last:
             for k in range(columns):
                 real[twist + k] += real[change + k]
@@ -88,7 +87,7 @@ def projected(whole, real, cells, pose, twist, t, most):
 
 
 @inner
-def staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
+def evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
     """One stage of a tableau, from the state at these places: its velocity and its acceleration."""
     columns = whole[COLUMNS]
     velocity, acceleration = whole[VELOCITY] + stage * columns, whole[ACCELERATION] + stage * columns
@@ -103,11 +102,11 @@ def staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt):
                 real[velocity + k] += share * real[gain + k]
                 real[place + k] += share * real[rate + k]
     at = t + nodes[stage] * dt
-    accelerated(whole, real, cells, place, velocity, at, acceleration)
+    accelerations(whole, real, cells, place, velocity, at, acceleration)
 
 
 @inner
-def combined(whole, real, weights, dt, pose, twist):
+def add_stages(whole, real, weights, dt, pose, twist):
     """Add to a state the weighted velocities and accelerations of the stages."""
     columns = whole[COLUMNS]
     for stage in range(len(weights)):
@@ -120,7 +119,7 @@ def combined(whole, real, weights, dt, pose, twist):
 
 
 @inner
-def marched(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists):
+def fixed_steps(whole, real, cells, stages, weights, nodes, project, dt, every, begin, poses, twists):
     """Steps of `dt` from the sample `begin` on, `every` of them a sample, into rows of poses and twists.
 
     Without stages it is the semi-implicit Euler method. `project`: how often Newton's method may correct a step, 0 for
@@ -134,17 +133,17 @@ def marched(whole, real, cells, stages, weights, nodes, project, dt, every, begi
         for step in range(every):
             t = (sample * every + step) * dt
             if len(nodes) == 0:
-                accelerated(whole, real, cells, pose, twist, t, acceleration)
+                accelerations(whole, real, cells, pose, twist, t, acceleration)
                 for k in range(columns):
                     real[twist + k] += dt * real[acceleration + k]
                     real[pose + k] += dt * real[twist + k]
             else:
                 for stage in range(len(nodes)):
-                    staged(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
-                combined(whole, real, weights, dt, pose, twist)
+                    evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+                add_stages(whole, real, weights, dt, pose, twist)
             if project > 0:
-                projected(whole, real, cells, pose, twist, t + dt, project)
-            if real[whole[TOLD] + WANTED_ROLL] >= 0:
+                project_onto_joints(whole, real, cells, pose, twist, t + dt, project)
+            if real[whole[STATUS] + WANTED_ROLL] >= 0:
                 return sample
         for k in range(columns):
             if not math.isfinite(real[pose + k]):

@@ -67,9 +67,7 @@ def add_geared_drives(building: Building, drives: Sequence[Drive], by: DriveBy, 
                 + (f"{by!r} drives single ones, take 'inertia'" if signs else "nothing can drive it")
             )
         name = f"drive {drive.name}"
-        tendon = building.spec.add_tendon(name=name)
-        for column, sign in signs.items():
-            tendon.wrap_joint(f"coordinate {column}", sign)
+        tendon = building.add_sum(name, signs)
         if drive.turning_rate:
             mass = sum(body.mass for body in building.mechanism.bodies)
             inertia = _inertia_scale(building.mechanism)
@@ -81,14 +79,7 @@ def add_geared_drives(building: Building, drives: Sequence[Drive], by: DriveBy, 
             tendon.wrap_joint(name, -1.0)
             building.start_rates[name] = drive.turning_rate
             clocks.append(name)
-        building.spec.add_equality(
-            type=mujoco.mjtEq.mjEQ_TENDON,
-            objtype=mujoco.mjtObj.mjOBJ_TENDON,
-            name1=name,
-            solref=list(building.stiffness.reference(building.mechanism, building.dt)),
-            solimp=list(building.stiffness.impedance),
-        )
-    building.size += len(drives)
+        building.hold_tendon(name)
     return tuple(clocks)
 
 

@@ -24,7 +24,6 @@ import mujoco
 import numpy as np
 
 from engines.mujoco.construction import Building
-from engines.mujoco.written_rows import Law, Row, State, WrittenJoint
 from engines.tree import Link, Tree, world_offset
 from reference.joints import Slot
 from reference.plane import rotation_velocity
@@ -39,10 +38,7 @@ def add_slots(building: Building, slots: Sequence[Slot], by: SlotBy) -> None:
         if link is not None:
             _add_tendon(building, slot, link.column)
         elif by == "rows":
-            body = building.index(slot.second)
-            stiffness, damping = building.stiffness.gains(building.mechanism, building.dt)
-            rows = slot_rows(slot, stiffness, damping)
-            building.written.append(WrittenJoint(building.index(slot.first), body, 1, rows))
+            building.write("slot", slot, (*slot.first_point, *slot.second_point, slot.line_angle, *building.gains))
         else:
             _add_half(building, slot)
 
@@ -56,17 +52,9 @@ def resting_line(slot: Slot, tree: Tree) -> Link | None:
 
 
 def _add_tendon(building: Building, slot: Slot, column: int) -> None:
-    tendon = building.spec.add_tendon(name=f"slot {slot.name}")
-    tendon.wrap_joint(f"coordinate {column}", -math.sin(slot.line_angle))
-    tendon.wrap_joint(f"coordinate {column + 1}", math.cos(slot.line_angle))
-    building.spec.add_equality(
-        type=mujoco.mjtEq.mjEQ_TENDON,
-        objtype=mujoco.mjtObj.mjOBJ_TENDON,
-        name1=f"slot {slot.name}",
-        solref=list(building.stiffness.reference(building.mechanism, building.dt)),
-        solimp=list(building.stiffness.impedance),
-    )
-    building.size += 1
+    across = {column: -math.sin(slot.line_angle), column + 1: math.cos(slot.line_angle)}
+    building.add_sum(f"slot {slot.name}", across)
+    building.hold_tendon(f"slot {slot.name}")
 
 
 def _add_half(building: Building, slot: Slot) -> None:
@@ -86,8 +74,7 @@ def _add_half(building: Building, slot: Slot) -> None:
     if second is not None:
         other.mass, other.inertia = mass, [inertia] * 3
         building.halves.append((name, second))
-    carrier = spec.worldbody if first is None else spec.body(f"body {first}")
-    half = carrier.add_body(
+    half = building.carrier(slot.first).add_body(
         name=name,
         pos=[*(centre - base[:2]), 0.0],
         ipos=[0.0, 0.0, 0.0],
@@ -99,16 +86,9 @@ def _add_half(building: Building, slot: Slot) -> None:
     half.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[*direction, 0.0])
     half.add_joint(name=turn, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0.0, 0.0, 1.0], pos=[*anchor, 0.0])
     building.start_rates |= {name: _along(building, slot, direction), turn: _turning(building, slot)}
-    weld = spec.add_equality(
-        type=mujoco.mjtEq.mjEQ_WELD,
-        objtype=mujoco.mjtObj.mjOBJ_BODY,
-        name1=name,
-        name2="world" if second is None else f"body {second}",
-        solref=list(building.stiffness.reference(mechanism, building.dt)),
-        solimp=list(building.stiffness.impedance),
-    )
+    other_half = "world" if second is None else f"body {second}"
+    weld = building.hold(mujoco.mjtEq.mjEQ_WELD, name, other_half, rows=3)
     weld.data[:3] = [*anchor, 0.0]
-    building.size += 3
 
 
 def _along(building: Building, slot: Slot, direction: tuple[float, float]) -> float:
@@ -133,35 +113,3 @@ def _turning(building: Building, slot: Slot) -> float:
         0.0 if name is None else mechanism.twist[mechanism.body_index(name), 2] for name in (slot.first, slot.second)
     ]
     return float(rates[1] - rates[0])
-
-
-def slot_rows(slot: Slot, stiffness: float, damping: float) -> Law:
-    """The slot's row and -(dJ/dt) v - damping slip - stiffness gap, see `reference.joints.Slot`."""
-    return Law(slot_row, (*slot.first_point, *slot.second_point, slot.line_angle, stiffness, damping))
-
-
-def slot_row(numbers: tuple[float, float, float, float, float, float, float], first: State, second: State) -> Row:
-    """Of a point on either body [m], the line's angle [rad], stiffness [1/s^2] and damping [1/s]."""
-    first_x, first_y, second_x, second_y, line, stiffness, damping = numbers
-    x1, y1, angle1, vx1, vy1, omega1 = first
-    x2, y2, angle2, vx2, vy2, omega2 = second
-    cosine, sine = math.cos(angle1), math.sin(angle1)
-    own_x1, own_y1 = cosine * first_x - sine * first_y, sine * first_x + cosine * first_y
-    cosine, sine = math.cos(angle2), math.sin(angle2)
-    own_x2, own_y2 = cosine * second_x - sine * second_y, sine * second_x + cosine * second_y
-    along_x, along_y = math.cos(angle1 + line), math.sin(angle1 + line)
-    arm_x, arm_y = x2 + own_x2 - x1, y2 + own_y2 - y1
-    across_x, across_y = arm_x - own_x1, arm_y - own_y1
-    rate_x = vx2 - omega2 * own_y2 - vx1 + omega1 * own_y1
-    rate_y = vy2 + omega2 * own_x2 - vy1 - omega1 * own_x1
-    gap = along_x * across_y - along_y * across_x
-    slip = along_x * rate_y - along_y * rate_x - omega1 * (along_x * across_x + along_y * across_y)
-    square1, square2 = omega1 * omega1, omega2 * omega2
-    moved_x, moved_y = square1 * own_x1 - square2 * own_x2, square1 * own_y1 - square2 * own_y2
-    changing = along_x * moved_y - along_y * moved_x - square1 * gap
-    changing -= 2 * omega1 * (along_x * rate_x + along_y * rate_y)
-    return (
-        along_y, -along_x, -along_x * arm_x - along_y * arm_y,
-        -along_y, along_x, along_y * own_y2 + along_x * own_x2,
-        -changing - damping * slip - stiffness * gap,
-    )  # fmt: skip

@@ -14,16 +14,12 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from engines.mujoco.reading.along_joints import off, turns
-from engines.mujoco.reading.equalities import equalities
-from engines.mujoco.reading.force_limits import limited_forces
-from engines.mujoco.reading.forces import forces
+from engines.mujoco.reading.elements import Scene, drives, equalities, steady, tree_joints
+from engines.mujoco.reading.forces import forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
-from engines.mujoco.reading.hearing import heard
-from engines.mujoco.reading.joints import Scene, tree_joints
-from engines.mujoco.reading.other_settings import switch_off
-from engines.mujoco.reading.own_model import OwnMuJoCo
-from engines.mujoco.reading.steady import drives, steady
+from engines.mujoco.reading.obstacles import limited_forces
+from engines.mujoco.reading.own_model import OwnMuJoCo, heard
+from engines.mujoco.reading.settings import switch_off
 from engines.reading import Note, Reading, refuse, refuse_at_start
 from reference.forces import Force
 from reference.mechanism import Mechanism

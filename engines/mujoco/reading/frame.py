@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.reading import MOST_BODIES, refuse
-from reference.body import Body
+from reference.joints import Body
 
 Array = NDArray[np.float64]
 PLANAR = 1e-9  # of a unit vector, or of an inertia: what counts as rounding

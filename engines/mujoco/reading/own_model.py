@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import copy
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,14 +17,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.mujoco.reading.along_joints import beyond_springs
-from engines.mujoco.reading.declared import declared
-from engines.mujoco.reading.force_limits import limited_forces, reached, unlimited
+from engines.mujoco.reading.elements import Scene
 from engines.mujoco.reading.frame import angles_of, name_of
-from engines.mujoco.reading.hearing import heard
-from engines.mujoco.reading.joints import Scene
-from engines.mujoco.reading.other_settings import TIED_STEPS, changes, switch_off
-from engines.mujoco.reading.places import positions
+from engines.mujoco.reading.obstacles import obstacles
+from engines.mujoco.reading.settings import TIED_STEPS, changes, declared, switch_off
 from engines.mujoco.releases import marks
 from engines.mujoco.running import _listening
 from engines.mujoco.stiffness import STIFFEST
@@ -125,33 +122,7 @@ class OwnMuJoCo:
         return self._give(gap)
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        model, found = self.scene.model, dict[str, Obstacle]()
-        data, free = self._fresh(model), unlimited(model) if limited_forces(model) else None
-
-        def meets(at: float, words: str, without: str) -> None:
-            found.setdefault(words, Obstacle(float(at), words, f"--without {without}"))
-
-        kinds = mujoco.mjtConstraint
-        limits = {int(kinds.mjCNSTR_LIMIT_JOINT): "joint", int(kinds.mjCNSTR_LIMIT_TENDON): "tendon"}
-        touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
-        places = positions(self.scene, pose)
-        for at, qpos, rates in zip(t, places, twist, strict=True):
-            data.qpos[:] = qpos
-            mujoco.mj_fwdPosition(model, data)
-            for kind, index in zip(data.efc_type, data.efc_id, strict=True):
-                if kind in limits:
-                    obj = mujoco.mjtObj.mjOBJ_JOINT if limits[kind] == "joint" else mujoco.mjtObj.mjOBJ_TENDON
-                    meets(at, f"{name_of(model, obj, int(index))} reaches its limit", "limit")
-                elif kind in touching:
-                    pair = [name_of(model, mujoco.mjtObj.mjOBJ_GEOM, int(each)) for each in data.contact[index].geom]
-                    meets(at, f"{pair[0]} touches {pair[1]}", "contact")
-            if free is not None:
-                data.qvel[:] = np.linalg.lstsq(self._directions(data), rates.reshape(-1), rcond=None)[0]
-                for element in reached(model, free, data):
-                    meets(at, f"{element} reaches the limit of its force", "forcelimit")
-        if beyond := beyond_springs(self.scene, t, places):
-            found[beyond.words] = beyond
-        return sorted(found.values(), key=lambda each: each.t)
+        return obstacles(self.scene, self._fresh(self.scene.model), self._directions, t, pose, twist)
 
     def changes(self, smallest: float) -> list[Change]:
         return changes(self.scene.model, self.softly_held, smallest, self.urdf)
@@ -253,3 +224,15 @@ def _spelled(words: Mapping[str, str], value: Any) -> str:
     """MuJoCo's constant as MJCF spells it."""
     word = value.name.split("_")[1]
     return words.get(word, word.lower())
+
+
+@contextmanager
+def heard() -> Iterator[list[str]]:
+    """MuJoCo's warnings, which it would otherwise write into a file in the user's folder."""
+    said: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda words: said.append(" ".join(str(words).split())))
+    try:
+        yield said
+    finally:
+        mujoco.set_mju_user_warning(before)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import pymunk
 from pymunk.constraints import SimpleMotor
 
+from reference.checks import validated
 from reference.joints import Drive, Pin, Vector
 from reference.mechanism import Body, Mechanism
-from reference.validation import validated
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@
 - "contact": by contact and friction, the two curves as shapes, as a user would make them.
 - "pivot": a `PivotJoint` whose anchors, one on each curve, are set before every step where the curves will touch after
   its drift. Both are found by arc length from the start, so the gap it closes is the whole gap since the start.
-- "stale pivot": the same where they touch now: half of the rolling acceleration is missing.
 """
 
 from __future__ import annotations
@@ -23,14 +22,13 @@ from pymunk.constraints import PivotJoint
 
 from engines import Unsupported
 from engines.rolling_table import rolled, unplaced
-from reference.curves.circles_lines import Circle, Line
-from reference.curves.curve import Curve, Vector
+from reference.checks import Fraction, NonNegative, Valid
 from reference.kinds import from_to
 from reference.mechanism import Mechanism
+from reference.rolling.curves import Circle, Curve, Line, Vector
 from reference.rolling.roll import Roll
-from reference.validation import Fraction, NonNegative, Valid
 
-RollConstruction = Literal["contact", "pivot", "stale pivot"]
+RollConstruction = Literal["contact", "pivot"]
 
 
 def _shipped() -> tuple[float, float]:
@@ -131,18 +129,15 @@ class MovedPivot:
         first: pymunk.Body,
         second: pymunk.Body,
         origins: tuple[Vector, Vector],
-        predicted: bool,
     ) -> None:
         self._contact = rolled(joint.rolling).contact
-        self._bodies, self._predicted = (first._body, second._body), predicted
+        self._bodies = (first._body, second._body)
         self._from_first, self._from_second = (complex(*origin) for origin in origins)
         self.constraint = PivotJoint(first, second, (0.0, 0.0), (0.0, 0.0))
         self._pointer = self.constraint._constraint
 
     def __call__(self, ahead: float) -> None:
         first, second = self._bodies
-        if not self._predicted:
-            ahead = 0.0
         rotation = lib.cpBodyGetAngle(second) - lib.cpBodyGetAngle(first)
         rotation += ahead * (lib.cpBodyGetAngularVelocity(second) - lib.cpBodyGetAngularVelocity(first))
         on_first, on_second = self._contact(rotation)

@@ -2,7 +2,7 @@
 
 A blade across a rigid body constrains the same motion wherever it touches along its axle, so every construction puts
 it at the foot of the perpendicular from the centre of mass: there the arm is along the blade, and a `GrooveJoint`'s
-impulse is the right one (see `engines.pymunk.joints.link`).
+impulse is the right one (see `engines.pymunk.joints.slot`).
 
 `SkateConstruction` names them:
 
@@ -11,10 +11,11 @@ impulse is the right one (see `engines.pymunk.joints.link`).
 - "point": after each step the whole velocity is shifted until the blade's point has no velocity across. Slip is zero to
   rounding, and the motion is wrong: a force at the blade turns the body too.
 - "projection": the same by an impulse at the blade, with the body's inertia. First order.
-- "stale groove": a `GrooveJoint` in the ground, aimed before each step along the blade as it stands.
-- "groove": aimed where the blade will stand after the step's drift. The drift is explicit, so this is exact; the motion
-  is of first order, and the slip rounding. On another body than the ground it is a `Link`.
-- "friction" can't be built.
+- "groove": a `GrooveJoint` in the ground, aimed before each step where the blade will stand after the step's drift. The
+  drift is explicit, so this is exact; the motion is of first order, and the slip rounding. On another body than the
+  ground it is a `Link`.
+
+No friction makes a blade: pymunk's contacts press in the plane, and a blade seen from above presses on nothing there.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.constraints import Constraint, GrooveJoint
 
 from engines import Unsupported
-from engines.pymunk.joints.link import Link, drifted
+from engines.pymunk.joints.slot import Link, drifted
 from reference.joints import Skate, Vector
 
-SkateConstruction = Literal["centre", "point", "projection", "stale groove", "groove", "friction"]
+SkateConstruction = Literal["centre", "point", "projection", "groove"]
 
 LINK_REACH = 10.0  # lengths of the mechanism: far against what a body turns in a step, near against its rounding
 
@@ -47,18 +48,13 @@ def blade(
     `point` [m] is the blade's from the origin of the engine's second body, which is not the centre of mass of a crank;
     `length` [m] of the mechanism.
     """
-    if construction == "friction":
-        raise Unsupported(
-            f"joint {joint.name!r}: no friction of pymunk's shapes makes a blade: contacts press in the plane, and a "
-            "blade seen from above presses on nothing in the plane, so there is no normal force to multiply"
-        )
     if construction == "groove" and joint.first is not None:
         link = Link(joint, first, second, point, reach=LINK_REACH * length)
         return [link.constraint], [link], []
     if joint.first is not None:
         raise Unsupported(f"joint {joint.name!r}: the construction {construction!r} knows a skate on the ground only")
-    if construction in ("groove", "stale groove"):
-        groove = AimedGroove(joint, first, second, length, predicted=construction == "groove")
+    if construction == "groove":
+        groove = AimedGroove(joint, first, second, length)
         return [groove.constraint], [groove], []
     return [], [], [Zeroed(joint, second, construction)]
 
@@ -71,19 +67,19 @@ def along_blade(joint: Skate) -> float:
 class AimedGroove:
     """A groove in the ground under the blade, laid anew before every step."""
 
-    def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, length: float, predicted: bool) -> None:
+    def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, length: float) -> None:
         along = along_blade(joint)
         anchor = (along * cos(joint.angle), along * sin(joint.angle))
         self.constraint = GrooveJoint(ground, body, (-1.0, 0.0), (1.0, 0.0), anchor)
         self._pointer, self._body = self.constraint._constraint, body._body
-        self._angle, self._predicted = joint.angle, predicted
+        self._angle = joint.angle
         # Its ends [m]: the blade can't come near them in a step, as the groove is laid anew under it. A power of two,
         # so that it rounds alike in mechanisms of nearly the same size, and in those that differ by such a power.
         half = 2.0 ** (1 + round(log2(length))) + abs(along)
         self._back, self._front = along - half, along + half
 
     def __call__(self, ahead: float) -> None:
-        x, y, angle = drifted(self._body, ahead if self._predicted else 0.0)
+        x, y, angle = drifted(self._body, ahead)
         cosine, sine = cos(angle + self._angle), sin(angle + self._angle)
         back, front = self._back, self._front
         lib.cpGrooveJointSetGrooveA(self._pointer, (x + back * cosine, y + back * sine))

@@ -15,8 +15,8 @@ import pymunk
 from engines.pymunk.reading.joints import described
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
 from engines.reading import Note, Reading, refuse_at_start
+from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.validation import InvalidMechanism
 
 USUAL_STEP = 1 / 60  # s: pymunk's own examples'
 

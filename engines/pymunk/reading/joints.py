@@ -22,9 +22,8 @@ from pymunk.constraints import (
 
 from engines.pymunk.joints.slot import groove_is_exact
 from engines.reading import MOST_BODIES, Names, Note, refuse
-from reference.body import Body
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Vector
+from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
 LIMITS = (SlideJoint, RotaryLimitJoint)
 STILL = 0.0

@@ -138,16 +138,13 @@ def gives_from(
     return found
 
 
-def left_by_sweeps(mechanism: Mechanism, engine: Any) -> float:
+def left_by_sweeps(mechanism: Mechanism, engine: Engine) -> float:
     """What a step's sweeps leave of the slowest mode [1]; NaN for an engine whose solver does not sweep by a number.
 
     From half on, a gap that is closed in one step grows from step to step (`engines.pymunk.contraction`).
     """
-    sweeps = getattr(engine, "sweeps", None)
-    if not callable(sweeps):
-        return math.nan
-    count: Any = sweeps(mechanism)
-    return float(contraction(mechanism) ** count)
+    count = engine.iterations_of(mechanism)
+    return math.nan if count is None else float(contraction(mechanism) ** count)
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import eigh
 
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
-from reference.n_four_bar import NFourBar
-from reference.pendulum.link import PointPendulum
-from reference.pendulum.scenes import LinkPendulum
-from reference.rolling.scenes import RollingEllipse
 from reference.scene import Scene
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.link import PointPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 
 FEWEST = 10  # steps of a run: the largest step is a tenth of the duration
 
@@ -96,7 +96,7 @@ def rod_rate(gap: float) -> float:
     """The largest rate of that rod [rad/s], over a whole turn of the crank."""
     scene = near_the_largest_offset(gap)
     angles = np.concatenate([np.linspace(0, 2 * math.pi, 721), math.pi / 2 * 3 + np.geomspace(1e-7, 0.1, 200)])
-    return float(scene.rate * np.abs(scene.moving.shape.rod_rates(angles)[0]).max())
+    return float(scene.rate * np.abs(scene.shape.rates(angles)[0]).max())
 
 
 def driven(rate: float) -> DrivenFourBar:

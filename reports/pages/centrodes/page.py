@@ -13,15 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from engines.registry import VARIANTS
-from reference.centrodes import Centrodes, centrode_error, centrodes, from_poses
-from reference.curves.curve import Array
-from reference.four_bar.scenes import DrivenFourBar
+from reference.chapter.centrodes import Centrodes, centrode_error, centrodes, from_poses
+from reference.checks import InvalidMechanism, fixed
 from reference.joints import Pin
-from reference.kept import fixed
 from reference.mechanism import Mechanism
 from reference.plane import rotated
+from reference.rolling.curves import Array
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
-from reference.validation import InvalidMechanism
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion

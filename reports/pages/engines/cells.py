@@ -13,10 +13,10 @@ from engines.pinocchio import Pinocchio
 from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
 from engines.pymunk.model import Model
-from reference.four_bar.scenes import FreeFourBar
 from reference.mechanism import Mechanism
 from reference.scene import Scene
-from reference.scenes import SCENES
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
 
 FREE = FreeFourBar()
@@ -43,7 +43,7 @@ COMPILED = tuple(
     Cell(BY_NAME[name], engine, MILLISECOND, "beside")
     for name in ("free_four_bar", "pendulum_2")
     for engine in registry.OTHERS
-    if getattr(engine, "building", 0.0) >= SLOW_TO_BUILD
+    if engine.building >= SLOW_TO_BUILD
 )
 BORROWED = (*sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL), *beside_cells(CHARTED_SCENES, registry.OTHERS))
 

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Unsupported
-from engines.conformance.pushed import FORCES
+from engines.conformance.moving import FORCES
 from engines.conformance.worlds import MOVING, WORLDS
 from engines.tree import spanning_tree
-from reference.four_bar.scenes import FreeFourBar
 from reference.joints import Gear, Pin, Rod, Weld
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.trajectory import energy
 from reports.model.cells import Cell
 from reports.model.tasks import Task, Values
@@ -38,7 +38,7 @@ class Asked(Task):
 
     @property
     def cost(self) -> float:
-        return 0.1 + getattr(self.of, "building", 0.0)
+        return 0.1 + self.of.building
 
     @property
     def label(self) -> str:
@@ -89,7 +89,7 @@ class Capabilities(Asked):
                 with suppress(ValueError):
                     held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
                     if mechanism.forces:
-                        held.add(getattr(self.of, "forces_by", "engine"))
+                        held.add(self.of.forces_by)
                     told[what] = "yes" if held == {"engine"} else "with code of ours"
         run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
         known = [bool(np.isfinite(each).all()) for each in run.reaction]

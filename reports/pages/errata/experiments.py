@@ -14,19 +14,19 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.errata import pendulum
-from reference.errata.erratum import Array, Values
-from reference.errata.four_bar import closed_form, integrated
-from reference.errata.four_bar import rates as printed_rates
-from reference.errata.skate import acceleration_of_g
-from reference.four_bar.scenes import DrivenFourBar
+from reference.chapter.errata import linkages as pendulum
+from reference.chapter.errata.erratum import Array, Values
+from reference.chapter.errata.linkages import closed_form, integrated
+from reference.chapter.errata.linkages import rates as printed_rates
+from reference.chapter.errata.rolling_and_skates import acceleration_of_g
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.pendulum.chain import Chain
-from reference.pendulum.scenes import LinkPendulum
-from reference.rolling.scenes import RollingOnCircle
 from reference.scene import Scene
-from reference.skate.sleigh import ChaplyginSleigh
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.pendulum.chain import Chain
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.rolling.scenes import RollingOnCircle
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task
 from reports.model.tasks import Values as Kept

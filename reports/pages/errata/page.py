@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from reference.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
-from reference.errata.rolling import rolling_acceleration
+from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Values
+from reference.chapter.errata.rolling_and_skates import rolling_acceleration
 from reports.model.page import Material, Page
 from reports.pages.errata.experiments import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
 from reports.write.tables import markdown, number

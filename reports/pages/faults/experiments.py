@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.numerics.cauchy import derivative
+from reference.numerics.calculus import derivative
 from reports.model.tasks import Task, Values
 
 Array = NDArray[np.float64]

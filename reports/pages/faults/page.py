@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.slider_crank.scenes import DrivenSliderCrank
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.page import Material, Page
 from reports.pages.faults.experiments import (
     CASES,

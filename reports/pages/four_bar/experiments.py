@@ -9,9 +9,8 @@ import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.four_bar.scenes import DrivenFourBar, SpinningFourBar
-from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
 from reference.scene import Scene
+from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values

@@ -9,7 +9,7 @@ import numpy as np
 
 from engines import mujoco, pymunk
 from engines.registry import ENGINES
-from reference.four_bar import DrivenFourBar, FreeFourBar, SpinningFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion

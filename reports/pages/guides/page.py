@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from engines import Engine, lagrange, mujoco, pymunk
-from reference.four_bar import FreeFourBar
 from reference.scene import Scene
-from reference.skate import ChaplyginSleigh
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
 from reports.write.rows import lookups

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.n_four_bar import NFourBar
 from reference.scene import Scene
+from reference.scenes.n_four_bar import NFourBar
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.write.tables import number

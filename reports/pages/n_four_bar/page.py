@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.n_four_bar import FortyFourBars, NFourBar, TenFourBars
+from reference.scenes.n_four_bar import FortyFourBars, NFourBar, TenFourBars
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.n_four_bar.expectations import KNOWN

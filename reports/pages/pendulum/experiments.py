@@ -11,10 +11,10 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import Hardened
-from reference.pendulum.link import PointPendulum
-from reference.pendulum.scenes import HundredLinks, LinkPendulum
-from reference.rolling.spinning_ring import SpinningRing
 from reference.scene import Scene
+from reference.scenes.many_links import SpinningRing
+from reference.scenes.pendulum.link import PointPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values

@@ -8,7 +8,8 @@ from typing import Any
 
 from engines import mujoco
 from engines.registry import VARIANTS
-from reference.pendulum import BarPendulum, HundredLinks, LinkPendulum, PointPendulum, TenLinks
+from reference.scenes.pendulum.link import BarPendulum, PointPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reports.model.page import FEATURED, Material, Page
 from reports.pages.pendulum.expectations import KNOWN
 from reports.pages.pendulum.experiments import FAILURES, SOLVED

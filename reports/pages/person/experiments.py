@@ -7,11 +7,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from engines import Engine, mujoco, pymunk
-from reference.person.one_foot import OneFoot
-from reference.person.swaying import SwayingOnOneFoot, modes_upright
-from reference.person.two_feet import TwoFeet
+from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.validation import InvalidMechanism
+from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 

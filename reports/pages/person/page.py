@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
+from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
 from reports.model.page import Material, Page
 from reports.pages.person.expectations import KNOWN, ORDERS
 from reports.pages.person.experiments import FAILURES

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine
-from reference.four_bar.scenes import DrivenFourBar
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory, energy, joint_gap
 from reports.model.tasks import Task, Values
 

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from engines import Engine
 from engines.registry import VARIANTS, method
-from reference.andrews import Andrews
-from reference.n_four_bar import NFourBar
-from reference.pendulum.link import PointPendulum
 from reference.scene import Scene
+from reference.scenes.andrews import Andrews
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.link import PointPendulum
 from reports.model.cells import FULL, sweep_cells
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome

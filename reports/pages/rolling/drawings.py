@@ -10,14 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reference.curves.circles_lines import Circle, Line, Ring, Side
-from reference.curves.curve import Array, Curve, Placed, Vector
-from reference.curves.ellipse import Ellipse
-from reference.curves.open import Catenary, Parabola
 from reference.plane import rotated
-from reference.rolling.elliptic_gears import EllipticGears
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 from reference.rolling.kinematics import Rolling
+from reference.rolling.open_curves import Catenary, Parabola
 from reference.rolling.roll import Roll
+from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 POINTS = 241

@@ -1,23 +1,14 @@
-"""Where a method is known to fall short of theory in rolling, and where a motion asks for another promise."""
+"""Where a method is known to fall short of theory in rolling."""
 
 from __future__ import annotations
 
-from engines import Promise
 from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
-
-# Where nothing but the contact turns the body, its velocities' error of first order alternates and leaves no pose.
-ORDERS = {
-    (scene, "mujoco joint equality, rewritten"): Promise(2, rate=1, slip=1, energy=1, reaction=1)
-    for scene in ("rolling_ellipse", "rolling_in_ring")
-}
 
 POLYGON = "by design: a body that is not round is a polygon here, and rolls from corner to corner in blows"
 SOFT = "by design: as shipped the contact is a spring of 0.02 s, whatever the step"
 CHATTER = "upstream: a contact without the velocity term is let go and caught again; its force is right on average"
-STANDING = "upstream: a row without the velocity term; at the start it carries the weight of a body at rest"
 BARELY = "by design: pins already hold the gears apart, so that only softness lets them press and rub"
-STALE = "by design: half of the rolling acceleration is missing, so that the forces are those of another motion"
 
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
@@ -27,23 +18,14 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_ellipse", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("rolling_ellipse", "mujoco tuned", "reaction"): Deviation(CHATTER, 3.8),
     ("rolling_ellipse", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 4.9),
-    ("rolling_ellipse", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 3.8),
     ("rolling_disc", "mujoco default", "order"): Deviation(SOFT, 2.5),
     ("rolling_disc", "mujoco tuned", "reaction"): Deviation(CHATTER, 44),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 9.9),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "rate"): Deviation(STALE, 4.1),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "energy"): Deviation(STALE, 1.5),
-    ("rolling_disc", "pymunk roll: pivot, stale contact", "reaction"): Deviation(STALE, 2.8),
     ("rolling_disc", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 60),
-    ("rolling_disc", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.9),
     ("rolling_cam", "pymunk default", "outcome"): Deviation(POLYGON, outcome=Outcome.SATURATED),
     ("rolling_cam", "pymunk tuned", "error"): Deviation(POLYGON, 11),
     ("rolling_cam", "pymunk tuned", "rate"): Deviation(POLYGON, 4.8),
     ("rolling_cam", "pymunk tuned", "energy"): Deviation(POLYGON, 1.3),
     ("rolling_cam", "pymunk tuned", "reaction"): Deviation(POLYGON, 75),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 3.7),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "rate"): Deviation(STALE, 1.8),
-    ("rolling_cam", "pymunk roll: pivot, stale contact", "reaction"): Deviation(STALE, 1.4),
     ("rolling_incline", "pymunk default", "error"): Deviation(POLYGON, 15),
     ("rolling_incline", "pymunk default", "rate"): Deviation(POLYGON, 6.3),
     ("rolling_incline", "pymunk default", "gap"): Deviation(POLYGON, 4.5),
@@ -56,10 +38,7 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("rolling_incline", "mujoco default", "reaction"): Deviation(CHATTER, 1.6),
     ("rolling_incline", "mujoco default", "order"): Deviation(CHATTER, 2.5),
     ("rolling_incline", "mujoco tuned", "reaction"): Deviation(CHATTER, 31),
-    ("rolling_incline", "pymunk roll: pivot, stale contact", "error"): Deviation(STALE, 1.1),
     ("rolling_incline", "mujoco contact, stiff Euler", "reaction"): Deviation(CHATTER, 37),
-    ("rolling_incline", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 4.5),
-    ("rolling_in_ring", "mujoco joint equality, rewritten", "reaction"): Deviation(STANDING, 1.1),
     ("rolling_on_circle", "pymunk default", "reaction"): Deviation(CHATTER, 16),
     ("rolling_on_circle", "pymunk tuned", "reaction"): Deviation(CHATTER, 16),
     ("rolling_on_circle", "mujoco default", "reaction"): Deviation(CHATTER, 2.8),

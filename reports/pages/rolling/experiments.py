@@ -11,9 +11,16 @@ import numpy as np
 
 from engines import Engine, mujoco
 from engines.lagrange import Lagrange
+from engines.mujoco.methods import CONTACT
 from engines.pymunk import methods as pymunk_methods
-from reference.rolling.scenes import RollingDisc, RollingEllipse, RollingOnCircle, RollingScene
-from reference.rolling.singular_cases import DiscInHole, SquareOnCatenaries
+from reference.scenes.rolling.scenes import (
+    DiscInHole,
+    RollingDisc,
+    RollingEllipse,
+    RollingOnCircle,
+    RollingScene,
+    SquareOnCatenaries,
+)
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
@@ -47,7 +54,7 @@ def soft_contact(constant: float, step: float) -> Engine:
     """MuJoCo's contact with a time constant [s] at a step [s], its slip as stiff as it goes."""
     variant = f"contact of {1e3 * constant:g} ms"
     steps = round(constant / step)
-    return replace(mujoco.TUNED, variant=variant, rolls=replace(mujoco.TUNED.rolls, steps=steps))
+    return replace(mujoco.TUNED, variant=variant, rolls=replace(CONTACT, steps=steps))
 
 
 def softness_cells() -> tuple[tuple[float, Cell], ...]:

@@ -11,8 +11,8 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
-from reference.rolling.scenes import RollingOnCircle
 from reference.scene import Scene
+from reference.scenes.rolling.scenes import RollingOnCircle
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Material, Observation
@@ -21,12 +21,7 @@ from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
 CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-
-
-EQUALITY = next(method for method in mujoco_methods.ROLLS if "equality" in method.variant)
-
-
-CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED, EQUALITY)
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
 
 
 def cells(

@@ -15,25 +15,25 @@ from engines import Engine
 from engines.mujoco import methods as mujoco_methods
 from engines.pymunk import methods as pymunk_methods
 from engines.registry import VARIANTS
-from reference.curves.circles_lines import Line
-from reference.curves.ellipse import Ellipse
-from reference.rolling import (
-    EllipticGears,
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Line
+from reference.rolling.kinematics import Rolling
+from reference.scene import Scene
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import (
     RollingCam,
     RollingDisc,
     RollingDownhill,
     RollingEllipse,
     RollingInRing,
     RollingOnCircle,
+    RollingScene,
 )
-from reference.rolling.kinematics import Rolling
-from reference.rolling.scenes import RollingScene
-from reference.scene import Scene
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling.expectations import KNOWN, ORDERS
+from reports.pages.rolling.expectations import KNOWN
 from reports.pages.rolling.experiments import FAILURES, polygon_cells, softness_cells
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.rows import Rows, lookups
@@ -184,8 +184,7 @@ SCENES = (
 )
 # Ideal constraints under Euler say nothing here that Runge-Kutta's don't, and finding a contact is what costs.
 COMPARED = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
-BY_CONSTRAINT: tuple[Engine, ...] = (pymunk_methods.ROLL_STALE_PIVOT, pymunk_methods.ROLL_PIVOT)
-ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, *BY_CONSTRAINT, *mujoco_methods.ROLLS)
+ENGINES_HERE: tuple[Engine, ...] = (*COMPARED, pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
 HILL = RollingOnCircle()  # kept: it works out once until when it can be compared
 
@@ -238,6 +237,5 @@ PAGE = Page(
     compared=compared,
     figures=figures,
     words=words,
-    orders=ORDERS,
     known=KNOWN,
 )

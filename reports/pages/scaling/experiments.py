@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engines import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines import EXACT, Engine, Holder, Promise, Size, Unpromised, Unsupported
+from reference.checks import Count, Positive, validated
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
-from reference.pendulum.chain import Array, Chain
-from reference.pendulum.many_links import LongPendulum
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.chain import Array, Chain
 from reference.trajectory import Trajectory
-from reference.validation import Count, Positive, validated
 from reports.model.tasks import Task, Values
 
 
@@ -45,24 +45,12 @@ ROUNDING = 1e-9  # relative: numbers that were made from one another
 
 
 @dataclass(frozen=True)
-class BandedChain:
+class BandedChain(Engine):
     """An engine in the sense of `engines.Engine`, for a pendulum of uniform bars alone."""
 
-    @property
-    def name(self) -> str:
-        return "reference"
-
-    @property
-    def variant(self) -> str:
-        return "banded rk4"
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        return ("numpy",)
-
-    @property
-    def family(self) -> str:
-        return "reference"
+    name = "reference"
+    variant = "banded rk4"
+    packages = ("numpy",)
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
@@ -77,9 +65,6 @@ class BandedChain:
     @validated
     def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
         return "engine"
-
-    def softness(self, mechanism: Mechanism, dt: float) -> None:
-        """Nothing gives way."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> BandedRun:

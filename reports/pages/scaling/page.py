@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.pymunk.contraction import LEFT, MOST
-from reference.pendulum.many_links import LongPendulum
+from reference.scenes.many_links import LongPendulum
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.scaling_fit import Series, cost_exponent, error_exponent, series_of

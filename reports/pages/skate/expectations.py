@@ -14,8 +14,6 @@ ANOTHER_BODY = "by design: the velocity across is set without the turning that a
 STRAIGHT = "by design: it never turns round, a naive zeroing makes a stable vehicle of an unstable one"
 SOFT = "by design: a contact as shipped is a spring of 0.02 s and gives way, whatever the step"
 LATE = "by design: a row at the old heading has no slip to stop in the first step, so its first force is none"
-COMPLIANT = "by design: a row with its shipped compliance gives way, whatever the step"
-THIN = "by design: a wheel has a width on which it rolls, and an inertia of its own, whatever the step"
 
 KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh", "pymunk default", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
@@ -23,13 +21,6 @@ KNOWN: dict[tuple[str, str, str], Deviation] = {
     ("sleigh", "pymunk skate: centre's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
     ("sleigh", "pymunk skate: point's velocity zeroed", "outcome"): Deviation(ANOTHER_BODY, outcome=Outcome.SATURATED),
     ("sleigh", "mujoco friction blade", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco thin wheel", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco thin wheel", "order"): Deviation(THIN, 2.5),
-    ("sleigh", "mujoco velocity servo", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco tendon friction", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco tendon", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco tendon RK4", "reaction"): Deviation(LATE, 5.9),
-    ("sleigh", "mujoco rows, shipped compliance", "order"): Deviation(COMPLIANT, 10),
     ("sleigh_backwards", "pymunk default", "error"): Deviation(STRAIGHT, 140),
     ("sleigh_backwards", "pymunk default", "rate"): Deviation(STRAIGHT, 98),
     ("sleigh_backwards", "pymunk default", "gap"): Deviation(STRAIGHT, 1.3),

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from engines import Engine
+from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
-from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.skate.slopes import HeldBySkates, SkateOnSlope
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion

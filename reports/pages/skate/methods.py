@@ -9,11 +9,11 @@ import numpy as np
 
 from engines import Engine
 from engines.mujoco import methods as mujoco_methods
-from engines.mujoco.limited import limited_tendon
+from engines.mujoco.methods import limited_tendon
 from engines.pymunk import methods as pymunk_methods
-from engines.pymunk.limited import limited_groove
+from engines.pymunk.engine import limited_groove
 from engines.registry import VARIANTS
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Material, Observation

@@ -12,18 +12,19 @@ from matplotlib.figure import Figure
 
 from engines import Engine
 from engines.registry import VARIANTS
-from reference.body import Triple
+from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
+from reference.chapter.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
+from reference.joints import Triple
 from reference.scene import Scene
-from reference.skate import ChaplyginSleigh, FreelyPinnedBody, PinnedBody, SleighBackwards
-from reference.skate.integrability import freedoms_by_brackets, mechanism_is_integrable
-from reference.skate.parking import Move, commutator, commutator_displacement, park, sidestep, stops, trace
-from reference.skate.slopes import SkateOnSlope
+from reference.scenes.skates.pinned_body import FreelyPinnedBody, PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.skates.slopes import SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.convergence import by_method, groups, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
-from reports.model.page import FEATURED, Material, Page
+from reports.model.page import Material, Page, usual_series
 from reports.model.tasks import Motion
 from reports.pages.skate.expectations import KNOWN, ORDERS
 from reports.pages.skate.experiments import FAILURES
@@ -113,22 +114,12 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 }
 # One of each kind: five looks an engine are what a chart can tell apart.
 CHARTED = (
-    "pymunk skate: groove, stale heading",
     "pymunk skate: groove, predicted heading",
     "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
-    "mujoco thin wheel",
-    "mujoco tendon",
-    "mujoco leapfrog",
-    "mujoco passive force",
 )
 # Beside the variants: "pymunk default" is the centre's velocity zeroed, "tuned" the groove that is predicted.
 LISTED = {*CHARTED, "pymunk skate: point's velocity zeroed"} - {"pymunk skate: groove, predicted heading"}
-
-
-def featured(row: Measurement) -> bool:
-    """The variants of every scene, and the cheap construction of second order."""
-    return row.variant in FEATURED or row.method == "mujoco leapfrog"
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
@@ -253,7 +244,7 @@ def words(material: Material) -> Mapping[str, Any]:
     commutator = commutator_displacement(0.1, 0.1)
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
-        "constructions": constructions([row for row in rows if featured(row) or row.method in LISTED], held),
+        "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
         "all_constructions": constructions(rows, held),
         "counted": counted(SCENES),
         "at": at,
@@ -274,7 +265,6 @@ PAGE = Page(
     failures=FAILURES,
     compared=compared,
     quantity="position",
-    featured=featured,
     figures=figures,
     words=words,
     orders=ORDERS,

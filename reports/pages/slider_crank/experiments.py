@@ -12,11 +12,10 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
+from reference.checks import InvalidMechanism
 from reference.scene import Scene
-from reference.slider_crank.scenes import DrivenSliderCrank
-from reference.slider_crank.singular_cases import RodEndInSlot, SliderAtDeadCentre
-from reference.slider_crank.slotted_lever import SlottedLever
-from reference.validation import InvalidMechanism
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, RodEndInSlot, SliderAtDeadCentre
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values

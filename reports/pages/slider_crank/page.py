@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from engines.registry import VARIANTS
-from reference.slider_crank import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.model.page import Material, Page
 from reports.pages.slider_crank.expectations import KNOWN
 from reports.pages.slider_crank.experiments import FAILURES
@@ -34,7 +34,7 @@ def figures(material: Material) -> dict[str, str]:
 
 def words(material: Material) -> Mapping[str, Any]:
     """Rows, and the dead centres and stroke of the scene from the formulas."""
-    shape = DrivenSliderCrank().moving.shape
+    shape = DrivenSliderCrank().shape
     stretched, folded = shape.dead_centres()
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
     return {**lookups(material, SCENES), **formulas}

@@ -12,10 +12,10 @@ import numpy as np
 from engines import Engine, pymunk
 from engines.registry import VARIANTS
 from reference.scene import Scene
-from reference.wheels.car_and_trailer import CarAndTrailer
-from reference.wheels.cart import Cart
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion, Task, Values

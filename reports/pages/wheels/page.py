@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from engines.registry import VARIANTS
-from reference.wheels import CarAndTrailer, Cart
-from reference.wheels.casters import Casters
-from reference.wheels.tractrix import Tow
-from reference.wheels.trailers import CarWithTrailers
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart, Casters
+from reference.scenes.wheels.tractrix import Tow
+from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion

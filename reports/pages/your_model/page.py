@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reference.four_bar import FreeFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check.picture_data import from_text
 from reports.check.pictures import pictures
 from reports.model.page import Material, Page

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from engines import mujoco, pymunk
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar, SpinningFourBar
-from reference.four_bar.singular_cases import OverdrivenFourBar, Parallelogram
-from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import LinkPendulum, TenLinks
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.four_bar.scenes import (
+    DrivenFourBar,
+    FreeFourBar,
+    OverdrivenFourBar,
+    Parallelogram,
+    SpinningFourBar,
+)
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
 from reports.site.lesson import Lesson, Step, Take
 from reports.site.live import scenes

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from engines import mujoco, pymunk
 from engines.pymunk.methods import ROLL_FACETED, ROLL_PIVOT
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.lesson import Lesson, Step, Take
 from reports.site.live import scenes
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from engines import mujoco, pymunk
-from reference.skate.sleigh import ChaplyginSleigh, SleighBackwards
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.site.lesson import Lesson, Step, Take
 from reports.site.live import scenes
 

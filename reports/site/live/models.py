@@ -48,7 +48,7 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
     """
     model = engine.model(mechanism, step, as_text=True)
     hooks = model.hooks
-    if hooks.control or hooks.passive or hooks.before or hooks.start or model.written or model.drive == "overwrite":
+    if hooks.control or hooks.before or model.drive == "overwrite":
         raise Unsupported("this method rewrites rows in each step by code of ours in Python, which the page has not")
     if model.compiled.nu:
         raise Unsupported("the page sets no actuators")

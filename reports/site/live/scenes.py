@@ -7,14 +7,14 @@ from dataclasses import replace
 from engines import mujoco, pymunk
 from engines.pymunk.joints.roll import Contact
 from engines.pymunk.methods import SKATE_GROOVE
-from reference.four_bar.scenes import DrivenFourBar, FreeFourBar
-from reference.pendulum.link import BarPendulum
-from reference.pendulum.scenes import LinkPendulum, TenLinks
-from reference.rolling.elliptic_gears import EllipticGears
-from reference.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
-from reference.skate.sleigh import ChaplyginSleigh
-from reference.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
-from reference.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.site.live.sliders import COARSE, ONE_SWEEP, Live, Slider, Trap
 
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
@@ -227,10 +227,7 @@ NAIVE = (
     ("the centre's sideways velocity set to zero", pymunk.DEFAULT),
     ("a groove under the blade, aimed in each step", SKATE_GROOVE),
 )
-TOUCHING = (
-    ("a capsule that touches the ground, with friction across", mujoco.DEFAULT),
-    ("a thin wheel that touches the ground", replace(mujoco.DEFAULT, skates="wheel")),
-)
+TOUCHING = (("a capsule that touches the ground, with friction across", mujoco.DEFAULT),)
 SKATE = (
     Live(
         "the sleigh",
@@ -271,7 +268,7 @@ WHEELS = (
             Slider("bend", "bend of the trailer at the start [rad]", (0.3, 0.8, 1.2)),
         ),
         munk=(NAIVE[0],),
-        mujoco=(TOUCHING[0],),
+        mujoco=TOUCHING,
         traps=(COARSE,),
         traces=tuple((body.name, (0.0, 0.0)) for body in CAR.mechanism().bodies),
     ),
@@ -283,7 +280,7 @@ WHEELS = (
         3,
         (Slider("bend", "bend of the trailer at the start [rad]", (0.0125, 0.025, 0.05, 0.1, 0.2)),),
         munk=(NAIVE[0],),
-        mujoco=(TOUCHING[0],),
+        mujoco=TOUCHING,
         traps=(COARSE,),
         traces=tuple((body.name, (0.0, 0.0)) for body in CAR.mechanism().bodies),
     ),

@@ -1,0 +1,291 @@
+"""Bullet under test, by its binding PyBullet: a tree in reduced coordinates, loops closed by impulses at points.
+
+PyBullet and not ODE: it is what people use (the binding alone is asked about more than ODE is), and pip installs it
+whole, while ode-python needs a library of the system. It costs 290 MB, and there is a wheel for Python 3.11 alone.
+
+The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
+continuous joints, prismatic ones for slots whose angle is kept, fixed ones for welds. A Pin that closes a loop is a
+JOINT_POINT2POINT of enough force, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR
+between two joints of the tree. No link without a mass stands between two joints, so a body that slides and turns, or
+that hangs on nothing, is refused, as are slots in loops, rods, skates and rolling contact. There are no springs: what
+force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
+external forces. All damping and the limit on joint velocities are off; the wheel is built in double precision.
+
+One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
+a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
+order. Accelerations are changes of velocity over the last step, so nothing is told at t = 0.
+"""
+
+# pyright: reportMissingImports=false, reportAttributeAccessIssue=false
+# (the package is an extra, and its bindings are compiled.)
+
+from __future__ import annotations
+
+import tempfile
+import time
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engines.contract import EXACT, Holder, Promise, Size, Unpromised, Unsupported
+from engines.extrapolated import Extrapolated
+from engines.motions import is_prescribed, over_three, turns_steadily
+from engines.single_run import Optional, Recorded, SingleRun, differences, quiet, refuse_lacking, tree_states
+from engines.tree import Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from reference.checks import Count, Fraction, Name, Positive, validated
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+
+ENOUGH = 1e10  # N or N m, of a point that closes a loop and of a motor
+FAST = 1e9  # rad/s, beyond what a joint reaches
+STEP_COST = 9e-6  # s of a step of three bodies, as shipped
+FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
+ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
+SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
+LACKS = {
+    Rod: "bullet's trees have no constraint of a distance",
+    Skate: "bullet stops slip by friction at a contact alone, and has no joint for it",
+    Roll: "in bullet a disc rolls by contact and friction, there is no joint for it",
+}
+
+
+@dataclass(frozen=True)
+class Bullet(Optional):
+    """An engine in the sense of `engines.Engine`.
+
+    `iterations` of the solver over its rows, which end early below `residual`; `erp`: the share of a gap that a step
+    closes.
+    """
+
+    name = "bullet"
+    packages = ("pybullet",)
+    modules: ClassVar[tuple[str, ...]] = ("pybullet",)
+    forces_by: ClassVar[Holder] = "ours"
+
+    variant: Name
+    iterations: Count = SHIPPED_ITERATIONS
+    residual: Fraction = 1e-7
+    erp: Fraction = SHIPPED_ERP
+
+    @validated
+    def order(self, mechanism: Mechanism) -> Promise | Unpromised:
+        """First, of semi-implicit Euler; what the tree holds is exact."""
+        if spanning_tree(mechanism).loops or any(isinstance(joint, Gear) for joint in mechanism.joints):
+            return Promise(1, differences=1)
+        if turns_steadily(mechanism) or is_prescribed(mechanism):
+            return Promise(EXACT, reaction=1, differences=1)
+        return Promise(1, gap=EXACT, slip=EXACT, differences=1)
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """About what a step takes [s]."""
+        rows = 3 * len(spanning_tree(mechanism).loops)
+        forces = FORCES_COST if mechanism.forces else 0.0
+        return STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
+
+    @validated
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        """Every joint is the engine's own."""
+        return "engine"
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
+        """A model for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
+        refuse_lacking(mechanism, LACKS)
+        tree = spanning_tree(mechanism)
+        drives = _refused(mechanism, tree)
+        self.require()
+        parameters = {"numSolverIterations": self.iterations, "solverResidualThreshold": self.residual, "erp": self.erp}
+        world = World(mechanism, tree, drives, dt, parameters)
+        return SingleRun(mechanism, dt, world.size, lambda samples, every: world.record(dt, samples, every))
+
+
+def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
+    """Tree coordinates that a motor turns, and their rates [rad/s]; raises Unsupported."""
+    refuse_slots_in_loops(tree, "bullet")
+    for link in tree.links:
+        if len(link.columns) > 1:
+            raise Unsupported(
+                f"body {mechanism.bodies[link.body].name!r}: bullet's tree has no link without a mass, "
+                "which a body that slides and turns, or hangs on nothing, would need"
+            )
+    rates: dict[int, float] = {}
+    for joint in mechanism.joints:
+        if isinstance(joint, Drive) and joint not in tree.kept:
+            turned = tree.turning(joint.first, joint.second)
+            if len(turned) != 1 or next(iter(turned)) in rates:
+                raise Unsupported(f"drive {joint.name!r}: a motor of bullet turns one joint, and has one rate")
+            ((column, sign),) = turned.items()
+            rates[column] = sign * joint.turning_rate
+        if isinstance(joint, Gear):
+            geared_columns(tree, joint)
+    return rates
+
+
+def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
+    """The tree coordinates of the second and of the first body's angle; raises Unsupported."""
+    turned = [tree.turning(None, name) for name in (gear.second, gear.first)]
+    if any(len(each) != 1 for each in turned):
+        raise Unsupported(
+            f"joint {gear.name!r}: a gear of bullet is between two of its joints, "
+            "and the angle of a body that does not hang on the ground is a sum of several"
+        )
+    second, first = (next(iter(each)) for each in turned)
+    return second, first
+
+
+@cache
+def package() -> Any:
+    """The package, which prints a line when it is imported."""
+    with quiet():
+        import pybullet
+    return pybullet
+
+
+class World:
+    """The engine's objects for one mechanism, in a server of its own within this process."""
+
+    def __init__(
+        self, mechanism: Mechanism, tree: Tree, drives: dict[int, float], dt: float, parameters: dict[str, float]
+    ) -> None:
+        """`drives`: rates [rad/s] of tree coordinates that a motor turns; `parameters`: the engine's own, by name."""
+        self.mechanism, self.tree, self.bullet = mechanism, tree, package()
+        self.server: int = self.bullet.connect(self.bullet.DIRECT)
+        own = {"physicsClientId": self.server}
+        self.bullet.setGravity(*mechanism.gravity, 0.0, **own)
+        self.bullet.setPhysicsEngineParameter(fixedTimeStep=dt, **parameters, **own)
+        self.anchors = {link.body: np.array(link.anchor) for link in tree.links}
+        with tempfile.TemporaryDirectory(prefix="crosscheck-") as folder, quiet():
+            file = Path(folder, "mechanism.urdf")
+            file.write_text(self._urdf(), encoding="utf-8")
+            flags = self.bullet.URDF_USE_INERTIA_FROM_FILE
+            self.body: int = self.bullet.loadURDF(str(file), useFixedBase=True, flags=flags, **own)
+        count = self.bullet.getNumJoints(self.body, **own)
+        told = [self.bullet.getJointInfo(self.body, index, **own)[1].decode() for index in range(count)]
+        self.links = [told.index(f"joint {link.body}") for link in tree.links]
+        rates = tree.start_rates()
+        self.bullet.changeDynamics(self.body, -1, linearDamping=0.0, angularDamping=0.0, **own)
+        for link, index in zip(tree.links, self.links, strict=True):
+            free = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0, "maxJointVelocity": FAST}
+            self.bullet.changeDynamics(self.body, index, **free, **own)
+            if not link.columns:
+                continue
+            rate = drives.get(link.column, float(rates[link.column]))
+            self.bullet.resetJointState(self.body, index, 0.0, rate, **own)
+            force = ENOUGH if link.column in drives else 0.0
+            kind = self.bullet.VELOCITY_CONTROL
+            self.bullet.setJointMotorControl2(self.body, index, kind, targetVelocity=rate, force=force, **own)
+        for loop in tree.loops:
+            self._close(loop)
+        gears = [joint for joint in mechanism.joints if isinstance(joint, Gear)]
+        for gear in gears:
+            self._mesh(gear)
+        rows, single = sum(loop.size for loop in tree.loops), len(drives) + len(gears)
+        spatial = sum(6 if isinstance(loop, Weld) else 3 for loop in tree.loops)
+        self.size = Size(len(mechanism.bodies), tree.coordinates, rows + single, spatial + single)
+
+    def __del__(self) -> None:
+        if getattr(self, "server", -1) >= 0:
+            self.bullet.disconnect(self.server)
+
+    def _urdf(self) -> str:
+        return "\n".join(
+            ['<robot name="mechanism"><link name="ground"/>', *map(self._link, self.tree.links), "</robot>"]
+        )
+
+    def _link(self, link: Link) -> str:
+        """A link whose frame stands at its joint, parallel to the world's at the start."""
+        body = self.mechanism.bodies[link.body]
+        parent = "ground" if link.parent is None else f"body {link.parent}"
+        x, y = np.array(link.arm) - (0.0 if link.parent is None else self.anchors[link.parent])
+        kind, axis = ("continuous", (0.0, 0.0, 1.0)) if link.turns else ("prismatic", (*link.direction, 0.0))
+        kind = kind if link.columns else "fixed"
+        inertia = " ".join(f'i{axes}="{body.inertia!r}"' for axes in ("xx", "yy", "zz"))
+        reach = '<limit lower="1" upper="-1" effort="0" velocity="0"/>' if kind == "prismatic" else ""  # no limit
+        return (
+            f'<link name="body {link.body}"><inertial><origin xyz="{-link.anchor[0]!r} {-link.anchor[1]!r} 0"/>'
+            f'<mass value="{body.mass!r}"/><inertia {inertia} ixy="0" ixz="0" iyz="0"/></inertial></link>'
+            f'<joint name="joint {link.body}" type="{kind}"><parent link="{parent}"/><child link="body {link.body}"/>'
+            f'<origin xyz="{float(x)!r} {float(y)!r} 0"/><axis xyz="{" ".join(map(repr, axis))}"/>{reach}</joint>'
+        )
+
+    def _link_of(self, name: str | None) -> int:
+        """The engine's number of a body's link; of the ground -1."""
+        place = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
+        return -1 if name is None else place[self.mechanism.body_index(name)]
+
+    def _close(self, loop: Pin | Slot | Weld) -> None:
+        """A point of two links, or both altogether: each from the link's centre of mass, the ground's in the world."""
+        ends = [
+            (self._link_of(name), [*world_offset(self.mechanism, name, point), 0.0])
+            for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point))
+        ]
+        ends.sort(key=lambda end: end[0] < 0)  # the ground can only be the second
+        (first, at), (second, there) = ends
+        kind = self.bullet.JOINT_FIXED if isinstance(loop, Weld) else self.bullet.JOINT_POINT2POINT
+        self._constrain(first, second, kind, at, there)
+
+    def _mesh(self, gear: Gear) -> None:
+        """The rate of the second body's joint less `ratio` times that of the first's is zero."""
+        link_of = {link.column: index for link, index in zip(self.tree.links, self.links, strict=True) if link.columns}
+        second, first = (link_of[column] for column in geared_columns(self.tree, gear))
+        nowhere = [0.0, 0.0, 0.0]
+        self._constrain(second, first, self.bullet.JOINT_GEAR, nowhere, nowhere, gearRatio=-gear.ratio)
+
+    def _constrain(self, first: int, second: int, kind: int, at: Any, there: Any, **what: float) -> None:
+        own = {"physicsClientId": self.server}
+        other = self.body if second >= 0 else -1
+        made = self.bullet.createConstraint(self.body, first, other, second, kind, [0, 0, 1], at, there, **own)
+        self.bullet.changeConstraint(made, maxForce=ENOUGH, **what, **own)
+
+    def _push(self) -> None:
+        """Give the engine what force elements do now: it forgets them after a step."""
+        own = {"physicsClientId": self.server}
+        told = self.bullet.getJointStates(self.body, self.links, **own)
+        position, velocity = np.zeros((2, self.tree.coordinates))
+        for link, (angle, rate, *_) in zip(self.tree.links, told, strict=True):
+            position[link.columns], velocity[link.columns] = angle, rate
+        _, pushed = pushes(self.tree, position, velocity)
+        for link, index in zip(self.tree.links, self.links, strict=True):
+            x, y, torque = pushed[link.body]
+            at = self.bullet.getLinkState(self.body, index, computeForwardKinematics=True, **own)[0]
+            self.bullet.applyExternalForce(self.body, index, [x, y, 0.0], at, self.bullet.WORLD_FRAME, **own)
+            self.bullet.applyExternalTorque(self.body, index, [0.0, 0.0, torque], self.bullet.WORLD_FRAME, **own)
+
+    def record(self, dt: float, samples: int, every: int) -> Recorded:
+        shape = (samples + 1, self.tree.coordinates)
+        position, velocity, before = np.full((3, *shape), np.nan)
+        moving = [place for place, link in enumerate(self.tree.links) if link.columns]
+        columns, links = [self.tree.links[place].column for place in moving], [self.links[place] for place in moving]
+        states, server = self.bullet.getJointStates, self.server
+
+        def step(one: int) -> None:
+            if self.mechanism.forces:
+                self._push()
+            self.bullet.stepSimulation(one)
+
+        begin = time.process_time()
+        for sample in range(samples + 1):
+            if sample:
+                for _ in range(every - 1):
+                    step(server)
+                before[sample, columns] = [each[1] for each in states(self.body, links, server)]
+                step(server)
+            told = states(self.body, links, server)
+            position[sample, columns] = [each[0] for each in told]
+            velocity[sample, columns] = [each[1] for each in told]
+        stepping = time.process_time() - begin
+        acceleration = differences(velocity, before, dt)
+        motion = tree_states(self.tree, position, velocity, acceleration)
+        return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity))
+
+
+DEFAULT = Bullet("default")
+TUNED = Bullet("tuned", iterations=200, residual=0.0, erp=1.0)
+# All of a gap is closed in every step: with less, what a few steps leave behind is no series in the step.
+EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3))
+VARIANTS = (DEFAULT, TUNED, EXTENDED)

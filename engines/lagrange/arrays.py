@@ -1,0 +1,269 @@
+"""A mechanism as two flat arrays, which compiled code reads: the same types for each, so nothing is compiled twice.
+
+Whole numbers say who is joined with whom. Real numbers say how long and heavy everything is, and after them there is
+room to work in. A header of the whole numbers says where each of them begins: the constants below are its places.
+Arrays of arrays were tried: compiling took ten times as long.
+
+Bodies are counted as in `Mechanism.bodies`, and the ground is the body after the last. Rows stand in the order of
+Cuthill and McKee, reversed, in which the row system J M^-1 J^T has a narrow envelope: O(bodies) numbers for a chain.
+Only rows on one body meet there, so its entries are a list of products, made here once.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
+from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
+from reference.mechanism import Mechanism
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.rows import rank
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+PIN, SLOT, SKATE, ROLL, DRIVE, ROD, GEAR, WELD = range(8)
+KINDS: dict[type, int] = {
+    **{Pin: PIN, Slot: SLOT, Skate: SKATE, Roll: ROLL, Drive: DRIVE},
+    **{Rod: ROD, Gear: GEAR, Weld: WELD},
+}
+SPRING, DAMPER, TORSION_SPRING, TORSION_DAMPER, TORQUE, FORCE = range(6)
+FORCE_KINDS: dict[type, int] = {
+    **{Spring: SPRING, Damper: DAMPER, TorsionSpring: TORSION_SPRING, TorsionDamper: TORSION_DAMPER},
+    **{Torque: TORQUE, Force: FORCE},
+}
+ON_LINE, ON_ROUND, TABLE, NOT_TABULATED = range(4)  # forms of rolling pairs
+MOST_ROWS = 400  # beyond, their rank takes longer than the run
+
+MARCH, CONTROL, REACT = range(3)  # what compiled code is asked for
+
+# Records, in whole numbers. A body is the place of its x among the columns, 3 for each, an end that of its 3 numbers.
+JOINT = 5  # kind, first body, second body, first row, which of the rolls
+FORCED = 3  # of a force element: kind, first body, second body
+ROW = 5  # first body, second body, whether it limits a position, first column of its envelope, where that begins
+ROLL_RECORD = 4  # form; of the window of a table its first cell, how many cells, where they begin
+# Records, in real numbers.
+PARAMETERS = 7  # of a joint: its point on the first body, on the second [m], its angle or length, rate or ratio, offset
+FORCE_PARAMETERS = 6  # of a force: its point on the first body, on the second [m], and two that its kind makes sense of
+CONSTANTS = 7  # complex ones, of a rolling pair
+CELL = 20  # complex numbers, of a table
+TERM = 4  # entry of the envelope; two ends of rows, and the body on which they meet: the entry gets their product
+STAGES = 16  # of the largest tableau, with those for dense output
+
+# How many; whether rows are dependent; whether some are soft, 1 by springs and dampers, 2 by a compliance too; which
+# rows are asked for; how many forces.
+(JOINTS, ROWS, COLUMNS, TERMS, HOLONOMIC_ROWS, DEPENDENT, SOFT, WHICH, FORCES) = range(9)
+(JOINT_AT, ROW_AT, TERM_AT, FORCE_AT, ROLL_AT) = range(9, 14)  # records among the whole numbers
+# What a mechanism is made of: 1/kg, 1/kg, 1/(kg m^2) of every column, m/s^2, parameters, the rates of rows, the units
+# of a pose and of a twist, constants of rolls, the softness of rows and what part of their bias they lack, parameters
+# of forces, the start.
+_NUMBERS = range(14, 28)
+(MOBILITY, GRAVITY, PARAMETER_AT, RATE, POSE_UNIT, TWIST_UNIT, ROLL_NUMBERS) = _NUMBERS[:7]
+(STIFFNESS, DAMPING, COMPLIANCE, LACKING, FORCE_NUMBERS, START_POSE, START_TWIST) = _NUMBERS[7:]
+# Room to work in: cosine and sine of every body; ends of rows, 6 for each; gap, bias, right side, what is left of it,
+# inverse pivot, reaction and inverse inertia felt of every row; the factor; and columns: M^-1 J^T reaction, the state,
+# that of a stage, that after a step, and velocities and accelerations of all stages.
+_ROOM = range(28, 48)
+(TURNED, ENDS, GAP, BIAS, RIGHT, LEFT, PIVOT, REACTION, FELT, MATRIX, CHANGE, POSE, TWIST) = _ROOM[:13]
+(STAGE_POSE, STAGE_TWIST, NEW_POSE, NEW_TWIST, VELOCITY, ACCELERATION, STATUS) = _ROOM[13:]
+HEADER = 48
+
+# What a call leaves behind, among the real numbers from STATUS on: the smallest pivot; the roll and the angle without a
+# cell; accepted steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if
+# never; and how much rounding alone may have changed the speeds, in parts of the mechanism's own; the last factor's
+# smallest pivot.
+SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED, PIVOTED = range(8)
+STATUSES = 8
+
+
+@dataclass(frozen=True)
+class Arrays:
+    """One mechanism for compiled code; see the module."""
+
+    whole: Integers
+    real: Floats
+    rows: Integers  # (rows,) where each row of the mechanism stands among those of the row system
+
+    @property
+    def rolls(self) -> Integers:
+        """(rolls, ROLL_RECORD) a view of their records."""
+        return self.whole[self.whole[ROLL_AT] :].reshape(-1, ROLL_RECORD)
+
+
+def arrays_of(mechanism: Mechanism) -> Arrays:
+    """The arrays of a mechanism."""
+    joints, bodies = mechanism.joints, len(mechanism.bodies)
+    index: dict[str | None, int] = {body.name: i for i, body in enumerate(mechanism.bodies)} | {None: bodies}
+    ends = np.array([(index[joint.first], index[joint.second]) for joint in joints], dtype=np.int64)
+    ends = ends.reshape(-1, 2)
+    forced = np.array([(FORCE_KINDS[type(f)], 3 * index[f.first], 3 * index[f.second]) for f in mechanism.forces])
+    size = np.array([joint.size for joint in joints], dtype=np.int64)
+    begin = _places(ends, size, bodies)
+    place = np.array([row for at, count in zip(begin, size, strict=True) for row in range(at, at + count)], dtype=int)
+    owner = np.empty(len(place), dtype=np.int64)
+    owner[place] = np.repeat(np.arange(len(joints)), size)
+    start, offset, terms = _products(ends[owner], bodies)
+    holonomic = np.array([joint.holonomic for joint in joints], dtype=np.int64)[owner]
+    rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
+    which = np.cumsum([isinstance(joint, Roll) for joint in joints]) - 1
+    kind = np.array([KINDS[type(joint)] for joint in joints], dtype=np.int64)
+    records = (
+        np.column_stack([kind, 3 * ends, begin, which]),
+        np.column_stack([3 * ends[owner], holonomic, start, offset[:-1]]),
+        terms,
+        forced,
+        np.array([(form_of(rolling)[0], 0, 0, 0) for rolling in rolls], dtype=np.int64),
+    )
+    columns, rows = 3 * bodies + 3, len(place)
+    dependent, forces = int(_dependent(mechanism)), len(mechanism.forces)
+    counts = (len(joints), rows, columns, len(terms), int(holonomic.sum()), dependent, 0, 0, forces)
+    numbers = _numbers(mechanism, place)
+    room = [2 * bodies + 2, 6 * rows, *[rows] * 7, int(offset[-1]), *[columns] * 7, *[STAGES * columns] * 2, STATUSES]
+    header = (
+        *counts,
+        *itertools.accumulate((record.size for record in records[:-1]), initial=HEADER),
+        *itertools.accumulate((*map(len, numbers), *room[:-1]), initial=0),
+    )
+    real = np.concatenate([*numbers, np.zeros(sum(room))])
+    real[header[TURNED] : header[TURNED] + 2 * bodies + 2 : 2] = 1.0  # the ground's stay so
+    real[header[STATUS] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0
+    whole = np.concatenate(
+        [np.array(header, dtype=np.int64), *(record.reshape(-1).astype(np.int64) for record in records)]
+    )
+    return Arrays(whole, real, place)
+
+
+def _numbers(mechanism: Mechanism, place: Integers) -> tuple[Floats, ...]:
+    """What a mechanism is made of, in the order of _NUMBERS; no row is soft."""
+    rate = np.zeros(mechanism.row_count)
+    rate[place] = mechanism.rate
+    length, time = mechanism.length_scale, mechanism.time_scale
+    unit = np.tile([length, length, 1.0], len(mechanism.bodies) + 1)
+    rolls = [form_of(joint.rolling)[1] for joint in mechanism.joints if isinstance(joint, Roll)]
+    ground = np.zeros(3)
+    return (
+        np.append(1 / mechanism.inertias, ground),
+        np.array(mechanism.gravity, dtype=float),
+        np.array([parameters(joint) for joint in mechanism.joints], dtype=float).reshape(-1),
+        rate,
+        unit,
+        unit / time,
+        np.array(rolls, dtype=float).reshape(len(rolls) * 2 * CONSTANTS),
+        *(np.zeros_like(rate),) * 4,
+        np.array([force_parameters(force) for force in mechanism.forces], dtype=float).reshape(-1),
+        np.append(mechanism.pose, ground),
+        np.append(mechanism.twist, ground),
+    )
+
+
+def _dependent(mechanism: Mechanism) -> bool:
+    """Whether some rows follow from others at the start: two wheels on one axle, a parallelogram's third crank.
+
+    Not asked where it would take seconds: the factorisation itself finds dependent rows.
+    """
+    rows = mechanism.row_count
+    if rows > 3 * len(mechanism.bodies):
+        return True
+    if rows == 0 or rows > MOST_ROWS:
+        return False
+    return rank(mechanism.rows(mechanism.pose), mechanism.length_scale) < rows
+
+
+def parameters(joint: Joint) -> tuple[float, ...]:
+    match joint:
+        case Pin():
+            return (*joint.first_point, *joint.second_point, 0.0, 0.0, 0.0)
+        case Slot():
+            return (*joint.first_point, *joint.second_point, joint.line_angle, 0.0, 0.0)
+        case Skate():
+            return (0.0, 0.0, *joint.second_point, joint.angle, 0.0, 0.0)
+        case Drive():
+            return (0.0, 0.0, 0.0, 0.0, 0.0, joint.turning_rate, joint.offset)
+        case Rod():
+            return (*joint.first_point, *joint.second_point, joint.length, 0.0, 0.0)
+        case Gear():
+            return (0.0, 0.0, 0.0, 0.0, 0.0, joint.ratio, joint.phase)
+        case Weld():
+            return (*joint.first_point, *joint.second_point, joint.angle, 0.0, 0.0)
+    return (0.0,) * PARAMETERS
+
+
+def force_parameters(force: ForceElement) -> tuple[float, ...]:
+    match force:
+        case Spring():
+            return (*force.first_point, *force.second_point, force.stiffness, force.rest_length)
+        case Damper():
+            return (*force.first_point, *force.second_point, force.damping, 0.0)
+        case TorsionSpring():
+            return (0.0, 0.0, 0.0, 0.0, force.stiffness, force.rest_angle)
+        case TorsionDamper():
+            return (0.0, 0.0, 0.0, 0.0, force.damping, 0.0)
+        case Torque():
+            return (0.0, 0.0, 0.0, 0.0, force.torque, 0.0)
+        case Force():
+            return (0.0, 0.0, *force.second_point, *force.force)
+
+
+def _places(ends: Integers, size: Integers, bodies: int) -> Integers:
+    """(joints,) where the first row of every joint stands, such that joints on one body are near each other."""
+    count = len(ends)
+    if not count:
+        return np.zeros(0, dtype=np.int64)
+    member, joint = ends.reshape(-1), np.repeat(np.arange(count), 2)
+    moving = member < bodies
+    on = coo_array((np.ones(moving.sum()), (joint[moving], member[moving])), shape=(count, bodies)).tocsr()
+    order = reverse_cuthill_mckee((on @ on.T).tocsr(), symmetric_mode=True)
+    begin = np.empty(count, dtype=np.int64)
+    begin[order] = np.cumsum(size[order]) - size[order]
+    return begin
+
+
+def _products(bodies: Integers, count: int) -> tuple[Integers, Integers, Integers]:
+    """Of rows between these bodies (rows, 2), `count` of which move: first columns, where rows begin, and TERMs."""
+    ends: list[list[tuple[int, int]]] = [[] for _ in range(count)]
+    for row, pair in enumerate(bodies.tolist()):
+        for side, body in enumerate(pair):
+            if body < count:
+                ends[body].append((row, side))
+    start = np.arange(len(bodies))
+    for own in ends:
+        for row, _ in own:
+            start[row] = min(start[row], own[0][0])
+    offset = np.append(0, np.cumsum(np.arange(len(bodies)) - start + 1))
+    terms = [
+        (offset[row] + column - start[row], 6 * row + 3 * side, 6 * column + 3 * other, 3 * body)
+        for body, own in enumerate(ends)
+        for i, (row, side) in enumerate(own)
+        for column, other in own[: i + 1]
+    ]
+    return start, offset, np.array(terms, dtype=np.int64).reshape(-1, TERM)
+
+
+def form_of(rolling: Rolling) -> tuple[int, tuple[float, ...]]:
+    """(the form, its constants) of a pair: see `rows.py` in the folder `compiled` for what each stands for."""
+    try:
+        fast = rolled(rolling)
+    except (ValueError, ArithmeticError):  # curves that can't touch everywhere around the start
+        return NOT_TABULATED, _constants(())
+    match fast:
+        case RoundOnLine():
+            return ON_LINE, _constants(fast.constants)
+        case RoundOnRound():
+            return ON_ROUND, _constants(fast.constants)
+        case Table() if not fast.exact_only:
+            return TABLE, _constants((fast.width,))
+    return NOT_TABULATED, _constants(())
+
+
+def _constants(values: tuple[complex, ...]) -> tuple[float, ...]:
+    """Complex numbers as two each, real ones too, filled up with zeros."""
+    parts = [part for value in values for part in (complex(value).real, complex(value).imag)]
+    return tuple(parts + [0.0] * (2 * CONSTANTS - len(parts)))

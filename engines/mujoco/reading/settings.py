@@ -1,0 +1,167 @@
+"""How the loops of a user's model give way, as MuJoCo declares it, and what can be changed in the model.
+
+A row obeys a + b v + k d r = -R f with R = (1 - d) / d times an estimate of the inertia, and an impedance d that grows
+with the gap ("Computation: Constraint model" and "Modeling: Solver parameters" in MuJoCo's documentation).
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.mujoco.reading.elements import Scene
+from engines.mujoco.stiffness import STIFFEST
+from engines.mujoco.written_file import INTEGRATORS
+from engines.reading import Change, Give
+from reference.joints import Rod
+from reference.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+LEAST_IMPEDANCE, MOST_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
+
+
+def declared(scene: Scene, mechanism: Mechanism, directions: Array, drift: Array) -> Callable[[Array], Give]:
+    """Of a gap (rows,) [m, rad] of the mechanism's rows, how each gives way there.
+
+    directions (3 bodies, nv): how MuJoCo's coordinates move the bodies at the start, where its rows are compared with
+    the mechanism's: a row that is a multiple of ours has a compliance of another size. drift (3 bodies,): the bodies'
+    accelerations there with MuJoCo's coordinates at a steady rate: an equality of a tendon, which has no term of
+    velocities (up to 4.0.1), holds these steady.
+    """
+    model, data = scene.model, scene.data
+    places, start = dict[str, range](), 0
+    for joint in mechanism.joints:
+        places[joint.name] = range(start, start + joint.size)
+        start += joint.size
+    instead = np.full(mechanism.row_count, np.nan)
+    rods = [joint.name for joint in mechanism.joints if isinstance(joint, Rod)]
+    for name in rods:
+        instead[places[name]] = mechanism.rows(mechanism.pose)[places[name]] @ drift
+    ours = mechanism.rows(mechanism.pose) @ directions
+    theirs = _dense(model, data)
+    pieces: list[tuple[list[int], Array, Array, float, float, Array]] = []
+    for index, joints in scene.held.items():
+        own = [place for joint in joints for place in places[joint.name]]
+        equality = data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+        rows = np.flatnonzero(equality & (data.efc_id == index))
+        if not own or not len(rows):
+            continue
+        stiffness, damping, impedance = (float(value) for value in data.efc_KBIP[rows[0]][:3])
+        factors, estimates = np.ones(len(own)), np.zeros(len(own))
+        for number, place in enumerate(own):
+            along = number < 2 and len(own) > 1  # a connect, or the first rows of a weld: as long as ours
+            like = rows[0] if along or len(rows) == 1 else rows[-1]
+            if not along:
+                norm = float(np.linalg.norm(theirs[rows[3:] if len(rows) > 3 else rows]))
+                factors[number] = norm / float(np.linalg.norm(ours[place]) or 1.0)
+            estimates[number] = data.efc_R[like] * impedance / (1 - impedance)
+        pieces.append((own, factors, model.eq_solimp[index].copy(), stiffness, damping, estimates))
+
+    def give(gap: Array) -> Give:
+        out = np.zeros((3, mechanism.row_count))
+        for own, factors, shape, stiffness, damping, estimates in pieces:
+            d = impedance_of(shape, float(np.linalg.norm(factors * gap[own])))
+            out[0, own], out[1, own] = stiffness * d, damping
+            out[2, own] = (1 - d) / d * estimates / factors**2
+        return Give(out[0], out[1], out[2], instead)
+
+    return give
+
+
+def impedance_of(shape: Array, gap: float) -> float:
+    """The impedance of a row that is open by this [m or rad], for a solimp (5,)."""
+    low, high = (float(np.clip(value, LEAST_IMPEDANCE, MOST_IMPEDANCE)) for value in shape[:2])
+    width, middle, power = (float(value) for value in shape[2:5])
+    part = min(gap / width, 1.0) if width > 0 else 1.0
+    if power <= 1:
+        rise = part
+    elif part <= middle:
+        rise = part**power / middle ** (power - 1)
+    else:
+        rise = 1 - (1 - part) ** power / (1 - middle) ** (power - 1)
+    return low + rise * (high - low)
+
+
+def _dense(model: Any, data: Any) -> Array:
+    """MuJoCo's rows (rows, nv), whichever way it stores them."""
+    if not mujoco.mj_isSparse(model):
+        return data.efc_J.reshape(data.nefc, model.nv).copy()
+    out = np.zeros((data.nefc, model.nv))
+    for row in range(data.nefc):
+        begin, size = data.efc_J_rowadr[row], data.efc_J_rownnz[row]
+        out[row, data.efc_J_colind[begin : begin + size]] = data.efc_J.reshape(-1)[begin : begin + size]
+    return out
+
+
+ELEMENTS = {
+    "contact": "CONTACT",
+    "limit": "LIMIT",
+    "frictionloss": "FRICTIONLOSS",
+    "equality": "EQUALITY",
+    "actuation": "ACTUATION",
+    "spring": "SPRING",
+    "damper": "DAMPER",
+    "gravity": "GRAVITY",
+}
+OTHERS = ("armature", "fluid", "forcelimit", "sleep")  # that no flag of MuJoCo's switches off
+TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
+SHIPPED = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # solref and solimp of an equality about which nothing is said
+HALVINGS = (1, 2, 4, 8, 16, 32)
+
+
+def switch_off(model: Any, element: str) -> None:
+    """Change a model so that this kind of element no longer acts. Raises ValueError for a word that is none."""
+    if element == "armature":
+        model.dof_armature[:] = 0.0
+    elif element == "forcelimit":
+        for limited in (model.actuator_forcelimited, model.jnt_actfrclimited, model.tendon_actfrclimited):
+            limited[:] = 0
+    elif element == "sleep":
+        model.opt.enableflags &= ~int(getattr(mujoco.mjtEnableBit, "mjENBL_SLEEP", 0))
+    elif element == "fluid":
+        model.opt.density = model.opt.viscosity = 0.0
+    elif element in ELEMENTS:
+        model.opt.disableflags |= int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{ELEMENTS[element]}"))
+    else:
+        raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, *OTHERS))}")
+
+
+def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list[Change]:
+    """Steps down to `smallest` [s], by the model's own integrator and RK4; `soft`: loops as they are, and stiffer.
+
+    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options.
+    """
+    own_step = float(model.opt.timestep)
+    own = mujoco.mjtIntegrator(model.opt.integrator).name.split("_")[1]
+    integrators = list(dict.fromkeys([own, "RK4"]))
+    out = []
+    for tied in (False, True) if soft else (False,):
+        for integrator in integrators:
+            for divisor in HALVINGS:
+                dt = own_step / divisor
+                if dt < smallest:
+                    break
+                name = INTEGRATORS.get(integrator, integrator.lower())
+                words = f"{name}, step {dt * 1e3:.4g} ms" + (", stiff loops" if tied else "")
+                option = f'<option timestep="{dt!r}" integrator="{name}"/>'
+                lines = [f"<mujoco>{option}</mujoco>" if urdf else option]
+                if tied:
+                    impedance = " ".join(f"{value:g}" for value in STIFFEST)
+                    values = f'solref="{TIED_STEPS * dt:g} 1" solimp="{impedance}"'
+                    lines.append(f"<default><equality {values}/></default>")
+                    if _set_by_hand(model):
+                        lines.append("<!-- an equality with a solref or solimp of its own needs these values there -->")
+                out.append(Change(words, dt, tuple(lines), (("integrator", integrator), ("tied", tied))))
+    return out
+
+
+def _set_by_hand(model: Any) -> bool:
+    """Whether an equality has other values than those that MuJoCo gives it: a default would not reach it."""
+    return bool(np.any(model.eq_solref != SHIPPED[0]) or np.any(model.eq_solimp != SHIPPED[1]))

@@ -1,0 +1,115 @@
+"""Truths in as many coordinates as there are freedoms, and without any joint force: the embedding method.
+
+The allowed velocities of all bodies are V = T(c) nu, with coordinates c, quasi-velocities nu, and c' = nu unless a
+scene says otherwise. Ideal joints do no work in the columns of T, so (Kane and Levinson, Dynamics; Neimark and Fufaev)
+
+    T^T M T nu' = T^T (f - M T' nu).
+
+T is derived by hand for each mechanism, its rate T' by a complex step along the motion, which is exact. The joints'
+rows are not used, so a motion from here checks them.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.numerics import windows
+from reference.numerics.integration import units_of_motion
+from reference.scene import PlacedScene
+
+Array = NDArray[np.float64]
+
+COMPLEX_STEP = 1e-100
+
+
+class EmbeddedScene(PlacedScene):
+    """A scene whose state is (c, nu), and whose `mechanism` gives the masses M and the forces f."""
+
+    @property
+    @abstractmethod
+    def start(self) -> Array:
+        """c and nu at t = 0 (states,)."""
+
+    @abstractmethod
+    def tangent(self, coordinates: Any) -> tuple[Any, Any]:
+        """Poses (..., bodies, 3) and T (..., 3 bodies, freedoms) at c (..., coordinates); T is analytic in c."""
+
+    def coordinate_rates(self, coordinates: NDArray[Any], velocities: NDArray[Any]) -> NDArray[Any]:
+        """c' (..., coordinates) at c and nu."""
+        return velocities
+
+    @property
+    def freedoms(self) -> int:
+        """How many of the state's numbers are nu."""
+        return len(self.start) // 2
+
+    @property
+    def angle_unit(self) -> float:
+        """What the coordinates are counted in while they are integrated [rad or m]."""
+        return 1.0
+
+    def _split(self, state: Array) -> tuple[Array, Array]:
+        return state[..., : -self.freedoms], state[..., -self.freedoms :]
+
+    def embedded(
+        self, coordinates: Array, velocities: Array, changes: Array | None = None
+    ) -> tuple[Array, Array, Array, Array]:
+        """nu' (..., freedoms), and poses, twists and accelerations (..., bodies, 3) at c and nu.
+
+        nu' follows from masses and forces unless `changes` (..., freedoms) prescribes it.
+        """
+        mechanism = self._mechanism
+        rates = self.coordinate_rates(coordinates, velocities)
+        pose, stepped = self.tangent(coordinates + 1j * COMPLEX_STEP * rates)
+        tangent, changing = stepped.real, stepped.imag / COMPLEX_STEP
+        pose = np.real(pose)
+        bias = changing @ velocities[..., None]
+        twist = (tangent @ velocities[..., None]).reshape(pose.shape)
+        if changes is None:
+            weighted = np.swapaxes(tangent * mechanism.inertias.reshape(-1, 1), -1, -2)
+            free = mechanism.unconstrained(pose, twist)
+            missing = free.reshape((*free.shape[:-2], -1, 1)) - bias
+            changes = np.asarray(np.linalg.solve(weighted @ tangent, weighted @ missing)[..., 0], dtype=float)
+        return changes, pose, twist, (tangent @ changes[..., None] + bias).reshape(pose.shape)
+
+    def accelerations(self, coordinates: Array, velocities: Array) -> Array:
+        """nu' (..., freedoms) by masses and forces."""
+        return self.embedded(coordinates, velocities)[0]
+
+    def rates(self, state: Array) -> Array:
+        """d/dt of (c, nu) (..., states): what is integrated."""
+        coordinates, velocities = self._split(state)
+        moved = self.coordinate_rates(coordinates, velocities)
+        return np.concatenate([moved, self.accelerations(coordinates, velocities)], axis=-1)
+
+    def solved(self, until: float) -> windows.Motion:
+        """The motion up to `until` [s]: times to states. Of positions and their rates; see `windows.motion`."""
+        return windows.motion(self.rates, self.start, until, units_of_motion(self.rates, self.start, self.angle_unit))
+
+    def states(self, t: ArrayLike) -> tuple[Array, Array]:
+        """c and nu (times, ...) at times t >= 0 [s]."""
+        return self._states(self.times(t))
+
+    def _states(self, times: Array) -> tuple[Array, Array]:
+        if not times.any():  # a mechanism needs no more than the start
+            return self._split(np.tile(self.start, (len(times), 1)))
+        return self._split(_solved(self, max(self.duration, float(times.max())))(times))
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """A bound on the truth's own error (times,) in c and nu, by two rules."""
+        units = units_of_motion(self.rates, self.start, self.angle_unit)
+        return windows.error_of(self.rates, self.start, self.times(t), units)
+
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        return self.embedded(*self._states(times))[1:]
+
+
+@lru_cache(maxsize=16)
+def _solved(scene: EmbeddedScene, until: float) -> windows.Motion:
+    """Kept for all equal scenes, since samples of every number ask for it."""
+    return scene.solved(until)

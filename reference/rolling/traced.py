@@ -1,0 +1,159 @@
+"""A boundary through given points: a spline of degree 7 in a given parameter, by arc length."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import BSpline, make_interp_spline
+
+from reference.checks import InvalidMechanism, kept
+from reference.kinds import of_shape
+from reference.numerics.roots import solve_increasing
+from reference.rolling.curves import Array, Curve, along, within
+
+DEGREE = 7
+FEWEST = 16  # points: twice the degree and more, so that half of them can still show the error
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+# Slower than this fraction of its mean speed, the point stands still for this purpose and the tangent is lost.
+STILL = 1e-6
+
+
+def spline(parameters: Array, values: Array) -> BSpline:
+    """The interpolating spline of degree 7 through values (n, ...) at increasing parameters (n,)."""
+    return make_interp_spline(parameters, values, k=DEGREE)
+
+
+@dataclass(frozen=True, eq=False)
+class Traced(Curve):
+    """The smooth curve through `points` (n, 2) [m] at increasing `parameters` (n,), traversed in their order.
+
+    Arc 0 is the first point, and nothing exists beyond the last. Raises InvalidMechanism for fewer than 16 points,
+    numbers not finite, parameters that don't increase, and a place where the curve stands still or reverses (a cusp).
+    """
+
+    parameters: Annotated[Array, of_shape("n")]
+    points: Annotated[Array, of_shape("n", 2)]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        count = len(self.parameters)
+        if count < FEWEST or self.points.shape != (count, 2):
+            raise InvalidMechanism(
+                f"traced curve: {count} parameters and points of shape {self.points.shape}; "
+                f"give (n, 2) points with n of at least {FEWEST}"
+            )
+        if np.any(np.diff(self.parameters) <= 0):
+            where = int(np.argmax(np.diff(self.parameters) <= 0))
+            raise InvalidMechanism(f"traced curve: parameter {where + 1} is not greater than the one before it")
+        middles = 0.5 * (self.parameters[1:] + self.parameters[:-1])
+        looked = np.concatenate([self.parameters, middles])
+        speed = self.speed_of(looked)
+        reach = float(np.ptp(self.points, axis=0).max())
+        mean = float(np.sum(np.linalg.norm(np.diff(self.points, axis=0), axis=-1)) / np.ptp(self.parameters))
+        if reach <= 1e-9 * float(np.abs(self.points).max()) or np.min(speed) <= STILL * mean:
+            x, y = self.point_of(looked[int(np.argmin(speed))])
+            raise InvalidMechanism(
+                f"traced curve: it stands still or has a cusp near ({x:.6g}, {y:.6g}) m, at parameter "
+                f"{looked[int(np.argmin(speed))]:.6g}; a boundary must have a tangent everywhere, so cut it there"
+            )
+        before, after = self._tangents(self.parameters[:-1]), self._tangents(self.parameters[1:])
+        if np.any(np.sum(before * after, axis=-1) <= 0):
+            where = int(np.argmax(np.sum(before * after, axis=-1) <= 0))
+            raise InvalidMechanism(
+                f"traced curve: between points {where} and {where + 1} it turns by a quarter or more: a cusp or "
+                "a corner, or too few points; cut it there or give more"
+            )
+
+    @cached_property
+    def _splines(self) -> tuple[BSpline, BSpline, BSpline]:
+        line = spline(self.parameters, self.points)
+        return line, line.derivative(1), line.derivative(2)
+
+    def _tangents(self, p: Array) -> Array:
+        return self._splines[1](p)
+
+    @kept
+    def _knots(self) -> tuple[Array, Array]:
+        """Arcs and unwrapped tangent angles at the points."""
+        start, width = self.parameters[:-1, None], np.diff(self.parameters)[:, None]
+        pieces = np.sum(WEIGHTS * self.speed_of(start + 0.5 * width * (NODES + 1)), axis=-1) * width[:, 0] / 2
+        tangent = self._tangents(self.parameters)
+        return np.concatenate([[0.0], np.cumsum(pieces)]), np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0]))
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        return (0.0, float(self._knots[0][-1]))
+
+    @property
+    def curvature_range(self) -> tuple[float, float]:
+        return self._bends
+
+    @cached_property
+    def _bends(self) -> tuple[float, float]:
+        """As found at the points and between them."""
+        curvature = self.curvature_of(
+            np.concatenate([self.parameters, 0.5 * (self.parameters[1:] + self.parameters[:-1])])
+        )
+        return (float(curvature.min()), float(curvature.max()))
+
+    def _before(self, p: Array) -> Any:
+        return np.clip(np.searchsorted(self.parameters, p, side="right") - 1, 0, len(self.parameters) - 2)
+
+    def arc_of(self, p: ArrayLike) -> Array:
+        p = along(p)
+        knot = self._before(p)
+        start = self.parameters[knot]
+        width = p - start
+        places = start[..., None] + 0.5 * width[..., None] * (NODES + 1)
+        return self._knots[0][knot] + np.sum(WEIGHTS * self.speed_of(places), axis=-1) * width / 2
+
+    def speed_of(self, p: ArrayLike) -> Array:
+        return np.linalg.norm(self._splines[1](along(p)), axis=-1)
+
+    def parameter(self, arc: ArrayLike) -> Array:
+        arc = within("traced curve", arc, self.limits, "where its points end")
+        arcs, ends = self._knots[0], (float(self.parameters[0]), float(self.parameters[-1]))
+        guess = np.interp(arc, arcs, self.parameters)
+        scale = ends[1] - ends[0]
+        return solve_increasing(
+            lambda p: (self.arc_of(p), self.speed_of(p)), np.clip(arc, *self.limits), guess, scale, ends
+        )
+
+    def parameter_at(self, angle: ArrayLike) -> Array:
+        angle = along(angle)
+        low, high = self.curvature_range
+        if low * high <= 0:
+            raise InvalidMechanism("traced curve: it bends both ways, so its direction doesn't tell the place")
+        sense, angles = math.copysign(1.0, low + high), self._knots[1]
+        if np.any((sense * angle < sense * angles[0]) | (sense * angle > sense * angles[-1])):
+            raise InvalidMechanism(
+                f"traced curve: its tangent has angles from {angles[0]:.6g} to {angles[-1]:.6g} rad only; stay "
+                "between them"
+            )
+        return solve_increasing(
+            lambda p: (sense * self.angle_of(p), sense * self.curvature_of(p) * self.speed_of(p)),
+            sense * angle,
+            np.interp(sense * angle, sense * angles, self.parameters),
+            float(np.ptp(self.parameters)),
+            (float(self.parameters[0]), float(self.parameters[-1])),
+        )
+
+    def point_of(self, p: ArrayLike) -> Array:
+        return self._splines[0](along(p))
+
+    def angle_of(self, p: ArrayLike) -> Array:
+        p = along(p)
+        knot = self._before(p)
+        before, here = self._tangents(self.parameters[knot]), self._tangents(p)
+        crossed = before[..., 0] * here[..., 1] - before[..., 1] * here[..., 0]
+        return self._knots[1][knot] + np.arctan2(crossed, np.sum(before * here, axis=-1))
+
+    def curvature_of(self, p: ArrayLike) -> Array:
+        p = along(p)
+        first, second = self._splines[1](p), self._splines[2](p)
+        return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / self.speed_of(p) ** 3

@@ -1,0 +1,284 @@
+"""Velocity rows J of a mechanism's joints: evaluated all at once, their rank, and the reactions that act along them.
+
+A row's size depends on the unit of length, and J M^-1 J^T has the square of the condition of M^(-1/2) J^T. So ranks are
+counted on rows without units, and reactions of few rows are found by least squares, never through the product. Of many
+rows only those that share a body meet, so the product has a narrow band, and is refined once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, fields
+from itertools import combinations_with_replacement
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from reference.checks import InvalidMechanism, require_room
+from reference.joints import Joint
+
+Array = NDArray[np.float64]
+
+# A row is counted as dependent below this fraction of the largest singular value: far above rounding, far below what a
+# mechanism is built with.
+RANK_TOLERANCE = 1e-9
+
+
+def rank(rows: Array, length: float) -> int:
+    """How many rows (rows, 3 bodies) are independent, whatever the unit: angles are counted as arcs of `length` [m]."""
+    return int(ranks(rows, np.asarray(length)))
+
+
+def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
+    """`rank` of many (...) at once, of rows (..., rows, 3 bodies) and lengths (...) [m]."""
+    if rows.size == 0:
+        return np.zeros(rows.shape[:-2], dtype=int)
+    singular = np.linalg.svd(_unitless(rows, length), compute_uv=False)
+    return np.sum(singular > RANK_TOLERANCE * np.maximum(singular[..., :1], np.finfo(float).tiny), axis=-1)
+
+
+def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
+    """Which rows (..., rows) of (..., rows, 3 bodies) take part in forces that balance by themselves.
+
+    No motion tells how large these are, so the reactions of such rows are not determined by rigid bodies alone.
+    """
+    _, singular, right = np.linalg.svd(np.swapaxes(_unitless(rows, length), -1, -2))
+    count = rows.shape[-2]
+    padded = np.zeros((*singular.shape[:-1], count))
+    padded[..., : singular.shape[-1]] = singular
+    idle = padded <= RANK_TOLERANCE * padded[..., :1]
+    return np.sqrt(np.sum(np.where(idle[..., None], right**2, 0.0), axis=-2)) > RANK_TOLERANCE
+
+
+def _unitless(rows: Array, length: float | Array) -> Array:
+    arc = np.asarray(length)[..., None, None]
+    scaled = rows / np.where(np.arange(rows.shape[-1]) % 3 == 2, arc, 1.0)
+    norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    return scaled / np.where(norm > 0, norm, 1.0)
+
+
+def solve_symmetric(matrix: Array, right: Array) -> Array:
+    """x (rows,) with matrix x = right for a symmetric, positive semidefinite matrix of rows; the shortest if singular.
+
+    Scaled to a unit diagonal first, so that the threshold of dependence has no unit.
+    """
+    diagonal = np.diag(matrix)
+    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = matrix * scale[:, None] * scale
+    return scale * (np.linalg.pinv(scaled, rcond=RANK_TOLERANCE, hermitian=True) @ (scale * right))
+
+
+def reactions(rows: Array, inertias: Array, excess: Array, size: Array) -> Array:
+    """Forces (..., rows) with M excess = rows^T forces, in the least squares of M^(-1/2).
+
+    rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
+    less that of free fall. Where rows are dependent the forces are not unique, and the smallest are given, counted in
+    `size` (rows,) [N or N m], the force of each row that is as large as one of any other. NaN where a number is not
+    finite. The columns of M^(-1/2) rows^T are made equally long first: a light body's rows then weigh as much as a
+    heavy one's, and what is lost is the square root of what the product J M^-1 J^T loses.
+    """
+    root = np.sqrt(inertias)
+    matrix = np.swapaxes(rows / root, -1, -2)
+    norm = np.linalg.norm(matrix, axis=-2)
+    finite = np.isfinite(norm).all(axis=-1) & np.isfinite(excess).all(axis=-1)
+    scale = np.where((norm > 0) & np.isfinite(norm), 1 / np.where(norm > 0, norm, 1.0), 1.0)
+    matrix = np.where(finite[..., None, None], matrix * scale[..., None, :], 0.0)
+    left, singular, right = np.linalg.svd(matrix, full_matrices=False)
+    small = singular <= RANK_TOLERANCE * singular[..., :1]
+    inverse = np.where(small, 0.0, 1 / np.where(small, 1.0, singular))
+    target = np.where(finite[..., None], excess, 0.0) * root
+    solution = scale * _times(np.swapaxes(right, -1, -2), inverse * _times(np.swapaxes(left, -1, -2), target))
+    missing = rows.shape[-2] - singular.shape[-1]  # more rows than coordinates: always dependent
+    if missing > 0 or np.any(small & finite[..., None]):
+        solution = _smallest(solution, scale, matrix, size)
+    return np.where(finite[..., None], solution, np.nan)
+
+
+def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
+    """The solution less its part that does no work on any motion, so that (solution / size) is shortest."""
+    _, singular, right = np.linalg.svd(matrix, full_matrices=True)
+    count = matrix.shape[-1]
+    padded = np.zeros((*singular.shape[:-1], count))
+    padded[..., : singular.shape[-1]] = singular
+    idle = padded <= RANK_TOLERANCE * singular[..., :1]
+    # Columns that span the idle forces, in units of `size`; the others are set to zero.
+    basis = (scale / size)[..., :, None] * np.swapaxes(right, -1, -2) * idle[..., None, :]
+    measured = solution / size
+    weights = _times(np.linalg.pinv(basis, rcond=RANK_TOLERANCE), measured)
+    return size * (measured - _times(basis, weights))
+
+
+def _times(matrix: Any, vector: Any) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0], dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class JointGroup:
+    """Joints of one kind, stacked so that one numpy expression serves them all."""
+
+    joint: Any  # of the kind, each numeric field an array with the joints along its first axis
+    first: NDArray[np.intp]  # (joints,) index of the body; the ground is the index after the last body
+    second: NDArray[np.intp]
+    rows: NDArray[np.intp]  # (joints, size) where their rows stand in the mechanism
+
+    def blocks(self, everything: NDArray[Any]) -> NDArray[Any]:
+        """Velocity rows (..., joints, size, 6) at poses of bodies and ground (..., bodies + 1, 3)."""
+        return self.joint.rows(everything[..., self.first, :], everything[..., self.second, :])
+
+
+@dataclass(frozen=True)
+class JointRows:
+    """The rows of all joints between `bodies` bodies, `count` rows in the order of the joints."""
+
+    groups: tuple[JointGroup, ...]
+    bodies: int
+    count: int
+
+    @classmethod
+    def of(cls, joints: Sequence[Joint], index: Mapping[str | None, int]) -> JointRows:
+        """Of joints between bodies whose places `index` gives by name, and the ground's, the last, under None."""
+        kinds: dict[Any, list[tuple[Joint, range]]] = {}  # one that can't stack is a kind of its own
+        start = 0
+        for joint in joints:
+            kind = type(joint) if getattr(joint, "stackable", True) else joint.name
+            kinds.setdefault(kind, []).append((joint, range(start, start + joint.size)))
+            start += joint.size
+        groups = tuple(
+            JointGroup(
+                joint=stacked([joint for joint, _ in members]),
+                first=np.array([index[joint.first] for joint, _ in members]),
+                second=np.array([index[joint.second] for joint, _ in members]),
+                rows=np.array([list(where) for _, where in members]),
+            )
+            for members in kinds.values()
+        )
+        return cls(groups, index[None], start)
+
+    def with_ground(self, pose: NDArray[Any]) -> NDArray[Any]:
+        """Poses or twists (..., bodies, 3) with the ground's, zero, after them."""
+        if pose.shape[-2:] != (self.bodies, 3):
+            raise InvalidMechanism(
+                f"mechanism: poses have the shape {pose.shape}; they must be of (..., {self.bodies}, 3), "
+                "x, y and angle of every body"
+            )
+        return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
+
+    def gap(self, pose: NDArray[Any], t: NDArray[Any]) -> NDArray[Any]:
+        """See `Mechanism.gap`."""
+        everything = self.with_ground(pose)
+        out = np.full((*everything.shape[:-2], self.count), np.nan, dtype=everything.dtype)
+        for group in self.groups:
+            if group.joint.holonomic:
+                first, second = everything[..., group.first, :], everything[..., group.second, :]
+                out[..., group.rows] = group.joint.gap(first, second, t[..., None])
+        return out
+
+    def dense(self, pose: NDArray[Any]) -> NDArray[Any]:
+        """J (..., rows, 3 bodies), see `Mechanism.rows`."""
+        everything = self.with_ground(pose)
+        leading = everything.shape[:-2]
+        kind = np.result_type(everything, float)
+        shape = (*leading, self.count, self.bodies + 1, 3)
+        require_room("mechanism: dense rows", shape, kind.itemsize)
+        out = np.zeros(shape, dtype=kind)
+        for group in self.groups:
+            block = group.blocks(everything)
+            out[..., group.rows, group.first[:, None], :] += block[..., 0:3]
+            out[..., group.rows, group.second[:, None], :] += block[..., 3:6]
+        return out[..., :-1, :].reshape((*leading, self.count, 3 * self.bodies))
+
+    def velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+        """J v (..., rows) joint by joint: O(joints), where J alone is O(joints bodies)."""
+        poses, twists = self.with_ground(pose), self.with_ground(twist)
+        leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
+        out = np.zeros((*leading, self.count), dtype=np.result_type(poses, twists, float))
+        for group in self.groups:
+            ends = np.concatenate([twists[..., group.first, :], twists[..., group.second, :]], axis=-1)
+            out[..., group.rows] = (group.blocks(poses) @ ends[..., None])[..., 0]
+        return out
+
+
+def stacked(joints: Sequence[Any]) -> Any:
+    """One joint, or force element, that stands for several of its kind: every numeric field becomes an array."""
+    if not getattr(joints[0], "stackable", True):
+        return joints[0]
+    numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
+    stacked = copy(joints[0])  # not made anew: arrays are no valid fields of one joint
+    stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
+    return stacked
+
+
+# From this many rows on a band is worth its bookkeeping; below it, the dense system is as fast.
+MANY_ROWS = 24
+# A pivot below this part of the largest, squared, counts as dependence: the same threshold as for ranks.
+SMALLEST_PIVOT = 1e-9
+
+
+def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias: Array) -> Array:
+    """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
+
+    `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
+    the mass matrix M. J M^-1 J^T times the reactions is J excess: built from the joints' blocks, in an order that makes
+    its band narrow, and factorised by Cholesky: O(bodies) for a chain, where the dense system costs O(bodies^3).
+    """
+    everything = joint_rows.with_ground(pose)
+    times, count = len(pose), joint_rows.bodies
+    mobility = np.concatenate([1 / inertias, np.zeros((1, 3))])  # the ground's, last, moves for no force
+    excess = np.concatenate([excess, np.zeros((times, 1, 3))], axis=1)
+    right = np.zeros((times, joint_rows.count))
+    ends: dict[int, list[tuple[NDArray[np.intp], Array]]] = {}  # of each body, the rows on it and their blocks
+    for group in joint_rows.groups:
+        block = group.blocks(everything)
+        for bodies, columns in ((group.first, slice(0, 3)), (group.second, slice(3, 6))):
+            right[:, group.rows] += np.einsum("tjrc,tjc->tjr", block[..., columns], excess[:, bodies])
+            for joint, body in enumerate(bodies.tolist()):
+                if body < count:
+                    ends.setdefault(body, []).append((group.rows[joint], block[:, joint, :, columns]))
+    pairs: dict[tuple[int, int], Array] = {}
+    for body, own in ends.items():
+        for (rows, block), (others, other) in combinations_with_replacement(own, 2):
+            product = np.einsum("trc,c,tsc->trs", block, mobility[body], other)
+            same = rows is others or rows[0] == others[0]
+            for i, row in enumerate(rows.tolist()):
+                for j, column in enumerate(others.tolist()):
+                    if same and block is other and column < row:
+                        continue
+                    key = (min(row, column), max(row, column))
+                    pairs[key] = pairs.get(key, 0) + product[:, i, j]
+    order, band = _narrow(joint_rows.count, list(pairs))
+    place = np.argsort(order)
+    matrix = np.zeros((times, band + 1, joint_rows.count))
+    for (row, column), values in pairs.items():
+        low, high = sorted((place[row], place[column]))
+        matrix[:, high - low, low] = values  # LAPACK's lower band storage
+    out = np.full_like(right, np.nan)
+    factors: dict[int, Array] = {}
+    for time in range(times):
+        factor, solution, failed = dpbsv(matrix[time], right[time, order], lower=1)
+        if not failed and factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
+            out[time, order] = solution
+            factors[time] = factor
+    # Once more with what the forces leave of the accelerations: the product J M^-1 J^T has squared the condition of J,
+    # and this gives the digits back (Bjorck 1987, corrected seminormal equations).
+    missing = np.zeros_like(right)
+    for body, own in ends.items():
+        left = excess[:, body] - mobility[body] * sum(np.einsum("trc,tr->tc", b, out[:, rows]) for rows, b in own)
+        for rows, block in own:
+            missing[:, rows] += np.einsum("trc,tc->tr", block, left)
+    for time, factor in factors.items():
+        out[time, order] += dpbtrs(factor, missing[time, order], lower=1)[0]
+    return out
+
+
+def _narrow(rows: int, pairs: list[tuple[int, int]]) -> tuple[NDArray[np.intp], int]:
+    """An order of the rows, and the width of the band that it leaves below the diagonal."""
+    row, column = np.array(pairs).T
+    graph = coo_array((np.ones(len(row)), (row, column)), shape=(rows, rows)).tocsr()
+    order = reverse_cuthill_mckee((graph + graph.T).tocsr(), symmetric_mode=True).astype(np.intp)
+    place = np.argsort(order)
+    return order, int(np.abs(place[row] - place[column]).max())

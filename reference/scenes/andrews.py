@@ -1,0 +1,308 @@
+"""Andrews' squeezing mechanism as a scene, with the numbers and the names of the test set for initial value problems.
+
+A crank from the origin (body 1) carries a rod (2), whose end P a bar (3) from the pivot B holds on a circle; a spring
+pulls at that bar, from C. P carries two more pairs of bars, (4) and (5), and (6) and (7), to the pivot A. So there are
+three pairs, and in closed form all angles are functions of the crank's, phi, and so are the reduced inertia and the
+potential of the one freedom:
+
+    m(phi) = sum of mass |r'|^2 + inertia angle'^2,   m phi'' = -m' phi'^2 / 2 - V',   V = c0 (L - l0)^2 / 2 - T phi.
+
+Numbers: F. Mazzia, C. Magherini, Test set for initial value problem solvers, II-17, after E. Hairer, G. Wanner, Solving
+Ordinary Differential Equations II, VII.7. Vectors of the plane are complex.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import InvalidMechanism, NonNegative, Positive, Sign, Valid, validated
+from reference.forces import Spring, Torque
+from reference.joints import Pin, Vector, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+from reference.numerics import windows
+from reference.plane import from_complex
+from reference.scene import PlacedScene
+
+Array = NDArray[Any]
+Pair = tuple[Positive, float]
+Triple = tuple[Positive, float, float]
+Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positive]
+
+BODIES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
+QUARTER = math.pi / 2
+TOLERANCE = windows.TOLERANCE / 10  # the last of the printed digits, which other methods confirm
+SIDES = (-1, 1, -1)  # of the joints of the three pairs: bar and rod, upper, lower
+
+
+@dataclass(frozen=True)
+class Andrews(PlacedScene):
+    """Seven bodies of `masses` [kg] and `inertias` [kg m^2], from rest with the crank at `angle` [rad].
+
+    Lengths [m], by the test set's letters: `crank` rr, ra; `rod` d, da; `bar` ss, sa, sb, and `spring_point` sc, sd;
+    `upper` zt, ta, tb and `upper_end` e, ea; `lower` u, ua, ub and `lower_end` zf, fa: a length between joints, and
+    where the centre of mass is. The spring has `stiffness` [N/m] and `rest_length` [m], the crank a constant `torque`
+    [N m]; no gravity. Raises InvalidMechanism for numbers that don't assemble at the start.
+    """
+
+    name: ClassVar[str] = "andrews"
+    source: ClassVar[str] = "IVP test set, II-17; IFToMM library of computational benchmark problems, A03"
+    masses: Seven = (0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498)
+    inertias: Seven = (2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5)
+    pivot_a: Vector = (-0.06934, -0.00227)
+    pivot_b: Vector = (-0.03635, 0.03273)
+    pivot_c: Vector = (0.014, 0.072)
+    crank: Pair = (0.007, 0.00092)
+    rod: Pair = (0.028, 0.0115)
+    bar: Triple = (0.035, 0.01874, 0.01043)
+    spring_point: Vector = (0.018, 0.02)
+    upper: Triple = (0.04, 0.02308, 0.00916)
+    upper_end: Pair = (0.02, 0.01421)
+    lower: Triple = (0.04, 0.01228, 0.00449)
+    lower_end: Pair = (0.02, 0.01421)
+    stiffness: Positive = 4530.0
+    rest_length: NonNegative = 0.07785
+    torque: float = 0.033
+    angle: float = -0.0617138900142764496358948458001
+    duration: Positive = 0.05
+    horizon: Positive = 0.05  # one freedom, and energy is kept: an error grows as the crank's, about linearly
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not all(np.isfinite(part).all() for angle in self.angles(self.angle) for part in angle):
+            raise InvalidMechanism(
+                f"{self._owner()}: the bars don't reach from the pivots to the rod's end, or are in line, at the start"
+            )
+
+    @property
+    def samples(self) -> int:
+        """Of half a millisecond as shipped, in which the crank turns by up to half a radian."""
+        return 100
+
+    @property
+    def pairs(self) -> tuple[Dyad, Dyad, Dyad]:
+        """Bar and rod from B to the crank's end, and the pairs from A to P."""
+        firsts, seconds = (
+            (self.bar[0], self.upper[0], self.lower[0]),
+            (self.rod[0], self.upper_end[0], self.lower_end[0]),
+        )
+        return tuple(Dyad(*lengths) for lengths in zip(firsts, seconds, SIDES, strict=True))  # type: ignore[return-value]
+
+    @validated
+    def angles(self, phi: ArrayLike) -> tuple[Moving, ...]:
+        """Of the seven bodies [rad], with derivatives by the crank's angle phi (...) [rad]; frames as in the test set.
+
+        The crank's is phi; the others stay between -pi and pi, as they swing. NaN where the bars don't reach.
+        """
+        return self._angles(np.asarray(phi, dtype=float))
+
+    def _angles(self, crank: Array) -> tuple[Moving, ...]:
+        ones = np.ones_like(crank)
+        turning = Moving(crank, ones, 0 * ones)
+        pivot_a, pivot_b = complex(*self.pivot_a), complex(*self.pivot_b)
+        holding, upper, lower = self.pairs
+        bar, rod = holding.angles(direction(turning).times(self.crank[0]).shifted(-pivot_b))
+        end = direction(bar).times(self.bar[0]).shifted(pivot_b - pivot_a)  # P, from A
+        delta, psi = upper.angles(end)
+        epsilon, chi = lower.angles(end)
+        # The frames of 3, 4 and 7 have their y axis along the bar, backwards.
+        return turning, rod, bar.shifted(QUARTER), psi.shifted(QUARTER), delta, chi, epsilon.shifted(QUARTER)
+
+    @cached_property
+    def _points(self) -> tuple[dict[str, complex], ...]:
+        """Of each body the joints' points from its centre of mass, in its own frame [m]."""
+        (rr, ra), (d, da), (ss, sa, sb), (sc, sd) = self.crank, self.rod, self.bar, self.spring_point
+        (zt, ta, tb), (e, ea), (u, ua, ub), (zf, fa) = self.upper, self.upper_end, self.lower, self.lower_end
+        return (
+            {"O": complex(-ra), "R": complex(rr - ra)},
+            {"R": complex(da), "P": complex(da - d)},
+            {"B": complex(-sb, sa), "P": complex(-sb, sa - ss), "D": complex(sd - sb, sa - sc)},
+            {"E": complex(0, e - ea), "P": complex(0, -ea)},
+            {"A": complex(-ta, -tb), "E": complex(zt - ta, -tb)},
+            {"H": complex(fa - zf), "P": complex(fa)},
+            {"A": complex(ub, ua), "H": complex(ub, ua - u)},
+        )
+
+    def _placed(self, phi: Array) -> tuple[tuple[Moving, ...], list[Moving], Moving]:
+        """Angles and centres of mass of the bodies, and the spring's vector, by the crank's angle."""
+        angles = self._angles(phi)
+        frames, own = [direction(angle) for angle in angles], self._points
+        ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
+        ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
+        centres: dict[int, Moving] = {}
+        # Each body from a point that is known to its centre, and on to its other joint.
+        for body, known, other in (
+            (0, "O", "R"),
+            (1, "R", "P"),
+            (2, "B", "D"),
+            (4, "A", "E"),
+            (3, "E", "P"),
+            (6, "A", "H"),
+            (5, "H", "P"),
+        ):
+            frame, points = frames[body], own[body]
+            centres[body] = ends[known].plus(frame.times(-points[known]))
+            ends[other] = centres[body].plus(frame.times(points[other]))
+        return angles, [centres[body] for body in range(7)], ends["D"].shifted(-complex(*self.pivot_c))
+
+    def _reduced(self, phi: Array) -> tuple[Array, Array, Array]:
+        """m [kg m^2], m' and V' [N m] (...) by the crank's angle."""
+        angles, centres, apart = self._placed(phi)
+        inertia, change = 0.0 * phi, 0.0 * phi
+        for mass, own, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
+            inertia = inertia + mass * np.abs(centre.first) ** 2 + own * angle.first**2
+            change = (
+                change
+                + 2 * mass * np.real(np.conj(centre.first) * centre.second)
+                + 2 * own * angle.first * angle.second
+            )
+        length = np.abs(apart.value)
+        pull = self.stiffness * (length - self.rest_length) / length
+        return inertia, change, pull * np.real(np.conj(apart.value) * apart.first) - self.torque
+
+    @cached_property
+    def rate_unit(self) -> float:
+        """About the crank's rate after one radian [rad/s]: in its time the motion has no unit."""
+        strength = abs(self.torque) + self.stiffness * self.crank[0] ** 2
+        return math.sqrt(strength / float(self._reduced(np.array(self.angle))[0]))
+
+    def _rates(self, state: Array) -> Array:
+        phi, rate = state[..., 0], state[..., 1]
+        inertia, change, slope = self._reduced(phi)
+        return np.stack([rate, -(change * rate**2 / 2 + slope / self.rate_unit**2) / inertia], axis=-1)
+
+    def _states(self, times: Array) -> Array:
+        """phi and phi' (times, 2) [rad, rad/s]."""
+        if not times.any():  # a mechanism needs no more than the start
+            return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
+        until = max(self.duration, float(times.max()))
+        return _integrated(self, until)(times * self.rate_unit).astype(float) * [1.0, self.rate_unit]
+
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        state = self._states(times)
+        phi, rate = state[:, 0], state[:, 1]
+        gain = self._rates(state / [1.0, self.rate_unit])[:, 1] * self.rate_unit**2
+        angles, centres, _ = self._placed(phi)
+        parts = []
+        for order in range(3):
+            bodies = []
+            for centre, angle in zip(centres, angles, strict=True):
+                by_time = [
+                    (part.value, part.first * rate, part.first * gain + part.second * rate**2)[order]
+                    for part in (centre, angle)
+                ]
+                bodies.append(np.column_stack([from_complex(by_time[0]), by_time[1]]))
+            parts.append(np.stack(bodies, axis=1))
+        return parts[0], parts[1], parts[2]
+
+    def mechanism(self) -> Mechanism:
+        pose, twist, _ = self.placement(np.zeros(1))
+        bodies = bodies_of(BODIES, self.masses, self.inertias, pose[0], twist[0])
+        own = [{name: (point.real, point.imag) for name, point in points.items()} for points in self._points]
+        joints = (
+            Pin("O", None, "K1", (0.0, 0.0), own[0]["O"]),
+            Pin("R", "K1", "K2", own[0]["R"], own[1]["R"]),
+            Pin("B", None, "K3", self.pivot_b, own[2]["B"]),
+            Pin("A5", None, "K5", self.pivot_a, own[4]["A"]),
+            Pin("E", "K5", "K4", own[4]["E"], own[3]["E"]),
+            Pin("A7", None, "K7", self.pivot_a, own[6]["A"]),
+            Pin("H", "K7", "K6", own[6]["H"], own[5]["H"]),
+            Pin("P3", "K3", "K2", own[2]["P"], own[1]["P"]),
+            Pin("P4", "K4", "K2", own[3]["P"], own[1]["P"]),
+            Pin("P6", "K6", "K2", own[5]["P"], own[1]["P"]),
+        )
+        forces = (
+            Spring("spring", None, "K3", self.pivot_c, own[2]["D"], self.stiffness, self.rest_length),
+            Torque("torque", None, "K1", self.torque),
+        )
+        return Mechanism(bodies, joints, (0.0, 0.0), forces)
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """1 while the joints of all three pairs are on the sides where they started (...,), -1 after one has folded."""
+        angle = pose[..., 2]
+        folds = (
+            (angle[..., 2] - QUARTER, angle[..., 1]),
+            (angle[..., 4], angle[..., 3] - QUARTER),
+            (angle[..., 6] - QUARTER, angle[..., 5]),
+        )
+        held = [side * np.sin(first - second) for (first, second), side in zip(folds, SIDES, strict=True)]
+        return np.where(np.min(held, axis=0) > 0, 1, -1)
+
+
+@lru_cache(maxsize=8)
+def _integrated(scene: Andrews, until: float) -> windows.Windows:
+    """Kept for all equal scenes, since samples of every number ask for it; of time in units of 1 / `rate_unit`."""
+
+    def accelerations(phi: Array, rate: Array) -> Array:
+        return scene._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
+
+    return windows.integrate(
+        accelerations, [scene.angle], [0.0], until * scene.rate_unit * (1 + 1e-15), 1.0, tolerance=TOLERANCE
+    )
+
+
+class Moving(NamedTuple):
+    """A quantity (...,) and its first two derivatives by one coordinate."""
+
+    value: Array
+    first: Array
+    second: Array
+
+    def plus(self, other: Moving) -> Moving:
+        """The sum of two."""
+        return Moving(*(a + b for a, b in zip(self, other, strict=True)))
+
+    def times(self, factor: complex) -> Moving:
+        """A fixed multiple."""
+        return Moving(*(factor * part for part in self))
+
+    def shifted(self, by: complex) -> Moving:
+        """With a constant added."""
+        return Moving(self.value + by, self.first, self.second)
+
+
+def direction(angle: Moving) -> Moving:
+    """exp(i angle), an angle in rad."""
+    unit = np.exp(1j * angle.value)
+    return Moving(unit, 1j * angle.first * unit, (1j * angle.second - angle.first**2) * unit)
+
+
+@dataclass(frozen=True)
+class Dyad(Valid):
+    """Bars of `first` and `second` [m], one after the other, from a pivot to a point.
+
+    `side` is 1 where the joint between them is to the left of the line from the pivot to the point, -1 to the right.
+    """
+
+    first: Positive
+    second: Positive
+    side: Sign
+
+    def angles(self, reach: Moving) -> tuple[Moving, Moving]:
+        """Directions of both bars [rad], from -pi to pi, for the complex vector `reach` [m] from pivot to point.
+
+        NaN where the bars don't reach. reach = a e^(i mu) + b e^(i nu), so the part of a derivative along one bar is
+        the turning of the other alone.
+        """
+        a, b = self.first, self.second
+        with np.errstate(invalid="ignore", divide="ignore"):
+            distance = np.abs(reach.value)
+            along = (distance**2 + a**2 - b**2) / (2 * distance)
+            across = self.side * np.sqrt(a**2 - along**2)
+            unit = reach.value / distance
+            one, other = unit * (along + 1j * across) / a, unit * (distance - along - 1j * across) / b
+            folded = np.imag(one * np.conj(other))  # sin(mu - nu): zero where the bars are in line
+
+            def rates(change: Array) -> tuple[Array, Array]:
+                along_b, along_a = np.real(change * np.conj(other)), np.real(change * np.conj(one))
+                return -along_b / (a * folded), along_a / (b * folded)
+
+            mu, nu = rates(reach.first)
+            mu_second, nu_second = rates(reach.second + a * one * mu**2 + b * other * nu**2)
+            return Moving(np.angle(one), mu, mu_second), Moving(np.angle(other), nu, nu_second)

@@ -1,0 +1,264 @@
+"""The closed form of a four-bar for many crank angles: angles, rates and accelerations, block by block in the cache.
+
+The diagonal B D, of length s, cuts the loop into the triangles A B D and B C D. In the frame whose x axis points from A
+to D, with d = |AD| and theta' = theta - arg(D), and as exact differences that keep their relative accuracy,
+
+    s^2               = (l1 - d)^2              + 4 l1 d sin^2(theta'/2)
+    U = (l2+l3)^2-s^2 = (l2+l3)^2 - (l1+d)^2    + 4 l1 d cos^2(theta'/2)
+                      = (l2+l3)^2 - (l1-d)^2    - 4 l1 d sin^2(theta'/2)
+    W = s^2-(l2-l3)^2 = (l1-d)^2 - (l2-l3)^2    + 4 l1 d sin^2(theta'/2)
+                      = (l1+d)^2 - (l2-l3)^2    - 4 l1 d cos^2(theta'/2)
+
+    A B D:  m = s^2 + l1^2 - d^2     n = s^2 + d^2 - l1^2     h = 2 l1 d sin(theta')     (4 areas, and the rate of s^2)
+    B C D:  p = s^2 + l3^2 - l2^2    r = s^2 + l2^2 - l3^2    q = sqrt(U W)              (4 areas, by Heron)
+
+q has the sign of the branch: + for C left of B -> D. Each pair is an angle: arg(m + i h) at B and arg(n + i h)
+at D in A B D, arg(r + i q) at B and arg(p + i q) at D in B C D; sums of these are beta and phi. With y = h / q, the
+chapter's (18.71), (18.70) and their derivatives are rational:
+
+    beta'  = (m - y p) / (2 s^2)                           phi'  = beta'  + y
+    beta'' = (h (1 - beta' - phi') - y' p) / (2 s^2)       phi'' = beta'' + y'
+    y'     = (h' - y^2 (l2^2 + l3^2 - s^2)) / q            h'    = 2 l1^2 - m
+
+A prime of beta, phi, y, h is a derivative by theta. One tangent of half the crank angle and two arctangents are all the
+transcendental functions needed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Interval = tuple[float, float]
+
+# All arrays of one block together fit a core's second-level cache; below about 1000 numpy's call overhead shows.
+BLOCK = 8192
+# A crank angle is a rounded number: one that misses the reachable range by this many roundings is taken as its end.
+ROUNDINGS = 16
+
+
+class Kinematics(NamedTuple):
+    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] of coupler and rocker, in the shape of the arguments."""
+
+    beta: Any
+    phi: Any
+    beta_dot: Any
+    phi_dot: Any
+    beta_ddot: Any
+    phi_ddot: Any
+
+
+class OutOfReach(Exception):
+    """Some angle in a block does not close the loop; `index` is the first, `undetermined` if B lies on D."""
+
+    def __init__(self, index: int, undetermined: bool = False) -> None:
+        super().__init__(index)
+        self.index = index
+        self.undetermined = undetermined
+
+
+def difference(*terms: float) -> float:
+    """The sum of terms, and exactly zero where it is nothing but the rounding of the terms themselves."""
+    total = math.fsum(terms)
+    return 0.0 if abs(total) <= 4 * np.finfo(float).eps * sum(abs(term) for term in terms) else total
+
+
+@dataclass(frozen=True)
+class Constants:
+    """What the closed form needs of the lengths l1, l2, l3 [m] and the ground vector A -> D."""
+
+    l1: float
+    l2: float
+    l3: float
+    d: float
+    heading: float  # rad, direction of A -> D
+    outer_far: float  # U at theta' = pi; negative: B can't go that far from D
+    outer_near: float  # U at theta' = 0; negative: no position at all
+    inner_near: float  # W at theta' = 0; negative: B can't come so near to D
+    inner_far: float  # W at theta' = pi; negative: no position at all
+
+    @classmethod
+    def of(cls, l1: float, l2: float, l3: float, ground: tuple[float, float]) -> Constants:
+        d = math.hypot(*ground)
+        return cls(
+            l1=l1,
+            l2=l2,
+            l3=l3,
+            d=d,
+            heading=math.atan2(ground[1], ground[0]),
+            outer_far=difference(l2, l3, -l1, -d) * (l2 + l3 + l1 + d),
+            outer_near=difference(l2, l3, -l1, d) * difference(l2, l3, l1, -d),
+            inner_near=difference(l1, -d, -l2, l3) * difference(l1, -d, l2, -l3),
+            inner_far=difference(l1, d, -l2, l3) * difference(l1, d, l2, -l3),
+        )
+
+    def crank_limits(self) -> tuple[Interval, ...] | None:
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        # theta' = 2 atan(sqrt(ratio)) where U or W vanishes; exact differences keep the digits near a change point.
+        outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
+        inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None
+        if outer is None and inner is None:
+            return None
+        if inner is None:
+            assert outer is not None
+            return ((self.heading - outer, self.heading + outer),)
+        if outer is None:
+            return ((self.heading + inner, self.heading + 2 * math.pi - inner),)
+        return ((self.heading - outer, self.heading - inner), (self.heading + inner, self.heading + outer))
+
+
+class Triangles(NamedTuple):
+    """A B D and B C D at crank angles (n,), in the letters of the formulas above [m^2]."""
+
+    square: Array  # s^2
+    m: Array
+    n: Array
+    h: Array
+    p: Array
+    r: Array
+    area: Array  # |q|
+
+
+def closed_form(
+    constants: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array, order: int
+) -> tuple[Array, ...]:
+    """The first 2 (order + 1) fields of Kinematics, flat, for flat theta (n,) and others of n or 1 elements.
+
+    Raises OutOfReach. At the ends of the reachable range rates and accelerations are not finite.
+    """
+    out = tuple(np.empty(theta.size) for _ in range(2 * (order + 1)))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for start in range(0, theta.size, BLOCK):
+            piece = slice(start, min(start + BLOCK, theta.size))
+            others = (value if value.size == 1 else value[piece] for value in (theta_dot, theta_ddot, branch))
+            try:
+                _fill([column[piece] for column in out], constants, theta[piece], *others)
+            except OutOfReach as refusal:
+                raise OutOfReach(start + refusal.index, refusal.undetermined) from None
+    return out
+
+
+def _fill(out: list[Array], c: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array) -> None:
+    """One block of `closed_form`, into as many columns as are given."""
+    triangles = _triangles(c, theta)
+    _fill_angles(out, c, triangles, theta, branch)
+    if len(out) == 2:
+        return
+    square, m, n, h, p, _, area = triangles
+    q, half = area if _all_one(branch) else branch * area, 0.5 / square
+    y = h / q
+    beta_1 = (m - y * p) * half
+    phi_1 = beta_1 + y
+    np.multiply(beta_1, theta_dot, out=out[2])
+    np.multiply(phi_1, theta_dot, out=out[3])
+    if len(out) == 4:
+        return
+    # 2 l1 d cos(theta'), from the shorter of the two bars: the square of the other would swamp it.
+    turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
+    y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
+    beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
+    phi_2 = beta_2 + y_1
+    np.multiply(beta_2, theta_dot**2, out=out[4])
+    np.multiply(phi_2, theta_dot**2, out=out[5])
+    if np.any(theta_ddot):
+        out[4] += beta_1 * theta_ddot
+        out[5] += phi_1 * theta_ddot
+
+
+def _triangles(c: Constants, theta: Array) -> Triangles:
+    """Raises OutOfReach where B C D doesn't close."""
+    sine, cosine, product = _half_angle(theta, c.heading)
+    fourfold = 4 * c.l1 * c.d
+    along = fourfold * sine
+    # From the end of the range where U, or W, is smaller: there it may vanish, and its digits must not cancel.
+    near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
+    across: Any = 0.0 if near_u and near_w else fourfold * cosine
+    u = c.outer_near - along if near_u else c.outer_far + across
+    w = c.inner_near + along if near_w else c.inner_far - across
+    square = along + (c.l1 - c.d) ** 2
+    u, w = _within_reach(c, u, w, square)
+    excess = (c.l3 - c.l2) * (c.l3 + c.l2)
+    return Triangles(
+        square=square,
+        m=along + 2 * c.l1 * (c.l1 - c.d),
+        n=along + 2 * c.d * (c.d - c.l1),
+        h=fourfold * product,
+        p=square + excess,
+        r=square - excess,
+        area=np.sqrt(u * w),
+    )
+
+
+def _half_angle(theta: Array, heading: float) -> tuple[Array, Array, Array]:
+    """sin^2 and cos^2 of theta'/2, theta' = theta - heading, and their sine times their cosine; from one tangent."""
+    half = np.tan(0.5 * theta)
+    if heading == 0:
+        square = half * half
+        scale = 1 / (square + 1)
+        return square * scale, scale, half * scale
+    turn_x, turn_y = math.cos(heading / 2), math.sin(heading / 2)
+    sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
+    product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
+    scale = 1 / (cosine + sine)
+    return sine * scale, cosine * scale, product * scale
+
+
+def _fill_angles(out: list[Array], c: Constants, triangles: Triangles, theta: Array, branch: Array) -> None:
+    """beta and phi (n,) [rad], continuous in theta, into the first two columns."""
+    _, m, n, h, p, r, area = triangles
+    # v is B - D, scaled, seen from the direction that it never turns away from by a right angle: D -> A, or A -> B if
+    # that is longer.
+    winding = c.l1 > c.d
+    vx, vy = (m, h) if winding else (n, -h)
+    # That turn and the triangle's angle add up to less than a whole turn: one arctangent, a quarter turn off its cut.
+    if not _all_one(branch):
+        p, r = branch * p, branch * r
+    wide_x, wide_y = vx * area, vy * area
+    beta = np.arctan2(wide_y - vx * r, vy * r + wide_x, out=out[0])
+    phi = np.arctan2(vx * p + wide_y, wide_x - vy * p, out=out[1])
+    quarter = branch * (math.pi / 2)
+    beta += quarter - math.pi if winding else quarter + c.heading
+    phi += -quarter if winding else math.pi - quarter + c.heading
+    if winding:
+        beta += theta
+        phi += theta
+
+
+def _all_one(branch: Array) -> bool:
+    return branch.size == 1 and branch.flat[0] == 1
+
+
+def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
+    """U and W, misses by rounding made exact zeros; raises OutOfReach unless every triangle closes."""
+    if not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
+        allowed = -ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
+        bad = ~(np.minimum(u, w) >= allowed)
+        if np.any(bad):
+            raise OutOfReach(int(np.argmax(bad)))
+        u, w = np.maximum(u, 0), np.maximum(w, 0)
+    if c.l1 == c.d and float(np.min(square)) == 0:
+        raise OutOfReach(int(np.argmin(square)), undetermined=True)
+    return u, w
+
+
+def grashof(crank: float, coupler: float, rocker: float, ground: float) -> str:
+    """The class by name, from the shortest bar s, the longest l and the others p, q; lengths [m].
+
+    s + l > p + q: triple-rocker (no bar turns fully). Equal up to the rounding of the lengths: change-point. Below:
+    double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; when that is
+    the rocker, it is the rocker that turns and the crank that swings.
+    """
+    bars = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
+    shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)
+    s, p, q, longest = (bars[name] for name in ranked)
+    excess = difference(s, longest, -p, -q)
+    if excess > 0:
+        return "triple-rocker"
+    if excess == 0:
+        return "change-point"
+    return {"ground": "double-crank", "coupler": "double-rocker"}.get(shortest, "crank-rocker")

@@ -1,0 +1,137 @@
+"""A four-bar left to itself: one coordinate along the curve of its configurations, which no crank limit interrupts.
+
+The chapter's rates (18.70), (18.71), times their denominator, are a direction t in the space of (theta, beta, phi)
+
+    t = (l2 l3 sin(phi - beta), l1 l3 sin(theta - phi), -l1 l2 sin(beta - theta))
+
+that keeps the loop closed and vanishes only at a change point (bars in line). With (theta, beta, phi)' = u t,
+kinetic energy I(q) u^2 / 2 and potential energy V(q), Lagrange's equation is I u' + u^2 (grad I . t) / 2 = -grad V . t.
+At a crank limit the first component of t passes zero: the crank turns back, the branch changes its sign, smoothly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.checks import InvalidMechanism, Positive, Sign, Valid, validated
+from reference.numerics import windows
+from reference.scenes.four_bar.linkage import FourBar
+
+Array = NDArray[np.float64]
+
+TOLERANCE = windows.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
+
+
+class BarAngles(NamedTuple):
+    """(times, 3) of crank, coupler, rocker: angles [rad], rates [rad/s], accelerations [rad/s^2]."""
+
+    angle: Array
+    rate: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True)
+class CurveMotion(Valid):
+    """Uniform bars of given masses [kg] under gravity [m/s^2], moving along the four-bar's configuration curve."""
+
+    four_bar: FourBar
+    masses: tuple[Positive, Positive, Positive]
+    gravity: tuple[float, float]
+
+    @validated
+    def start(self, theta: float, theta_dot: float, branch: Sign) -> Any:
+        """The state (theta, beta, phi, u) at a crank angle [rad] and rate [rad/s]; Unreachable, InvalidMechanism."""
+        beta, phi = self.four_bar.angles(theta, branch)
+        angle = self._closed(np.array([theta, beta, phi], dtype=np.longdouble))
+        along = self._direction(angle)[0]
+        if np.all(np.abs(self._direction(angle)) <= 1e-9 * max(self.four_bar.lengths) ** 2):
+            raise InvalidMechanism(
+                f"four-bar: crank angle {theta!r} is a change point; the motion from it is not unique"
+            )
+        if theta_dot == 0:
+            return np.append(angle, np.longdouble(0))
+        if abs(float(along)) <= 1e-7 * max(self.four_bar.lengths) ** 2:
+            raise InvalidMechanism(
+                f"four-bar: at crank angle {theta!r} the crank is at its limit and can't have the rate "
+                f"{theta_dot!r}; use 0"
+            )
+        return np.append(angle, np.longdouble(theta_dot) / along)
+
+    def motion(self, start: Any, until: float, stages: int = windows.STAGES) -> windows.Windows:
+        """Angles and rates of the three bars up to `until` [s] from a start, in extended precision.
+
+        Raises IntegrationFailed at a change point.
+        """
+        angle, u = start[:3], start[3]
+        rate = u * self._direction(angle)
+        shortest = min(self.four_bar.lengths)
+        unit = max(float(np.abs(rate).max()), math.sqrt(math.hypot(*self.gravity) / shortest)) or 1.0
+        return windows.integrate(self._accelerations, angle, rate, until, unit, stages, TOLERANCE)
+
+    def bar_angles(self, states: Any) -> BarAngles:
+        """Angles, rates and accelerations of the bars in states (times, 6) of `motion`."""
+        angle, rate = np.split(states, 2, axis=-1)
+        values = (angle, rate, self._accelerations(angle, rate))
+        return BarAngles(*(np.asarray(value, dtype=float) for value in values))
+
+    def at(self, start: Any) -> Any:
+        """The state (1, 6) of a start."""
+        return np.concatenate([start[:3], start[3] * self._direction(start[:3])])[None]
+
+    def _closed(self, angle: Any) -> Any:
+        """beta and phi of a closed loop, by Newton in extended precision: the start is known in double only."""
+        l1, l2, l3 = (np.longdouble(length) for length in self.four_bar.lengths)
+        x, y = (np.longdouble(value) for value in self.four_bar.ground)
+        theta, beta, phi = angle
+        for _ in range(3):
+            gap_x = l1 * np.cos(theta) + l2 * np.cos(beta) - l3 * np.cos(phi) - x
+            gap_y = l1 * np.sin(theta) + l2 * np.sin(beta) - l3 * np.sin(phi) - y
+            between = np.sin(phi - beta)
+            if abs(float(between)) < 1e-6:
+                break  # at a crank limit the double's closure is as good, and Newton's matrix is singular
+            beta, phi = (
+                beta - (gap_x * np.cos(phi) + gap_y * np.sin(phi)) / (l2 * between),
+                phi - (gap_x * np.cos(beta) + gap_y * np.sin(beta)) / (l3 * between),
+            )
+        return np.array([theta, beta, phi])
+
+    def _direction(self, angle: Any) -> Any:
+        return self._direction_and_bend(angle)[0]
+
+    def _direction_and_bend(self, angle: Any) -> tuple[Any, Any]:
+        """t and its derivative along itself (dt/dq) t, each (..., 3)."""
+        l1, l2, l3 = (np.longdouble(length) for length in self.four_bar.lengths)
+        factor = np.array([l2 * l3, l1 * l3, -l1 * l2])
+        # phi - beta, theta - phi, beta - theta
+        difference = np.roll(angle, 1, axis=-1) - np.roll(angle, -1, axis=-1)
+        direction = factor * np.sin(difference)
+        turning = np.roll(direction, 1, axis=-1) - np.roll(direction, -1, axis=-1)
+        return direction, factor * np.cos(difference) * turning
+
+    def _accelerations(self, angle: Any, rate: Any) -> Any:
+        """The second derivatives (..., 3) of the angles: u' t + u^2 (dt/dq) t, with u from the rates u t."""
+        l1, l2, _ = (np.longdouble(length) for length in self.four_bar.lengths)
+        m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
+        t, bend = self._direction_and_bend(angle)
+        u = np.sum(rate * t, axis=-1) / np.sum(t * t, axis=-1)
+        lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
+        own = lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])
+        cross = m2 * l1 * l2
+        between = angle[..., 1] - angle[..., 0]
+        coupling, fading = cross * np.cos(between), -cross * np.sin(between)
+        inertia = np.sum(own * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
+        inertia_slope = (
+            2 * np.sum(own * t * bend, axis=-1)
+            + coupling * (bend[..., 0] * t[..., 1] + t[..., 0] * bend[..., 1])
+            + fading * (t[..., 1] - t[..., 0]) * t[..., 0] * t[..., 1]
+        )
+        carried = lengths * np.array([m1 / 2 + m2, m2 / 2, m3 / 2])
+        force = np.longdouble(self.gravity[1]) * np.cos(angle) - np.longdouble(self.gravity[0]) * np.sin(angle)
+        pull = np.sum(carried * force * t, axis=-1)
+        change = (pull - u**2 * inertia_slope / 2) / inertia
+        return change[..., None] * t + u[..., None] ** 2 * bend

@@ -1,0 +1,180 @@
+"""The four-bar linkage in closed form: position, rates, accelerations, limits and forces (sample 18.15, 18.67-18.71).
+
+Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker; the
+chapter's "rod CD", whose direction must be read from D). A is the origin, D anywhere else. `branch` is +1 for C left of
+the directed line B -> D, as in the chapter's figure, -1 for the other branch (assembly mode).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, Positive, Sign, Signs, Valid, validated
+from reference.joints import Vector
+from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
+from reference.scenes.four_bar.forces import Densities, Forces, bar_forces
+from reference.scenes.four_bar.rate_integration import RateIntegration, integrate_rates
+
+
+class Unreachable(ValueError):
+    """A crank angle at which the loop can't close: the message names it and the range that is possible."""
+
+
+@dataclass(frozen=True)
+class FourBar(Valid):
+    """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
+
+    Every method broadcasts its arguments. Angles are continuous in theta (not wrapped) as long as the crank moves in
+    one reachable interval, for any theta and not only along a path; they wind with the crank if it is longer than AD.
+    The chapter's start, theta = pi/2, has beta = pi/4 and phi = 3 pi/4; the other branch's angles are counted from
+    the same direction of B seen from D.
+
+    Errors are a few roundings in regular positions. Near the end of a reachable interval, at a distance x [rad] from
+    it, angles leave their end value like sqrt(x), so that their error is about eps / sqrt(x), and sqrt(eps) = 1e-8 at
+    the end; rates grow like 1 / sqrt(x), with a relative error of eps / x, and at the end itself they are infinite or
+    NaN. Through a change point C is not determined by the crank, and each `branch` has a kink there. With crank = AD
+    and coupler = rocker, B meets D, where C is not determined at all: that crank angle is Unreachable, and across it
+    the angles jump by pi.
+
+    Raises InvalidMechanism for lengths not positive, D on A, or bars that can't be assembled at any crank angle;
+    methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or -1.
+    """
+
+    crank: Positive
+    coupler: Positive
+    rocker: Positive
+    ground: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.ground_length == 0:
+            raise InvalidMechanism(
+                f"four-bar: ground is {self.ground!r}; it must be a point (x, y) other than A = (0, 0)"
+            )
+        lengths = sorted([self.crank, self.coupler, self.rocker, self.ground_length])
+        if self._constants.outer_near < 0 or self._constants.inner_far < 0:
+            raise InvalidMechanism(
+                f"four-bar: crank {self.crank:.6g}, coupler {self.coupler:.6g}, rocker {self.rocker:.6g} and ground "
+                f"{self.ground_length:.6g} can't be assembled at any crank angle; the longest must be at most the sum "
+                f"of the others, {sum(lengths[:3]):.6g}"
+            )
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """Crank, coupler and rocker [m]."""
+        return self.crank, self.coupler, self.rocker
+
+    @property
+    def ground_length(self) -> float:
+        """The distance from A to D [m]."""
+        return math.hypot(*self.ground)
+
+    @cached_property
+    def _constants(self) -> Constants:
+        return Constants.of(*self.lengths, self.ground)
+
+    @validated
+    def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
+        """beta and phi [rad] in closed form; the chapter calls that impossible, and integrates rates instead."""
+        return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
+
+    @validated
+    def rates(self, theta: ArrayLike, theta_dot: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
+        """beta_dot (18.71) and phi_dot (18.70) [rad/s]."""
+        return self._evaluated(theta, theta_dot, 0.0, branch, order=1)[2:]  # type: ignore[return-value]
+
+    @validated
+    def accelerations(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
+    ) -> tuple[Any, Any]:
+        """beta_ddot and phi_ddot [rad/s^2]: the time derivative of (18.69), solved."""
+        return self.kinematics(theta, theta_dot, theta_ddot, branch)[4:]
+
+    @validated
+    def kinematics(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
+    ) -> Kinematics:
+        """All six at once: the fast way for many crank angles."""
+        return Kinematics(*self._evaluated(theta, theta_dot, theta_ddot, branch, order=2))
+
+    def _evaluated(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike, branch: ArrayLike, order: int
+    ) -> tuple[Any, ...]:
+        arguments = [np.asarray(value, dtype=float) for value in (theta, theta_dot, theta_ddot, branch)]
+        try:
+            shape = np.broadcast_shapes(*(value.shape for value in arguments))
+        except ValueError:
+            shapes = ", ".join(str(value.shape) for value in arguments)
+            raise InvalidMechanism(f"four-bar: arguments of the shapes {shapes} don't go together") from None
+        angle = np.broadcast_to(arguments[0], shape).ravel()
+        # Single numbers stay single: a block then multiplies by a scalar.
+        others = [
+            value.ravel() if value.size == 1 else np.broadcast_to(value, shape).ravel() for value in arguments[1:]
+        ]
+        try:
+            columns = closed_form(self._constants, angle, *others, order=order)
+        except OutOfReach as refusal:
+            raise self._refusal(float(angle[refusal.index]), refusal.undetermined) from None
+        return tuple(column.reshape(shape)[()] for column in columns)
+
+    def _refusal(self, theta: float, undetermined: bool) -> Unreachable:
+        if undetermined:
+            return Unreachable(f"four-bar: at crank angle {theta:.9g} rad B lies on D, and C is not determined")
+        ranges = " or ".join(f"[{low:.9g}, {high:.9g}]" for low, high in self.crank_limits() or ())
+        return Unreachable(
+            f"four-bar: at crank angle {theta:.9g} rad the loop can't close; "
+            f"possible is {ranges} rad, give or take whole turns"
+        )
+
+    def crank_limits(self) -> tuple[Interval, ...] | None:
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        return self._constants.crank_limits()
+
+    def grashof(self) -> str:
+        """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point."""
+        return grashof(*self.lengths, self.ground_length)
+
+    @validated
+    def forces(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        theta_ddot: ArrayLike = 0.0,
+        branch: Signs = 1,
+        density: Densities = 1.0,
+        gravity: Vector = (0.0, -9.81),
+    ) -> Forces:
+        """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] that this motion of uniform bars needs.
+
+        density [kg/m], one number or three (crank, coupler, rocker); gravity [m/s^2]. A pin's force acts on its second
+        body: A ground on crank, B crank on coupler, C coupler on rocker, D ground on rocker. The torque acts on the
+        crank from the ground. At a crank limit they are not finite.
+        """
+        motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
+        return bar_forces(
+            self.lengths,
+            density,
+            gravity,
+            (np.asarray(theta, dtype=float), motion.beta, motion.phi),
+            (np.asarray(theta_dot, dtype=float), motion.beta_dot, motion.phi_dot),
+            (np.asarray(theta_ddot, dtype=float), motion.beta_ddot, motion.phi_ddot),
+        )
+
+    @validated
+    def integrate_rates(
+        self,
+        t: ArrayLike,
+        theta_dot: float = 10.0,
+        theta: float = math.pi / 2,
+        branch: Sign = 1,
+        **settings: Any,
+    ) -> RateIntegration:
+        """The chapter's pseudocode from the given start, a method under test; settings as in `rate_integration`."""
+        beta, phi = self.angles(theta, branch)
+        return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)

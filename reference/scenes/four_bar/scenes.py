@@ -1,0 +1,303 @@
+"""The four-bar as scenes: its crank driven at a constant rate, the whole linkage left to its weight, and where methods
+fail: a parallelogram through its change points, and a crank driven into its limit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import InvalidMechanism, Positive, Sign
+from reference.joints import Drive, Joint, Pin, Vector, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+from reference.numerics.windows import COARSE_STAGES, STAGES, Windows
+from reference.scene import Scene
+from reference.scenes.four_bar.forces import Densities, three_densities
+from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FourBarScene(Scene):
+    """Uniform bars as bodies "crank", "coupler", "rocker", pins "A", "B", "C", "D" between them in that order.
+
+    Body frames have their x axis along the bar (A -> B, B -> C, D -> C) and their origin at its middle; body angles are
+    theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] of all bars or of
+    the three, gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
+    """
+
+    crank: Positive = 0.4
+    coupler: Positive = 0.4 * math.sqrt(2)
+    rocker: Positive = 0.8 * math.sqrt(2)
+    ground: Vector = (1.2, 0.0)
+    branch: Sign = 1
+    start: float = math.pi / 2
+    rate: float = 0.0
+    density: Densities = 1.0
+    gravity: Vector = (0.0, -9.81)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.four_bar.angles(self.start, self.branch)
+
+    @property
+    def four_bar(self) -> FourBar:
+        """The linkage's equations."""
+        return FourBar(self.crank, self.coupler, self.rocker, self.ground)
+
+    @property
+    def masses(self) -> tuple[float, float, float]:
+        """Of crank, coupler and rocker [kg]."""
+        densities = three_densities(self.density)
+        return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
+        angle = pose[..., 2]
+        return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)
+
+    def _mechanism(self, motion: BarAngles, *drives: Joint) -> Mechanism:
+        pose, twist, _ = self._bodies(motion)
+        names, lengths = ("crank", "coupler", "rocker"), self.four_bar.lengths
+        masses = np.array(self.masses)
+        bodies = bodies_of(names, masses, masses * np.array(lengths) ** 2 / 12, pose[0], twist[0])
+        crank, coupler, rocker = (length / 2 for length in lengths)
+        pins = (
+            Pin("A", None, "crank", (0.0, 0.0), (-crank, 0.0)),
+            Pin("B", "crank", "coupler", (crank, 0.0), (-coupler, 0.0)),
+            Pin("C", "coupler", "rocker", (coupler, 0.0), (rocker, 0.0)),
+            Pin("D", None, "rocker", self.ground, (-rocker, 0.0)),
+        )
+        return Mechanism(bodies, pins + drives, self.gravity)
+
+    def _bodies(self, motion: BarAngles) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 3 bodies, 3) of the bars in a motion of their angles."""
+        bars = np.array(self.four_bar.lengths) * np.exp(1j * motion.angle)
+        velocities = 1j * motion.rate * bars
+        accelerations = (1j * motion.acceleration - motion.rate**2) * bars
+        pose, twist, acceleration = (np.empty((*motion.angle.shape, 3)) for _ in range(3))
+        for out, ends, origin, angle in (
+            (pose, bars, complex(*self.ground), motion.angle),
+            (twist, velocities, 0j, motion.rate),
+            (acceleration, accelerations, 0j, motion.acceleration),
+        ):
+            middles = (ends[:, 0] / 2, ends[:, 0] + ends[:, 1] / 2, origin + ends[:, 2] / 2)
+            centre = np.stack(middles, axis=-1)
+            out[..., 0], out[..., 1], out[..., 2] = centre.real, centre.imag, angle
+        return pose, twist, acceleration
+
+
+@dataclass(frozen=True)
+class DrivenFourBar(FourBarScene):
+    """The chapter's sample: the crank turns at a constant rate. Closed form throughout; `revolutions` of the crank.
+
+    An error of a stepping method has no freedom to grow in, so the horizon is the whole duration. `motion` raises
+    Unreachable if the crank can't turn that far.
+    """
+
+    name: ClassVar[str] = "driven_four_bar"
+    source: ClassVar[str] = "sample 18.15, eqs. 18.67-18.71, fig. 18.66"
+
+    rate: float = 10.0
+    revolutions: Positive = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.rate == 0:
+            raise InvalidMechanism(f"scene {self.name!r}: rate is 0; a driven crank needs a rate other than zero")
+
+    @property
+    def duration(self) -> float:  # type: ignore[override]
+        return self.revolutions * 2 * math.pi / abs(self.rate)
+
+    @property
+    def horizon(self) -> float:  # type: ignore[override]
+        return self.duration
+
+    def mechanism(self) -> Mechanism:
+        drive = Drive("drive", None, "crank", self.rate, self.start)
+        return self._mechanism(self._angles(np.zeros(1)), drive)
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, _ = self._bodies(self._angles(times))
+        forces = self.four_bar.forces(
+            self.start + self.rate * times, self.rate, 0.0, self.branch, self.density, self.gravity
+        )
+        return Trajectory(times, pose, twist, np.concatenate([*forces[:4], forces.torque[:, None]], axis=-1))
+
+    def _angles(self, times: Array) -> BarAngles:
+        theta = self.start + self.rate * times
+        motion = self.four_bar.kinematics(theta, self.rate, 0.0, self.branch)
+        return BarAngles(
+            np.stack([theta, motion.beta, motion.phi], axis=-1),
+            np.stack([np.full_like(theta, self.rate), motion.beta_dot, motion.phi_dot], axis=-1),
+            np.stack([np.zeros_like(theta), motion.beta_ddot, motion.phi_ddot], axis=-1),
+        )
+
+
+@dataclass(frozen=True)
+class FreeFourBar(FourBarScene):
+    """The linkage under its weight, from rest or with a crank rate, through crank limits if it meets them.
+
+    One freedom and a constant energy fix the path of the motion, so that an error can only be a drift of energy and of
+    time, which grow about linearly: the horizon is the whole duration. (Not so if the energy just suffices to reach a
+    position of rest, or at a change point.)
+    """
+
+    name: ClassVar[str] = "free_four_bar"
+    source: ClassVar[str] = "sample 18.15 with the drive removed; truth by eqs. 18.70-18.71 with Lagrange's equation"
+
+    duration: Positive = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._curve.start(self.start, self.rate, self.branch)
+
+    @property
+    def horizon(self) -> float:  # type: ignore[override]
+        return self.duration
+
+    @property
+    def _curve(self) -> CurveMotion:
+        return CurveMotion(self.four_bar, self.masses, self.gravity)
+
+    def mechanism(self) -> Mechanism:
+        return self._mechanism(self._angles(np.zeros(1)))
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._bodies(self._angles(times))
+        return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """The truth's own error (times,): the largest change [m, rad, m/s, rad/s] of a pose or twist when it is
+        computed again by another rule; rounding to double is a part of it."""
+        times = self.times(t)
+        pairs = zip(self._bodies(self._angles(times)), self._bodies(self._angles(times, COARSE_STAGES)), strict=True)
+        return np.max([np.abs(one - other).max(axis=(1, 2)) for one, other in list(pairs)[:2]], axis=0)
+
+    def _angles(self, times: Array, stages: int = STAGES) -> BarAngles:
+        curve = self._curve
+        start = curve.start(self.start, self.rate, self.branch)
+        if not times.any():  # a mechanism needs no more than the start
+            return curve.bar_angles(np.repeat(curve.at(start), len(times), axis=0))
+        try:
+            return curve.bar_angles(_integrated(self, max(self.duration, float(times.max())), stages)(times))
+        except ArithmeticError as failure:
+            if self.four_bar.grashof() != "change-point":
+                raise
+            raise Unreachable(
+                f"scene {self.name!r}: with these lengths all bars can lie in line, and the motion comes to that "
+                f"change point, beyond which two motions are possible and none is the truth ({failure})"
+            ) from None
+
+
+@lru_cache(maxsize=8)
+def _integrated(scene: FreeFourBar, until: float, stages: int) -> Windows:
+    """Kept for all equal scenes, since samples of every number ask for it."""
+    curve = scene._curve
+    return curve.motion(curve.start(scene.start, scene.rate, scene.branch), until, stages)
+
+
+@dataclass(frozen=True)
+class SpinningFourBar(FreeFourBar):
+    """The free linkage with a crank rate at which its bars' own inertia outweighs gravity."""
+
+    name: ClassVar[str] = "spinning_four_bar"
+
+    rate: float = 10.0
+
+
+# Within this of a change point (the sine of the transmission angle) the rows are as good as dependent, and the
+# reactions of ideal rigid bars are not determined.
+IN_LINE = 1e-6
+
+
+@dataclass(frozen=True)
+class Parallelogram(DrivenFourBar):
+    """Crank and rocker equal, coupler and ground equal: twice a revolution all bars lie in line.
+
+    There two motions satisfy the joints, parallel bars and crossed ones. The truth is the one that is smooth: the
+    coupler stays parallel to the ground. `branch` can't express it, as C passes from one side of B -> D to the other.
+    """
+
+    name: ClassVar[str] = "parallelogram"
+    source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
+
+    crank: Positive = 0.4
+    coupler: Positive = 1.2
+    rocker: Positive = 0.4
+    ground: Vector = (1.2, 0.0)
+    revolutions: Positive = 2.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.crank != self.rocker or not math.isclose(self.coupler, math.hypot(*self.ground), rel_tol=1e-15):
+            raise InvalidMechanism(
+                f"parallelogram: crank {self.crank!r} and rocker {self.rocker!r} must be equal, and so must coupler "
+                f"{self.coupler!r} and ground {math.hypot(*self.ground)!r}"
+            )
+
+    def _motion(self, times: Array) -> Trajectory:
+        """Reactions are NaN where the bars are in line: rigid bars then share them in no definite way."""
+        angles = self._angles(times)
+        pose, twist, acceleration = self._bodies(angles)
+        reaction = np.full((len(times), 9), np.nan)
+        apart = np.abs(np.sin(angles.angle[:, 2] - angles.angle[:, 1])) > IN_LINE
+        reaction[apart] = self.mechanism().reaction(pose[apart], acceleration[apart])
+        return Trajectory(times, pose, twist, reaction)
+
+    def _angles(self, times: Array) -> BarAngles:
+        theta = self.start + self.rate * times
+        still = np.zeros_like(theta)
+        heading = np.full_like(theta, math.atan2(self.ground[1], self.ground[0]))
+        rate = np.full_like(theta, self.rate)
+        return BarAngles(
+            np.stack([theta, heading, theta], axis=-1),
+            np.stack([rate, still, rate], axis=-1),
+            np.zeros((len(theta), 3)),
+        )
+
+
+@dataclass(frozen=True)
+class OverdrivenFourBar(DrivenFourBar):
+    """A triple-rocker whose crank is driven beyond what the other bars can follow: `motion` refuses from there."""
+
+    name: ClassVar[str] = "overdriven_four_bar"
+    source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"
+
+    crank: Positive = 0.8
+    coupler: Positive = 0.5
+    rocker: Positive = 0.5
+    start: float = 0.0
+    rate: float = 4.0
+    revolutions: Positive = 0.5
+
+    def _motion(self, times: Array) -> Trajectory:
+        """Raises Unreachable beyond the stopping time, also where the crank's angle alone could be reached again."""
+        motion = super()._motion(times)
+        late = times[times > self.stopping_time * (1 + 1e-12)]
+        if late.size:
+            raise Unreachable(
+                f"scene {self.name!r}: at {float(late[0])!r} s the crank has met its limit, at "
+                f"{self.stopping_time:.9g} s, and can't go on; earlier times are possible"
+            )
+        return motion
+
+    @property
+    def stopping_time(self) -> float:
+        """When the crank meets its limit [s]; infinite if it never does."""
+        limits = self.four_bar.crank_limits()
+        if limits is None:
+            return math.inf
+        turn = 2 * math.pi
+        ends = [bound for interval in limits for bound in interval]
+        return min(math.copysign(1, self.rate) * (end - self.start) % turn for end in ends) / abs(self.rate)

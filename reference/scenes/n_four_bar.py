@@ -1,0 +1,187 @@
+"""N four-bars side by side, the benchmark whose one freedom becomes N + 1 twice a turn: an exact motion by symmetry.
+
+N + 1 cranks of length l stand on pivots l apart and carry N couplers of length l; uniform bars of mass m. In the
+symmetric motion all cranks have one angle and the couplers only translate, so with phi from the downward vertical
+
+    T = (4N + 1)/6 m l^2 phi'^2,   V = -(3N + 1)/2 m g l cos(phi),   phi'' = -f^2 sin(phi),  f^2 = 3(3N + 1) g / (2(4N
+    + 1) l):
+
+the whole chain is one pendulum, and `Pendulum` has it exactly. When the cranks lie along the couplers, phi = +-90
+degrees, N rows depend on the others and N more freedoms open. There, for N > 1, the cranks' own balances disagree (an
+inner crank carries twice the coupler weight of an outer one), and the forces along the couplers that keep them
+together grow like 1/cos of the angle from upright: they have no limit at the singular position.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.checks import Count, NonNegative, Positive, require_room, validated
+from reference.joints import Joint, Pin, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+from reference.plane import rotation_acceleration, rotation_velocity
+from reference.scene import Scene
+from reference.scenes.pendulum.link import Pendulum, direction_of
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NFourBar(Scene):
+    """`loops` N, `length` [m] of every bar and of the ground between pivots, `mass` [kg] of every bar, gravity [m/s^2].
+
+    Starts upright with the first crank's top moving at `speed` [m/s] to +x. Bodies: cranks 0..N, then couplers 0..N-1.
+    """
+
+    name: ClassVar[str] = "n_four_bar_2"
+    source: ClassVar[str] = (
+        "IFToMM library of computational benchmark problems, A02 N-four-bar; section 18.5, closed chains"
+    )
+    loops: Count = 2
+    length: Positive = 1.0
+    mass: Positive = 1.0
+    gravity: Positive = 9.81
+    speed: float = 1.0
+    duration: Positive = 10.0
+    horizon: Positive = (
+        10.0  # of the symmetric motion, a pendulum; what an engine does at a singular position is another matter
+    )
+
+    @cached_property
+    def pendulum(self) -> Pendulum:
+        """Of the cranks' common angle, upright at the start: moving to +x at the top is clockwise."""
+        n = self.loops
+        frequency = math.sqrt(3 * (3 * n + 1) * self.gravity / (2 * (4 * n + 1) * self.length))
+        return Pendulum(frequency, math.pi, -self.speed / self.length)
+
+    @property
+    def period(self) -> float:
+        """A whole turn of the cranks [s]; infinite when they never leave the top."""
+        return self.pendulum.period if self.speed else math.inf
+
+    @validated
+    def singular_times(self, until: NonNegative) -> Array:
+        """When, in [0, until] s, the cranks lie along the couplers: one freedom becomes N + 1."""
+        if not self.speed:
+            return np.zeros(0)
+        sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
+        return np.sort(np.concatenate(sides))
+
+    def _placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 2N + 1, 3)."""
+        down = direction_of(angle)
+        velocity, linear = rotation_velocity(rate, down), rotation_acceleration(rate, acceleration, down)
+        cranks, couplers = self.loops + 1, self.loops
+        size = self.length
+
+        def bodies(point: Array, turn: Array) -> Array:
+            out = np.zeros((len(angle), cranks + couplers, 3))
+            out[:, :cranks, :2] = 0.5 * size * point[:, None]
+            out[:, :cranks, 2] = turn[:, None]
+            out[:, cranks:, :2] = size * point[:, None]
+            return out
+
+        pose = bodies(down, angle - math.pi / 2)
+        pose[:, :cranks, 0] += size * np.arange(cranks)
+        pose[:, cranks:, 0] += size * (np.arange(couplers) + 0.5)
+        return pose, bodies(velocity, rate), bodies(linear, acceleration)
+
+    def mechanism(self) -> Mechanism:
+        state = (value[None] for value in (np.array(math.pi), np.array(self.pendulum.rate), np.array(0.0)))
+        pose, twist, _ = self._placement(*state)
+        names = [f"crank {i}" for i in range(self.loops + 1)] + [f"coupler {i}" for i in range(self.loops)]
+        same = np.full(len(names), self.mass)
+        bodies = bodies_of(names, same, same * self.length**2 / 12, pose[0], twist[0])
+        half = self.length / 2
+        joints: list[Joint] = [
+            Pin(f"A{i}", None, f"crank {i}", (i * self.length, 0.0), (-half, 0.0)) for i in range(self.loops + 1)
+        ]
+        for i in range(self.loops):
+            joints.append(Pin(f"B{i} right", f"crank {i}", f"coupler {i}", (half, 0.0), (-half, 0.0)))
+            joints.append(Pin(f"B{i + 1} left", f"crank {i + 1}", f"coupler {i}", (half, 0.0), (half, 0.0)))
+        return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
+
+    def _motion(self, times: Array) -> Trajectory:
+        require_room(f"scene {self.name!r}: a trajectory", (len(times), 2 * self.loops + 1, 3))
+        # The double nearest to pi is not quite the top, from which a chain at rest must not fall.
+        still = np.zeros(len(times))
+        angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (still + math.pi, still, still)
+        pose, twist, _ = self._placement(angle, rate, acceleration)
+        return Trajectory(times, pose, twist, self.forces(angle, rate, acceleration))
+
+    @validated
+    def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
+        """The reactions (times, rows) [N] in closed form: near a singular position they are large, not inaccurate.
+
+        A coupler that doesn't turn has equal vertical forces at its ends. A crank's balance about its pivot then gives
+        the horizontal force on its top, and going along the chain each coupler's balance gives the next.
+        """
+        n, m, size = self.loops, self.mass, self.length
+        _, _, moving = self._placement(angle, rate, acceleration)
+        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # what its two pins must give together
+        crank = m * (moving[:, 0, :2] + np.array([0.0, self.gravity]))
+        down = direction_of(angle)
+        top = np.zeros((len(angle), n + 1, 2))  # what the couplers do to each crank's top
+        top[:, :, 1] = -coupler[:, None, 1] * np.where(np.arange(n + 1) % n == 0, 0.5, 1.0)
+        # I phi'' = l down x top + (l/2) down x (m g): solved for the horizontal part, whose lever is -l down_y.
+        moment = m * size**2 / 3 * acceleration + 0.5 * m * self.gravity * size * down[:, 0]
+        top[:, :, 0] = (size * down[:, 0, None] * top[:, :, 1] - moment[:, None]) / (size * down[:, 1, None])
+        out = np.zeros((len(angle), 2 * (3 * n + 1)))
+        out[:, : 2 * (n + 1)] = (crank[:, None] - top).reshape(len(angle), -1)
+        left = np.zeros(len(angle))  # along x, the force of coupler i - 1 on the top of crank i
+        for i in range(n):
+            first = 2 * (n + 1) + 4 * i
+            on_coupler = -(top[:, i, 0] - left)
+            out[:, first], out[:, first + 1] = on_coupler, 0.5 * coupler[:, 1]
+            out[:, first + 2], out[:, first + 3] = coupler[:, 0] - on_coupler, 0.5 * coupler[:, 1]
+            left = -(coupler[:, 0] - on_coupler)
+        return out
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """+1 while every loop is a parallelogram, -1 once one has folded: its coupler then lies on one of its cranks.
+
+        Equal bars fold in two ways: one crank lies along the ground and the other under the coupler. The way whose
+        angles fit best is taken; at a singular position all fit, and it is +1.
+        """
+        cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
+        left, right = cranks[..., :-1], cranks[..., 1:]
+        parallel = 2 - np.cos(couplers) - np.cos(left - right)
+        folded_left = 2 - np.cos(left) - np.cos(couplers - right)  # the first crank's top on the second pivot
+        folded_right = 2 + np.cos(right) + np.cos(couplers - left)  # the second crank's top on the first pivot
+        return np.where(np.all(parallel <= np.minimum(folded_left, folded_right), axis=-1), 1, -1)
+
+
+@dataclass(frozen=True)
+class TenFourBars(NFourBar):
+    """Ten loops."""
+
+    name: ClassVar[str] = "n_four_bar_10"
+    loops: Count = 10
+
+    @property
+    def samples(self) -> int:
+        """Twenty a second, as in the benchmark."""
+        return max(1, round(20 * self.duration))
+
+
+@dataclass(frozen=True)
+class FortyFourBars(NFourBar):
+    """The benchmark's original size and time: N = 40, 20 s."""
+
+    name: ClassVar[str] = "n_four_bar_40"
+    loops: Count = 40
+    duration: Positive = 20.0
+    horizon: Positive = 20.0
+
+    @property
+    def samples(self) -> int:
+        """Five a second, a quarter of the benchmark's: telling 242 reactions costs more than the motion."""
+        return max(1, round(5 * self.duration))

@@ -1,0 +1,205 @@
+"""One link under gravity, exactly: swinging, whirling and on the separatrix between; and the classical point pendulum.
+
+angle'' = -f^2 sin(angle), the angle from the downward vertical, counter-clockwise. With s = sin(angle/2) and p =
+rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
+
+    k < 1, swinging:  sin(angle/2) = k sn(f t + c, k),  rate = 2 f k cn,
+    k > 1, whirling:  angle/2 = am(k f t + c, 1/k),     rate = 2 f k dn,
+    k = 1, separatrix: both, with sn = tanh.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import LARGEST, NonNegative, Positive, Valid, require_room, validated
+from reference.joints import Pin
+from reference.mechanism import Body, Mechanism
+from reference.numerics.elliptic import incomplete, jacobi, quarter_period
+from reference.plane import rotation_acceleration, rotation_velocity
+from reference.scene import Poses, Scene
+from reference.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pendulum(Valid):
+    """The exact motion from any start: `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t =
+    0.
+
+    Error of the angle: a few 1e-16 (1 + f t) away from the separatrix. Next to it the motion depends on 1 - k^2, which
+    the start's own rounding fixes only to about 1e-16: the time of each passage of the top is then uncertain by about
+    1e-16 / |1 - k^2| / f, by whatever method. A start at rest keeps all digits: 1 - k^2 is then cos(angle/2)^2.
+    """
+
+    frequency: Positive
+    angle: float
+    rate: float = 0.0
+
+    @cached_property
+    def _start(self) -> tuple[float, float, float, float, float]:
+        """(direction, whole turns, s, c, p) with the rate made positive: |p|, and s, c of the nearest turn."""
+        direction = -1.0 if self.rate < 0 else 1.0
+        rest = math.remainder(self.angle, 2 * math.pi)
+        turns = round((self.angle - rest) / (2 * math.pi))
+        sine, cosine = math.sin(rest / 2), math.cos(rest / 2)
+        return direction, float(turns), direction * sine, cosine, abs(self.rate) / (2 * self.frequency)
+
+    @cached_property
+    def excess(self) -> float:
+        """k^2 - 1 = (p - c)(p + c) [1]: below zero it swings, above it whirls, at zero it climbs to the top for
+        ever.
+        """
+        _, _, _, cosine, p = self._start
+        return (p - cosine) * (p + cosine)
+
+    @cached_property
+    def modulus(self) -> float:
+        """k [1]."""
+        _, _, sine, _, p = self._start
+        return math.hypot(sine, p)
+
+    @property
+    def kind(self) -> str:
+        """'swinging', 'whirling' or 'separatrix'."""
+        return "swinging" if self.excess < 0 else "whirling" if self.excess > 0 else "separatrix"
+
+    @cached_property
+    def _elliptic(self) -> tuple[float, float, float]:
+        """(speed of the argument [1/s], its start c, complementary parameter)."""
+        _, _, sine, cosine, p = self._start
+        if self.excess > 0:
+            complement = self.excess / self.modulus**2
+            return self.modulus * self.frequency, float(incomplete(sine, cosine, complement)), complement
+        complement = -self.excess
+        start = float(incomplete(sine, p, complement)) if self.modulus > 0 else 0.0
+        return self.frequency, start, complement
+
+    @cached_property
+    def period(self) -> float:
+        """A swing to and fro, or a whole turn [s]; infinite on the separatrix."""
+        speed, _, complement = self._elliptic
+        return (2 if self.excess > 0 else 4) * quarter_period(complement) / speed
+
+    @validated
+    def motion(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """Angle [rad] (not wrapped), rate [rad/s] and acceleration [rad/s^2] at times t [s] of any sign."""
+        direction, turns, *_ = self._start
+        speed, start, complement = self._elliptic
+        t, cycles = np.asarray(t, dtype=float), np.zeros(np.shape(t))
+        if math.isfinite(self.period):
+            within = np.remainder(t, self.period)  # exact in floating point: only the period's own rounding is left
+            t, cycles = within, np.round((t - within) / self.period)
+        sn, cn, dn, amplitude = jacobi(speed * t + start, complement)
+        if self.excess > 0:
+            half, rate, sine = amplitude + math.pi * cycles, dn, 2 * sn * cn
+        else:
+            half, rate, sine = np.arctan2(self.modulus * sn, dn), cn, 2 * self.modulus * sn * dn
+        factor = 2 * self.frequency * self.modulus
+        angle = direction * 2 * half + 2 * math.pi * turns
+        return angle, direction * factor * rate, -direction * self.frequency**2 * sine
+
+    @validated
+    def passages(self, angle: float, until: NonNegative) -> Array:
+        """The times [s] in [0, until] at which the pendulum stands at `angle` [rad], whole turns apart included."""
+        direction, *_ = self._start
+        speed, start, complement = self._elliptic
+        rest = direction * math.remainder(angle, 2 * math.pi)
+        sine, cosine = math.sin(rest / 2), math.cos(rest / 2)
+        if self.excess < 0:
+            if abs(sine) >= self.modulus:
+                return np.zeros(0)
+            cosine = math.sqrt((self.modulus - sine) * (self.modulus + sine))
+        first = float(incomplete(sine, cosine, complement))
+        arguments = np.array([first])
+        if math.isfinite(self.period):
+            cycle = speed * self.period
+            bases = [first] if self.excess > 0 else [first, cycle / 2 - first]
+            turns = until / self.period + 4
+            require_room("Pendulum.passages: the times", (len(bases), math.ceil(min(turns, LARGEST))))
+            arguments = np.add.outer(bases, cycle * np.arange(-2, math.ceil(turns) - 2)).ravel()
+        times = np.sort((arguments - start) / speed)
+        return times[(times >= 0) & (times <= until)]
+
+
+def direction_of(angle: NDArray[Any]) -> Any:
+    """From the pin down a link (..., 2) [1], for angles from the downward vertical, counter-clockwise [rad]."""
+    return np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
+
+
+@dataclass(frozen=True)
+class BarPendulum(Scene):
+    """A uniform bar on a fixed pin at the origin: length [m], mass [kg], gravity [m/s^2], start angle [rad], rate
+    [rad/s].
+    """
+
+    name: ClassVar[str] = "pendulum_1"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum (1 link)"
+    length: Positive = 1.0
+    mass: Positive = 1.0
+    gravity: Positive = 9.81
+    angle: float = 2.0
+    rate: float = 0.0
+    duration: Positive = 10.0
+    horizon: Positive = 10.0  # not chaotic: an error in the energy makes the phase drift in proportion to time
+
+    @cached_property
+    def pendulum(self) -> Pendulum:
+        """The bar's angle: f^2 = m g (l/2) / (m l^2/3)."""
+        return Pendulum(math.sqrt(1.5 * self.gravity / self.length), self.angle, self.rate)
+
+    def mechanism(self) -> Mechanism:
+        pose, twist, _ = self._bar(np.zeros(1))
+        inertia = self.mass * self.length**2 / 12
+        bar = Body("link 1", self.mass, inertia, tuple(pose[0].tolist()), tuple(twist[0].tolist()))
+        joint = Pin("joint 1", None, "link 1", (0.0, 0.0), (-self.length / 2, 0.0))
+        return Mechanism((bar,), (joint,), (0.0, -self.gravity))
+
+    def _bar(self, t: Array) -> tuple[Array, Array, Array]:
+        """Pose, twist and acceleration of the centre of mass (times, 3)."""
+        angle, rate, acceleration = self.pendulum.motion(t)
+        arm = self.length / 2 * direction_of(angle)
+        return (
+            np.column_stack([arm, angle - math.pi / 2]),
+            np.column_stack([rotation_velocity(rate, arm), rate]),
+            np.column_stack([rotation_acceleration(rate, acceleration, arm), acceleration]),
+        )
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self._bar(times)
+        reaction = self.mass * (acceleration[:, :2] + np.array([0.0, self.gravity]))
+        return Trajectory(times, pose[:, None], twist[:, None], reaction)
+
+
+@dataclass(frozen=True)
+class PointPendulum(BarPendulum):
+    """The classical point pendulum from horizontal, a test of phase: 845 periods in 2000 s (IFToMM benchmark A01).
+
+    A rigid body can't be a point. A uniform bar of 3/2 the length has its centre of oscillation (Huygens) where the
+    point mass is, and swings exactly as it does; the benchmark's output is that point of the bar, `bob`.
+    """
+
+    name: ClassVar[str] = "point_pendulum"
+    source: ClassVar[str] = "IFToMM library of computational benchmark problems, A01 simple pendulum; section 18.5"
+    length: Positive = 1.5
+    angle: float = math.pi / 2
+    duration: Positive = 2000.0
+    horizon: Positive = 2000.0
+
+    @property
+    def samples(self) -> int:
+        """Two a second, as in the benchmark: a hundred a second would be 200,000."""
+        return max(1, round(2 * self.duration))
+
+    @validated
+    def bob(self, pose: Poses) -> Array:
+        """Where the point mass is (..., 2) [m], for poses (..., 1, 3): 2/3 of the bar from the pin."""
+        angle = pose[..., 0, 2] + math.pi / 2
+        return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

@@ -1,0 +1,288 @@
+"""A person on one foot, as trunk, thighs and shanks: an open chain of five links that falls without a muscle.
+
+A standing foot rests on the ground and is part of it, so its shank is the leg without the foot; a lifted foot goes with
+its shank. The ankles are pins in the ground, at y = 0.
+
+The truth uses as many coordinates as there are freedoms, and no joint force (embedding): every pose is a function of
+them, velocities V = T u', and T^T M T u'' = T^T (f - M dT/dt u'). On one foot u are the five angles. On two
+feet they are the hip and the trunk's angle: each leg follows from the hip by the intersection of two circles.
+
+Upright with all segments in line is an equilibrium. Of the five modes of small motions about it two swing, both mostly
+of the lifted leg (4.1 and 9.3 rad/s), and three grow, the fastest by e in 0.03 s: the standing knee.
+
+Segments are fractions of the body's mass and height (D. A. Winter, Biomechanics and Motor Control of Human Movement,
+4th edition, Wiley 2009): masses, centres and radii of gyration from table 4.1 (after Dempster 1955), lengths from
+figure 4.1 (after Drillis and Contini 1966). The trunk is Winter's HAT: head, arms and trunk, between hip and shoulder.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig
+
+from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, kept, validated
+from reference.embedding import EmbeddedScene
+from reference.joints import Joint, Pin, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
+UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
+
+
+@dataclass(frozen=True)
+class Segment(Valid):
+    """Fractions: of the body's mass; of its height, the length; of the length, centre from the upper end, and gyration.
+
+    `centre` is measured from the upper joint (for the trunk, whose joint is the hip, from the hip up); `gyration` is
+    the radius of gyration about the centre of mass.
+    """
+
+    mass: Fraction
+    length: Fraction
+    centre: Fraction
+    gyration: Fraction
+
+
+# Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about it) and figure 4.1 (length).
+HEAD_ARMS_TRUNK = Segment(0.678, 0.288, 0.626, 0.496)
+THIGH = Segment(0.100, 0.245, 0.433, 0.323)
+SHANK = Segment(0.0465, 0.246, 0.433, 0.302)
+SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
+
+
+@dataclass(frozen=True)
+class OneFoot(EmbeddedScene):
+    """Standing on the left foot: `mass` [kg] of the whole person, `height` [m], gravity [m/s^2].
+
+    Angles [rad] at the start, from rest, of the upward lines ankle-knee, knee-hip and hip-shoulder from the upward
+    vertical, and of the lifted leg's hip-knee and knee-ankle from the downward vertical; all counter-clockwise.
+    """
+
+    name: ClassVar[str] = "person_one_foot"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
+    reach: ClassVar[float] = 1.0  # the duration ends where the ground, which is no joint, would be met
+    mass: Positive = 75.0
+    height: Positive = 1.75
+    gravity: float = 9.81
+    left_shank: float = -0.02
+    left_thigh: float = 0.05
+    trunk: float = 0.0
+    right_thigh: float = 1.2
+    right_shank: float = -0.6
+    duration: Positive = 0.25  # then the lifted foot meets the ground, which is no joint
+    horizon: Positive = 0.25
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """In the order of the bodies; the lifted foot goes with its shank."""
+        return (SHANK, THIGH, HEAD_ARMS_TRUNK, THIGH, SHANK_AND_FOOT)
+
+    @property
+    def feet(self) -> float | None:
+        """Distance of the ankles on the ground [m], or None for one foot."""
+        return None
+
+    @property
+    def start(self) -> Array:
+        """At rest: the bodies' angles, of the x axis along the segment away from the left ankle, and their rates."""
+        aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
+        return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
+
+    @kept
+    def lengths(self) -> Array:
+        """(5,) [m]."""
+        return np.array([segment.length * self.height for segment in self.segments])
+
+    @kept
+    def _behind(self) -> Array:
+        """(5,) [m] from each body's joint nearer to the left ankle to its centre of mass, along its x axis."""
+        centres = np.array([segment.centre for segment in self.segments])
+        centres[:2] = 1 - centres[:2]  # the left leg is walked upwards, from its lower ends
+        return centres * self.lengths
+
+    @kept
+    def masses(self) -> Array:
+        """(5,) [kg]."""
+        return np.array([segment.mass * self.mass for segment in self.segments])
+
+    @kept
+    def inertias(self) -> Array:
+        """(5,) [kg m^2] about the centres of mass."""
+        gyration = np.array([segment.gyration for segment in self.segments]) * self.lengths
+        return self.masses * gyration**2
+
+    def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
+        """The bodies' angles (..., 5), and the matrix (..., 5, freedoms) of their rates."""
+        identity = np.eye(5)
+        return coordinates, np.broadcast_to(identity, (*coordinates.shape[:-1], 5, 5))
+
+    def tangent(self, coordinates: Any) -> tuple[Any, Any]:
+        """Poses (..., 5, 3) and T (..., 15, freedoms), the velocities of all bodies per unit of each coordinate's
+        rate.
+        """
+        angle, turning = self.angle_rates(coordinates)
+        cosine, sine = np.cos(angle), np.sin(angle)
+        # Which segments lead, from the left ankle, to each centre of mass, and how far along them it is.
+        along = np.zeros((5, 5))
+        along[1, 0] = along[2, 0] = along[3, 0] = along[4, 0] = self.lengths[0]
+        along[2, 1] = along[3, 1] = along[4, 1] = self.lengths[1]
+        along[4, 3] = self.lengths[3]
+        along[np.arange(5), np.arange(5)] = self._behind
+        pose = np.stack([cosine @ along.T, sine @ along.T, angle], axis=-1)
+        across = np.stack(
+            [
+                -(along * sine[..., None, :]) @ turning,
+                (along * cosine[..., None, :]) @ turning,
+                turning + 0 * cosine[..., :1, None],
+            ],
+            axis=-2,
+        )
+        return pose, across.reshape((*across.shape[:-3], 15, across.shape[-1]))
+
+    def mechanism(self) -> Mechanism:
+        pose, _ = self.tangent(self.start[: self.freedoms])
+        bodies = bodies_of(NAMES, self.masses, self.inertias, pose, np.zeros((5, 3)))
+        behind, ahead = -self._behind, self.lengths - self._behind
+        joints: list[Joint] = [
+            Pin("left ankle", None, NAMES[0], (0.0, 0.0), (behind[0], 0.0)),
+            Pin("left knee", NAMES[0], NAMES[1], (ahead[0], 0.0), (behind[1], 0.0)),
+            Pin("hip of trunk", NAMES[1], NAMES[2], (ahead[1], 0.0), (behind[2], 0.0)),
+            Pin("right hip", NAMES[1], NAMES[3], (ahead[1], 0.0), (behind[3], 0.0)),
+            Pin("right knee", NAMES[3], NAMES[4], (ahead[3], 0.0), (behind[4], 0.0)),
+        ]
+        if self.feet is not None:
+            joints.append(Pin("right ankle", None, NAMES[4], (self.feet, 0.0), (ahead[4], 0.0)))
+        return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
+
+
+@dataclass(frozen=True)
+class TwoFeet(OneFoot):
+    """Standing on both feet, `stance` [m] between the ankles: a loop through the ground, with three freedoms.
+
+    The start is given by the hip, at `hip_x` [m] from the left ankle and `hip_y` above it, and the trunk's angle; both
+    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism when a leg can't reach.
+    """
+
+    name: ClassVar[str] = "person_two_feet"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: a person with two feet on the ground"
+    stance: float = 0.5
+    hip_x: float = 0.24
+    hip_y: float = 0.8
+    knees: Sign = 1
+    trunk: float = -0.1
+    duration: Positive = 0.3  # then a knee meets the ground
+    horizon: Positive = 0.3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        owner = f"scene {self.name!r}"
+        shank, thigh = (segment.length * self.height for segment in (SHANK, THIGH))
+        farthest = 2 * (shank + thigh)
+        if abs(self.stance) >= farthest:
+            raise InvalidMechanism(
+                f"{owner}: stance is {self.stance!r} m; legs of {farthest / 2:.4g} m stand only on feet nearer than "
+                f"{farthest:.4g} m"
+            )
+        for side, ankle in (("left", 0.0), ("right", self.stance)):
+            reach = math.hypot(self.hip_x - ankle, self.hip_y)
+            if not abs(shank - thigh) < reach < shank + thigh:
+                raise InvalidMechanism(
+                    f"{owner}: hip_x, hip_y = {self.hip_x!r}, {self.hip_y!r} is {reach:.4g} m from the {side} ankle; "
+                    f"the leg reaches from {abs(shank - thigh):.4g} to {shank + thigh:.4g} m"
+                )
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        return (SHANK, THIGH, HEAD_ARMS_TRUNK, THIGH, SHANK)
+
+    @property
+    def feet(self) -> float | None:
+        return self.stance
+
+    @property
+    def start(self) -> Array:
+        """At rest: hip x and y [m], the trunk's angle [rad], and their rates."""
+        return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
+
+    def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
+        """Each leg is two circles, about its ankle and about the hip; its rates solve l1 n1 w1 + l2 n2 w2 = v_hip."""
+        x, y, trunk = (coordinates[..., i] for i in range(3))
+        lower, upper = self._leg(x, y)
+        far_lower, far_upper = self._leg(x - self.stance, y)
+        # The right leg is walked downwards: its bodies' x axes point from the hip away, against the leg's.
+        angle = np.stack([lower, upper, trunk, far_upper - math.pi, far_lower - math.pi], axis=-1)
+        turning = np.zeros((*angle.shape, 3), dtype=angle.dtype)
+        turning[..., 2, 2] = 1
+        shank, thigh = self.lengths[0], self.lengths[1]
+        for first, second, a, b in ((0, 1, lower, upper), (4, 3, far_lower, far_upper)):
+            between = np.sin(b - a)  # zero when the knee is straight: then the hip can't be a coordinate
+            turning[..., first, 0] = np.cos(b) / (shank * between)
+            turning[..., first, 1] = np.sin(b) / (shank * between)
+            turning[..., second, 0] = -np.cos(a) / (thigh * between)
+            turning[..., second, 1] = -np.sin(a) / (thigh * between)
+        return angle, turning
+
+    def _leg(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Angles of ankle-knee and knee-hip for a hip at (x, y) from the ankle, the knee to the left of it (+1)."""
+        shank, thigh = self.lengths[0], self.lengths[1]
+        # sqrt, not hypot: a complex step passes through it. The angle of (x, y) is measured from the vertical, where
+        # a hip above the ground has no jump.
+        square = x * x + y * y
+        reach = np.sqrt(square)
+        bearing = math.pi / 2 - np.arctan(x / y)
+        ankle = np.arccos((square + shank**2 - thigh**2) / (2 * shank * reach))
+        hip = np.arccos((square + thigh**2 - shank**2) / (2 * thigh * reach))
+        return bearing + self.knees * ankle, bearing - self.knees * hip
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """+1 where both knees bend to the left of their legs, -1 where both bend to the right, 0 otherwise."""
+        left = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
+        right = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))
+        return np.where(left == right, left, 0).astype(int)
+
+
+@dataclass(frozen=True)
+class SwayingOnOneFoot(OneFoot):
+    """Upright on one foot, the lifted leg a tenth of a radian aside; angles [rad] on the mode that swings at 9.3 rad/s.
+
+    The horizon is that of a difference's tenfold growth, which the buckling knee sets.
+    """
+
+    name: ClassVar[str] = "person_swaying"
+    left_shank: float = -0.00200745
+    left_thigh: float = -0.00285913
+    trunk: float = 0.00332792
+    right_thigh: float = -0.0676988
+    right_shank: float = 0.1
+    duration: Positive = 0.3
+    horizon: Positive = 0.1
+
+
+@validated
+def modes_upright(person: OneFoot) -> tuple[Array, Array]:
+    """Squares s [1/s^2] (5,) ascending, and shapes (5, 5) in columns, of small motions u'' = s u about standing
+    upright.
+
+    s < 0 swings at sqrt(-s) rad/s, s > 0 grows like e^(sqrt(s) t). By differences of the equations of motion.
+    """
+    upright, rest = np.array(UPRIGHT), np.zeros(5)
+
+    def slope(step: float) -> Array:
+        columns = [
+            person.accelerations(upright + step * move, rest) - person.accelerations(upright - step * move, rest)
+            for move in np.eye(5)
+        ]
+        return np.array(columns).T / (2 * step)
+
+    # Richardson: central differences have even powers only. The steps balance rounding and the fifth derivative.
+    found: Any = eig((4 * slope(1e-4) - slope(2e-4)) / 3)
+    order = np.argsort(found[0].real)
+    return found[0].real[order], found[1].real[:, order]

@@ -1,0 +1,238 @@
+"""A body rolling under gravity: its motion from energy in one freedom, the forces it needs, when it hops or slips."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import InvalidMechanism, Positive, Valid, kept, sample_times, validated
+from reference.numerics import windows
+from reference.numerics.integration import IntegrationFailed, units_of_motion
+from reference.numerics.roots import first_below, root
+from reference.plane import rotation_acceleration
+from reference.rolling.contact import Contact
+from reference.rolling.curves import Array, Vector
+from reference.rolling.kinematics import Rolling
+
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class RollingBody(Valid):
+    """One body rolling on fixed ground under gravity, in the one coordinate theta.
+
+    M(theta) theta'' + M'(theta) theta'^2 / 2 = -V'(theta), with M = inertia + mass r^2, r the distance from the contact
+    to the centre of mass, V = mass g height. Contact is ideal both ways: it also pulls (N < 0) and never slips, so
+    beyond `hop` or `slip` this is no longer what a real body does.
+
+    mass [kg]; inertia [kg m^2] about the centre of mass, the origin of the rolling's body curve; gravity [m/s^2]; start
+    rate [rad/s]; the start angle is that of the rolling.
+    """
+
+    rolling: Rolling
+    mass: Positive
+    inertia: Positive
+    start_rate: float
+    gravity: Vector = (0.0, -GRAVITY)
+
+    @property
+    def start(self) -> tuple[float, float]:
+        return (self.rolling.theta, self.start_rate)
+
+    @validated
+    def angular_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+        """theta'' (...) [rad/s^2] at rotations [rad] and rates [rad/s] (...)."""
+        return self._angular_acceleration(self.rolling.contact(theta), np.asarray(rate))
+
+    def _angular_acceleration(self, contact: Contact, rate: Array) -> Array:
+        arm = contact.arm
+        inertia = self.inertia + self.mass * np.sum(arm**2, axis=-1)
+        # M'/2 = m r r', and r r' = -s' r . e_t: turning keeps r, only the advance of the contact changes it.
+        half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
+        pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
+        return (pull - half_slope * rate**2) / inertia
+
+    @validated
+    def energy(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+        """Kinetic plus gravitational energy (...) [J], zero potential at the world's origin."""
+        contact = self.rolling.contact(theta)
+        inertia = self.inertia + self.mass * np.sum(contact.arm**2, axis=-1)
+        place = contact.point + contact.arm
+        return 0.5 * inertia * np.asarray(rate) ** 2 - self.mass * (place @ np.asarray(self.gravity))
+
+    def _rates(self, state: Array) -> Array:
+        """NaN beyond the rotations at which the body can roll: a step with a stage there is then taken shorter."""
+        theta, rate = state[..., 0], state[..., 1]
+        low, high = self.rolling.limits
+        known = np.isfinite(theta) & np.isfinite(rate)  # a stage after one that was beyond is not
+        rolls = known & (theta >= low) & (theta <= high)
+        if np.any(known & ~rolls):
+            farthest = max(
+                (*self._beyond, *theta[known & ~rolls].flat), key=lambda angle: abs(angle - self.rolling.theta)
+            )
+            self._beyond[:] = [float(farthest)]
+        own, turning = np.where(rolls, theta, self.rolling.theta), np.where(rolls, rate, 0.0)
+        rates = np.stack([turning, self.angular_acceleration(own, turning)], axis=-1)
+        return np.where(rolls[..., None], rates, np.nan)
+
+    @cached_property
+    def _beyond(self) -> list[float]:
+        """The farthest beyond the limits that a stage of the integrator was [rad], if any."""
+        return []
+
+    @contextmanager
+    def _rolling_on(self) -> Iterator[None]:
+        """A motion that can't be carried on because the rolling ends is refused as the rolling refuses it."""
+        try:
+            yield
+        except IntegrationFailed:
+            if self._beyond:
+                self.rolling.contact(self._beyond[0])
+            raise
+
+    @kept
+    def _units(self) -> Array:
+        """Next to a rest, a start that hardly moves is known no better than the rounding of its angle lets it go."""
+        unknown = np.finfo(float).eps * self._pace_of_rest / windows.TOLERANCE
+        return np.maximum(units_of_motion(self._rates, self.start), [0.0, unknown])
+
+    @cached_property
+    def _known(self) -> list[tuple[float, windows.Motion]]:
+        return []
+
+    def states(self, t: ArrayLike) -> tuple[Array, Array]:
+        """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s], any order."""
+        t = sample_times("rolling body", t)
+        until = float(t.max(initial=0.0)) or math.ulp(1.0)
+        # Always integrated from zero with its own steps; kept, because samples and searches ask for many times.
+        if not self._known or self._known[0][0] < until:
+            with self._rolling_on():
+                self._known[:] = [(until, windows.motion(self._rates, self.start, until, self._units))]
+        states = self._known[0][1](t)
+        return states[:, 0], states[:, 1]
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """A bound on the error of theta and theta' (times,) [rad, rad/s], from a coarser rule."""
+        times = sample_times("rolling body", t)
+        with self._rolling_on():
+            return windows.error_of(self._rates, self.start, times, self._units)
+
+    def forces(self, t: ArrayLike) -> tuple[Array, Array]:
+        """T along e_t and N along e_n (times,) [N], on the body at the contact."""
+        tangent, normal, _ = self._forces(t)
+        return tangent, normal
+
+    def _forces(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """`forces`, and the sum of the sizes of the terms of which they are made (times,) [N]."""
+        theta, rate = self.states(t)
+        contact = self.rolling.contact(theta)
+        turning = self._angular_acceleration(contact, rate)
+        centre = rotation_acceleration(rate, turning, contact.arm) + (rate**2 * contact.rate)[:, None] * contact.normal
+        force = self.mass * (centre - np.asarray(self.gravity))
+        arm, advance = np.linalg.norm(contact.arm, axis=-1), np.abs(contact.rate)
+        size = self.mass * (np.abs(turning) * arm + rate**2 * (arm + advance) + math.hypot(*self.gravity))
+        return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1), size
+
+    def required_friction(self, t: ArrayLike) -> Array:
+        """|T| / N (times,): the friction coefficient that rolling needs; infinite where the contact must pull."""
+        tangent, normal = self.forces(t)
+        with np.errstate(divide="ignore"):
+            return np.where(normal > 0, np.abs(tangent) / np.where(normal > 0, normal, 1.0), np.inf)
+
+    @validated
+    def hop(self, until: Positive) -> float | None:
+        """The first instant [s] before `until` at which the contact would have to pull (N = 0), or None."""
+        return self._first(((0.0, 1.0),), until)
+
+    @validated
+    def slip(self, friction: Positive, until: Positive) -> float | None:
+        """The first instant [s] before `until` at which |T| exceeds friction N, or None; at a hop at the latest."""
+        return self._first(((-1.0, friction), (1.0, friction)), until)
+
+    def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:
+        """The first instant at which one of some sums of parts of T and of N falls below zero.
+
+        The motion is followed piece by piece, each as long as all before it: a body that parts soon is not followed
+        until a late `until`. Forces follow from the angle by energy: a body that has turned back twice, or once round
+        on level ground, has shown all of them.
+        """
+
+        def spare(t: Array) -> tuple[Array, Array]:
+            tangent, normal, size = self._forces(t)
+            sums = np.stack([along * tangent + across * normal for along, across in parts])
+            return sums, size * max(abs(part) for each in parts for part in each)
+
+        seen, reach = 0.0, min(until, self._short)
+        while True:
+            self.states(reach)
+            motion = self._known[0][1]
+            found = first_below(spare, np.unique(np.clip(motion.times, seen, reach)))
+            if found is not None:
+                return found[0]
+            angle, rate = motion(np.append(motion.times[motion.times < reach], reach)).T  # it may be known further
+            turned_back = int(np.count_nonzero(rate[1:] * rate[:-1] < 0)) + (rate[0] == 0)
+            if reach >= until or turned_back > 1 or (self._level and np.ptp(angle) >= 2 * math.pi):
+                return None
+            seen, reach = reach, min(until, 2 * reach)
+
+    @property
+    def _level(self) -> bool:
+        """Whether the ground is straight and, to rounding, across gravity."""
+        along = abs(float(np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent))
+        flat = self.rolling.ground.curvature_range == (0.0, 0.0)
+        return flat and along <= 4 * np.finfo(float).eps * math.hypot(*self.gravity)
+
+    @property
+    def _short(self) -> float:
+        """A time in which the start changes little [s]: of its rate, its acceleration, and the pace of a rest."""
+        theta, rate = self.start
+        pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
+        return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)
+
+    @property
+    def _pace_of_rest(self) -> float:
+        """The rate [1/s] at which a body at rest at the start would leave a balance there, or swing about it."""
+        theta, _ = self.start
+        mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
+        return math.sqrt(abs(float(self.stiffness(theta))) / mass)
+
+    @validated
+    def equilibrium(self, near: float, within: Positive = 0.5) -> float:
+        """The rotation [rad] within `within` of `near` at which the body can rest; InvalidMechanism without one."""
+        low, high = near - within, near + within
+
+        def pull(theta: float) -> float:
+            return float(self.angular_acceleration(theta, 0.0))
+
+        if pull(low) * pull(high) > 0:
+            raise InvalidMechanism(
+                f"rolling body: gravity doesn't change its sense between {low:.6g} and {high:.6g} rad, so it "
+                "can't rest there"
+            )
+        return root(pull, low, high)
+
+    @validated
+    def stiffness(self, theta: ArrayLike) -> Array:
+        """d^2V/dtheta^2 (...) [N m/rad]."""
+        contact = self.rolling.contact(theta)
+        gravity = np.asarray(self.gravity)
+        across = gravity[1] * contact.tangent[..., 0] - gravity[0] * contact.tangent[..., 1]
+        return self.mass * (contact.arm @ gravity + contact.rate * across)
+
+    @validated
+    def small_frequency(self, equilibrium: float) -> float:
+        """sqrt(V'' / M) [rad/s] of small oscillations about a rest; InvalidMechanism if the rest is unstable."""
+        stiffness = float(self.stiffness(equilibrium))
+        if not stiffness > 0:
+            raise InvalidMechanism(
+                f"rolling body: at theta = {equilibrium:.9g} rad it rests on a top (V'' = {stiffness:.6g} N m), "
+                "from which it doesn't oscillate; give the bottom"
+            )
+        arm = self.rolling.contact(equilibrium).arm
+        return math.sqrt(stiffness / (self.inertia + self.mass * float(arm @ arm)))

@@ -1,0 +1,118 @@
+"""Two congruent elliptic gears pinned at foci: rolling between two moving bodies, in closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference.checks import Positive, validated
+from reference.joints import Drive, Pin, bodies_of
+from reference.kinds import from_to, of_shape
+from reference.mechanism import Mechanism
+from reference.plane import rotation_acceleration, rotation_velocity
+from reference.rolling.closed_curves import Ellipse
+from reference.rolling.curves import Array
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
+from reference.rows import undetermined
+from reference.scene import Scene
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class EllipticGears(Scene):
+    """The first gear turns at a constant rate about its focus at the origin, the second about its own at (2a, 0).
+
+    The sum of the distances from the contact to the two pins is 2a at every angle, so the contact stays on the line of
+    the pins, and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2): the rate of the second swings between
+    (1 + e) / (1 - e) of the first and its inverse. Gears are uniform discs, described at their centres.
+
+    Pins already keep the gears apart, so a force along the line of the pins, from pin to gear to gear to pin, is not
+    determined by motion: those rows' reactions are NaN in the truth.
+    """
+
+    name: ClassVar[str] = "elliptic_gears"
+    source: ClassVar[str] = "rolling of not round objects, (18.66), between two moving bodies"
+
+    major: Positive = 0.3  # m, semi-axis a
+    eccentricity: Annotated[float, from_to(0, 0.99)] = 0.5
+    turning_rate: float = 3.0  # rad/s of the first gear
+    start_angle: float = 0.4  # rad of the first gear
+    mass: Positive = 1.0  # kg, each
+    duration: Positive = 2.0  # s
+    horizon: Positive = 2.0  # s
+
+    @property
+    def samples(self) -> int:
+        """A fifth of those elsewhere: the contact of two ellipses takes a nested search, some ten times a circle's."""
+        return max(1, super().samples // 5)
+
+    @property
+    def _minor(self) -> float:
+        return self.major * math.sqrt(1 - self.eccentricity**2)
+
+    @property
+    def _focus(self) -> tuple[float, float]:
+        return (-self.major * self.eccentricity, 0.0)
+
+    @validated
+    def second_angle(self, first: ArrayLike) -> Array:
+        """theta_2 (...) [rad] at theta_1 (...) [rad], both unwrapped."""
+        half = np.asarray(first, dtype=float) / 2
+        ratio = (1 + self.eccentricity) / (1 - self.eccentricity)
+        sine, cosine = np.sin(half), np.cos(half)
+        return -2 * (half + np.arctan2((ratio - 1) * sine * cosine, cosine**2 + ratio * sine**2))
+
+    @validated
+    def second_rate(self, first: ArrayLike) -> tuple[Array, Array]:
+        """theta_2' and theta_2'' (...) [rad/s, rad/s^2]: minus the ratio of the contact's distances, and its rate."""
+        first = np.asarray(first, dtype=float)
+        e, semi_latus_rectum = self.eccentricity, self.major * (1 - self.eccentricity**2)
+        near = semi_latus_rectum / (1 - e * np.cos(first))
+        far = 2 * self.major - near
+        receding = -(near**2) * e * np.sin(first) / semi_latus_rectum * self.turning_rate
+        return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
+
+    @validated
+    def kinematics(self, t: Annotated[Array, of_shape("times")]) -> tuple[Array, Array, Array]:
+        """Poses, twists and accelerations (times, 2, 3)."""
+        first = self.start_angle + self.turning_rate * t
+        rate, angular_acceleration = self.second_rate(first)
+        pose, twist, acceleration = np.empty((3, len(t), 2, 3))
+        for gear, pin, angle, omega, alpha in (
+            (0, 0.0, first, np.full(t.shape, self.turning_rate), np.zeros(t.shape)),
+            (1, 2 * self.major, self.second_angle(first), rate, angular_acceleration),
+        ):
+            arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+            pose[:, gear] = np.column_stack([arm[:, 0] + pin, arm[:, 1], angle])
+            twist[:, gear] = np.column_stack([rotation_velocity(omega, arm), omega])
+            acceleration[:, gear] = np.column_stack([rotation_acceleration(omega, alpha, arm), alpha])
+        return pose, twist, acceleration
+
+    def mechanism(self) -> Mechanism:
+        shape = Ellipse(self.major, self._minor)
+        pose, twist, _ = self.kinematics(np.zeros(1))
+        inertia = self.mass * (self.major**2 + self._minor**2) / 4
+        bodies = bodies_of(("first", "second"), (self.mass,) * 2, (inertia,) * 2, pose[0], twist[0])
+        # At theta_1 = theta_2 = 0 the far end of the first touches the near end of the second.
+        rolling = Rolling(shape, shape, 0.0, 0.0, shape.length / 2)
+        return Mechanism(
+            bodies,
+            (
+                Pin("first pin", None, "first", (0.0, 0.0), self._focus),
+                Pin("second pin", None, "second", (2 * self.major, 0.0), self._focus),
+                Drive("motor", None, "first", self.turning_rate, self.start_angle),
+                Roll("mesh", "first", "second", rolling),
+            ),
+        )
+
+    def _motion(self, times: Array) -> Trajectory:
+        pose, twist, acceleration = self.kinematics(times)
+        mechanism = self.mechanism()
+        reaction = mechanism.reaction(pose, acceleration)
+        loose = undetermined(mechanism.rows(pose), mechanism.length_scale)
+        return Trajectory(t=times, pose=pose, twist=twist, reaction=np.where(loose, np.nan, reaction))

@@ -1,0 +1,316 @@
+"""Scenes of bodies that are not round, or not centred, rolling under gravity on flat and on curved ground.
+
+Where methods fail: a disc in a hole of nearly its size, and a square that comes to its corner.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Annotated, ClassVar
+
+import numpy as np
+from scipy.integrate import quad
+
+from reference.checks import Positive
+from reference.kinds import Rule
+from reference.mechanism import Body, Mechanism
+from reference.rolling.closed_curves import Cam, Ellipse
+from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
+from reference.rolling.kinematics import Rolling
+from reference.rolling.open_curves import Catenary
+from reference.rolling.roll import Roll
+from reference.scene import Scene
+from reference.scenes.rolling.body import GRAVITY, RollingBody
+from reference.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class RollingScene(Scene):
+    """A body on fixed ground: subclasses give the two curves; the centre of mass is the origin of the body's curve."""
+
+    source: ClassVar[str] = "rolling of not round objects, (18.66)"
+
+    reach: ClassVar[float] = 2.0  # the contact is searched for at every step, and bodies roll ever faster downhill
+
+    mass: Positive = 1.0  # kg
+    start_angle: float = 0.0  # rad
+    start_rate: float = 4.0  # rad/s
+    ground_arc: float = 0.0  # m, where the contact begins
+    gravity: Vector = (0.0, -GRAVITY)  # m/s^2
+    duration: Positive = 2.0  # s
+    friction: Positive = 1.0  # the coefficient up to which a real contact is taken to hold
+
+    @abstractmethod
+    def body_curve(self) -> Curve:
+        """The body's boundary in its own frame, from the centre of mass."""
+
+    def ground_curve(self) -> Curve:
+        """Flat ground through the origin, unless a scene says otherwise."""
+        return Line()
+
+    @property
+    @abstractmethod
+    def inertia(self) -> float:
+        """kg m^2 about the centre of mass."""
+
+    @property
+    def motion_law(self) -> RollingBody:
+        """The body in its one coordinate: forces, friction, hop, slip, small oscillations."""
+        return _motion_law(self)
+
+    @cached_property
+    def hop(self) -> float | None:
+        """When the contact would have to pull [s]; None within the duration."""
+        return self.motion_law.hop(self.duration)
+
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
+        """Up to where a contact of this friction slips, or hops: beyond, an engine is right to disagree [s]."""
+        return _until_slip(self)
+
+    @cached_property
+    def horizon(self) -> float:  # type: ignore[override]
+        return min(self.duration, self.comparable_until)
+
+    def mechanism(self) -> Mechanism:
+        law = self.motion_law
+        x, y, angle = (float(value) for value in law.rolling.pose(law.rolling.theta))
+        vx, vy = (float(value) for value in law.rolling.velocity(law.rolling.theta, self.start_rate))
+        body = Body("roller", self.mass, self.inertia, (x, y, angle), (vx, vy, self.start_rate))
+        return Mechanism((body,), (Roll("contact", None, "roller", law.rolling),), self.gravity)
+
+    def _motion(self, times: Array) -> Trajectory:
+        law = self.motion_law
+        theta, rate = law.states(times)
+        velocity = law.rolling.velocity(theta, rate)
+        tangent, normal = law.forces(times)
+        return Trajectory(
+            t=times,
+            pose=law.rolling.pose(theta)[:, None, :],
+            twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
+            reaction=np.stack([tangent, normal], axis=-1),
+        )
+
+
+@lru_cache(maxsize=64)
+def _motion_law(scene: RollingScene) -> RollingBody:
+    """Kept for all equal scenes, because it keeps its motion."""
+    rolling = Rolling.at_angle(scene.body_curve(), scene.ground_curve(), scene.start_angle, scene.ground_arc)
+    return RollingBody(rolling, scene.mass, scene.inertia, scene.start_rate, scene.gravity)
+
+
+@lru_cache(maxsize=64)
+def _until_slip(scene: RollingScene) -> float:
+    slip = scene.motion_law.slip(scene.friction, scene.duration)
+    return math.inf if slip is None else slip
+
+
+@dataclass(frozen=True)
+class RollingEllipse(RollingScene):
+    """A uniform elliptic disc on flat ground."""
+
+    name: ClassVar[str] = "rolling_ellipse"
+
+    along_x: Positive = 0.5  # m, semi-axis
+    along_y: Positive = 0.3
+
+    def body_curve(self) -> Curve:
+        return Ellipse(self.along_x, self.along_y)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * (self.along_x**2 + self.along_y**2) / 4
+
+
+@dataclass(frozen=True)
+class RollingDisc(RollingScene):
+    """A round disc whose centre of mass is off its centre, as if its inertia were that of a uniform disc."""
+
+    name: ClassVar[str] = "rolling_disc"
+
+    radius: Positive = 0.4  # m
+    eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre
+
+    def body_curve(self) -> Curve:
+        return Circle(self.radius, (self.eccentricity, 0.0))
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.radius**2 / 2
+
+
+@dataclass(frozen=True)
+class RollingCam(RollingScene):
+    """A three-lobed, slightly eccentric cam on flat ground."""
+
+    name: ClassVar[str] = "rolling_cam"
+
+    radius: Positive = 0.4  # m, mean of the support function
+    cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics
+    sines: tuple[float, ...] = (0.0, 0.02)
+    gyration: Positive = 0.28  # m, radius of gyration
+
+    def body_curve(self) -> Curve:
+        return Cam(self.radius, self.cosines, self.sines)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.gyration**2
+
+
+@dataclass(frozen=True)
+class RollingDownhill(RollingEllipse):
+    """The ellipse on an incline that falls to -x, so that it goes faster and faster."""
+
+    name: ClassVar[str] = "rolling_incline"
+
+    slope: float = 0.1  # rad, the ground rises to +x
+    along_y: Positive = 0.4
+    start_rate: float = 2.5
+
+    def ground_curve(self) -> Curve:
+        return Line(math.pi + self.slope)
+
+
+@dataclass(frozen=True)
+class RollingInRing(RollingEllipse):
+    """The ellipse inside a round hole: rolling to and fro about the bottom and beyond."""
+
+    name: ClassVar[str] = "rolling_in_ring"
+
+    ring: Positive = 1.5  # m, radius of the hole about the origin
+    start_rate: float = 2.0
+
+    @property
+    def samples(self) -> int:
+        """Half as many as elsewhere: finding a contact on two curved boundaries costs a reader several times more."""
+        return max(1, super().samples // 2)
+
+    def ground_curve(self) -> Curve:
+        return Placed(Ring(self.ring), turn=-math.pi / 2)  # arc 0 at the bottom
+
+
+@dataclass(frozen=True)
+class RollingOnCircle(RollingDisc):
+    """The eccentric disc on top of a fixed round hill: it rolls off, and must hop where N falls to zero."""
+
+    name: ClassVar[str] = "rolling_on_circle"
+
+    hill: Positive = 1.0  # m, radius of the hill about the origin
+    radius: Positive = 0.25
+    eccentricity: float = 0.05
+    start_rate: float = 1.0
+    duration: Positive = 1.2
+
+    def ground_curve(self) -> Curve:
+        return Placed(Circle(self.hill), turn=math.pi / 2)  # arc 0 at the top
+
+
+Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1")]
+
+
+@dataclass(frozen=True)
+class DiscInHole(RollingScene):
+    """A round disc that rolls round in a hole larger by the fraction `clearance`, without gravity.
+
+    Nothing slows it, so that it turns at a constant rate w; but the contact runs round the hole at about
+    w / clearance, and the disc's centre round a small circle as fast: the nearer to conformal, the faster.
+    """
+
+    name: ClassVar[str] = "disc_in_hole"
+
+    hole: Positive = 1.0  # m, radius
+    clearance: Clearance = 0.1  # of the hole's radius
+    start_rate: float = 1.0
+    gravity: Vector = (0.0, 0.0)
+    duration: Positive = 1.0
+
+    @property
+    def radius(self) -> float:
+        """m, of the disc."""
+        return self.hole * (1 - self.clearance)
+
+    def body_curve(self) -> Curve:
+        return Circle(self.radius)
+
+    def ground_curve(self) -> Curve:
+        return Ring(self.hole)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.radius**2 / 2
+
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
+        """The hole presses with mass clearance hole (w radius / (clearance hole))^2 and needs no friction: always."""
+        return math.inf
+
+    def _motion(self, times: Array) -> Trajectory:
+        """In closed form, since an integrator would follow rounding round the hole."""
+        rolling = self.motion_law.rolling
+        theta = rolling.theta + self.start_rate * times
+        contact = rolling.contact(theta)
+        force = self.mass * rolling.acceleration(theta, self.start_rate, 0.0)
+        velocity = rolling.velocity(theta, self.start_rate)
+        rate = np.full((len(times), 1), self.start_rate)
+        return Trajectory(
+            t=times,
+            pose=np.concatenate([contact.point + contact.arm, theta[:, None]], axis=-1)[:, None, :],
+            twist=np.concatenate([velocity, rate], axis=-1)[:, None, :],
+            reaction=np.stack(
+                [np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1)], axis=-1
+            ),
+        )
+
+
+@dataclass(frozen=True)
+class SquareOnCatenaries(RollingScene):
+    """A square on the arch of a catenary that fits its side: its centre stays level until it stands on a corner.
+
+    At the corner the curvature is infinite and the contact has no direction to go on; the reference refuses there.
+    """
+
+    name: ClassVar[str] = "square_on_catenary"
+    source: ClassVar[str] = "rolling of not round objects: a corner is a curve of infinite curvature"
+
+    side: Positive = 1.0  # m
+    start_rate: float = 1.0
+    duration: Positive = 1.5
+
+    def body_curve(self) -> Curve:
+        return Side(self.side)
+
+    def ground_curve(self) -> Curve:
+        return Placed(Catenary(self.side / 2), turn=math.pi)
+
+    @property
+    def inertia(self) -> float:
+        return self.mass * self.side**2 / 6
+
+    @cached_property
+    def motion_law(self) -> RollingBody:  # type: ignore[override]
+        """From the middle of the side at the top of the arch: a straight side doesn't tell the place by its angle."""
+        rolling = Rolling.at_arcs(self.body_curve(), self.ground_curve())
+        return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
+
+    @cached_property
+    def comparable_until(self) -> float:  # type: ignore[override]
+        """The arch is never too steep for a friction of 1 before the corner: what ends the motion is the corner."""
+        return math.inf
+
+    @property
+    def corner(self) -> float:
+        """When it stands on its corner [s]: a quarter of a half turn, at a rate that energy gives in closed form.
+
+        The centre is level, so the kinetic energy stays: M(theta) theta'^2 with M = inertia + mass r^2 and, for this
+        arch, r = side / (2 cos theta).
+        """
+
+        def mass(theta: float) -> float:
+            return self.inertia + self.mass * (self.side / 2 / math.cos(theta)) ** 2
+
+        whole = quad(lambda theta: math.sqrt(mass(theta) / mass(0.0)), 0.0, math.pi / 4, epsabs=1e-14, epsrel=1e-14)
+        return whole[0] / abs(self.start_rate)

@@ -1,0 +1,173 @@
+"""A slider-crank driven at a constant rate, and one let go: crank, rod and a sliding block of its own.
+
+The block has a slot at its centre of mass and keeps its angle by a drive of rate zero: a slot alone would leave it
+free to turn about its pin, a third freedom that no slider-crank has. Where
+methods fail: the rod's own end in the slot, and a slider that has to start the crank.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import Positive, Sign
+from reference.embedding import EmbeddedScene
+from reference.joints import Drive, Joint, Pin, Slot, bodies_of
+from reference.kinds import Floats
+from reference.mechanism import Mechanism
+from reference.scenes.slider_crank.linkage import SliderCrank
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DrivenSliderCrank(EmbeddedScene):
+    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; lengths [m], masses [kg], gravity [m/s^2].
+
+    The slider's `slider_inertia` [kg m^2] never acts: it doesn't turn.
+    """
+
+    name: ClassVar[str] = "driven_slider_crank"
+    source: ClassVar[str] = "section 18.5, closed kinematic chains: a slider-crank"
+    driven: ClassVar[bool] = True
+    crank: Positive = 0.3
+    rod: Positive = 1.0
+    offset: float = 0.0
+    branch: Sign = 1
+    crank_mass: Positive = 0.3
+    rod_mass: Positive = 1.0
+    slider_mass: Positive = 0.5
+    slider_inertia: Positive = 1e-3
+    gravity: float = 9.81
+    angle: float = 0.5
+    rate: float = 10.0
+    duration: Positive = 2 * math.pi / 10
+    horizon: Positive = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _ = self.shape  # refuses lengths that can't be
+
+    @cached_property
+    def shape(self) -> SliderCrank:
+        return SliderCrank(self.crank, self.rod, self.offset, self.branch)
+
+    @property
+    def start(self) -> Array:
+        """The crank's angle [rad] and rate [rad/s]."""
+        return np.array([self.angle, self.rate])
+
+    def tangent(self, coordinates: Any) -> tuple[Any, Any]:
+        theta, shape, r = coordinates[..., 0], self.shape, self.crank
+        sine, cosine, zero = np.sin(theta), np.cos(theta), 0 * theta
+        place, (turn, slide) = shape.position(theta), shape._rates(theta)
+        poses = (
+            (r * cosine / 2, r * sine / 2, theta),
+            ((r * cosine + place) / 2, (r * sine + self.offset) / 2, shape.rod_angle(np.real(theta))),
+            (place, self.offset + zero, zero),
+        )
+        rates = (-r * sine / 2, r * cosine / 2, 1 + zero)
+        rates += ((slide - r * sine) / 2, r * cosine / 2, turn, slide, zero, zero)
+        pose = np.stack([np.stack(np.broadcast_arrays(*row), axis=-1) for row in poses], axis=-2)
+        return pose, np.stack(rates, axis=-1)[..., None]
+
+    def mechanism(self) -> Mechanism:
+        pose, tangent = self.tangent(np.array([self.angle]))
+        twist = (tangent[..., 0] * self.rate).reshape(3, 3)
+        masses = (self.crank_mass, self.rod_mass, self.slider_mass)
+        inertias = (self.crank_mass * self.crank**2 / 12, self.rod_mass * self.rod**2 / 12, self.slider_inertia)
+        names = ("crank", "rod", "slider")
+        bodies = bodies_of(names, masses, inertias, pose, twist)
+        joints: list[Joint] = [
+            Pin("A", None, "crank", (0.0, 0.0), (-self.crank / 2, 0.0)),
+            Pin("B", "crank", "rod", (self.crank / 2, 0.0), (-self.rod / 2, 0.0)),
+            Pin("C", "rod", "slider", (self.rod / 2, 0.0), (0.0, 0.0)),
+            Slot("guide", None, "slider", (0.0, self.offset), 0.0, (0.0, 0.0)),
+            Drive("level", None, "slider", 0.0, 0.0),
+        ]
+        if self.driven:
+            joints.append(Drive("drive", None, "crank", self.rate, self.angle))
+        return Mechanism(bodies, tuple(joints), (0.0, -self.gravity))
+
+    def _states(self, times: Array) -> tuple[Array, Array]:
+        if not self.driven:
+            return super()._states(times)
+        return (self.angle + self.rate * times)[:, None], np.full((len(times), 1), self.rate)
+
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        return self.embedded(*self._states(times), np.zeros((len(times), 1)) if self.driven else None)[1:]
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """A bound on the truth's own error (times,) [rad, rad/s], by two rules; none of a prescribed motion."""
+        return np.zeros(len(self.times(t))) if self.driven else super().truth_error(t)
+
+    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+        """+1 where the slider is to the right of the crank pin, -1 to the left: the sign of cos(beta)."""
+        pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway out to its pin
+        return np.sign(pose[..., 2, 0] - pin).astype(int)
+
+
+@dataclass(frozen=True)
+class FreeSliderCrank(DrivenSliderCrank):
+    """The same, let go at `angle` with `rate`: it turns over by its own speed, and gravity acts on it."""
+
+    name: ClassVar[str] = "free_slider_crank"
+    driven: ClassVar[bool] = False
+    duration: Positive = 2.0
+    horizon: Positive = 2.0  # one freedom, turning: an error in the energy makes the phase drift in proportion to time
+
+
+@dataclass(frozen=True)
+class RodEndInSlot(DrivenSliderCrank):
+    """The driven slider-crank without a sliding block: the rod's own end runs in the slot, off its centre of mass.
+
+    The motion of crank and rod is the same, since the crank is prescribed; `slider_mass` never acts.
+    """
+
+    name: ClassVar[str] = "rod_end_in_slot"
+
+    def mechanism(self) -> Mechanism:
+        whole = super().mechanism()
+        kept = tuple(joint for joint in whole.joints if "slider" not in (joint.first, joint.second))
+        end = next(joint for joint in whole.joints if isinstance(joint, Pin) and joint.second == "slider")
+        guide = next(joint for joint in whole.joints if isinstance(joint, Slot))
+        return replace(
+            whole,
+            bodies=whole.bodies[:2],
+            joints=(*kept, replace(guide, second="rod", second_point=end.first_point)),
+        )
+
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        pose, twist, acceleration = (part[:, :2] for part in super().placement(times))
+        return pose, twist, acceleration
+
+    def _branch_of(self, pose: Floats) -> Any:
+        """+1 where the rod points to the right, -1 to the left."""
+        return np.sign(np.cos(pose[..., 1, 2])).astype(int)
+
+
+@dataclass(frozen=True)
+class SliderAtDeadCentre(FreeSliderCrank):
+    """Let go at rest next to the outer dead centre, everything pushed along the slot: the slider has no lever yet.
+
+    In the dead centre itself it would stay for ever; `angle` [rad] is what decides when, and to which side, it leaves.
+    """
+
+    name: ClassVar[str] = "slider_at_dead_centre"
+    angle: float = 1e-6
+    rate: float = 0.0
+    duration: Positive = 1.5
+    horizon: Positive = 1.5
+
+    @property
+    def angle_unit(self) -> float:
+        """The start's distance from the dead centre [rad]: an error in it grows as it does, and stays that part."""
+        return min(1.0, abs(self.angle)) or 1.0
+
+    def mechanism(self) -> Mechanism:
+        return replace(super().mechanism(), gravity=(-self.gravity, 0.0))

@@ -1,0 +1,177 @@
+"""A grocery cart that coasts: two wheels on a fixed axle, two free casters that trail behind their kingpins.
+
+A caster is a drawbar towed by its kingpin, and swings round in reverse. Its wheel stands `trail` c behind its kingpin;
+with beta its direction (wheel to kingpin) less the cart's, and the kingpin at (x, y) from the middle of the rear axle,
+which has the speed u and the turning rate w,
+
+    w + beta' = (x w cos beta - (u - y w) sin beta)/c.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.checks import Complexes, Positive, Times, Valid, index_of, sample_times, validated
+from reference.embedding import EmbeddedScene
+from reference.joints import Joint, Pin, Skate, Triple, Vector, bodies_of
+from reference.mechanism import Mechanism
+from reference.numerics.integration import Integrated, error_of, integrate
+from reference.plane import components
+from reference.scenes.wheels.tractrix import Tow
+
+Array = NDArray[np.float64]
+Input = float | Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Casters(Valid):
+    """Kingpins at `places` [m] from the middle of the fixed axle, x ahead, y to the left; all with one trail [m]."""
+
+    places: tuple[Vector, ...]
+    trail: Positive
+
+    @validated
+    def turning_rates(self, angles: Complexes, speed: Complexes, turning_rate: Complexes) -> Any:
+        """The casters' own rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
+        x, y = np.array(self.places, dtype=float).T
+        speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]
+        return (x * turning_rate * np.cos(angles) - (speed - y * turning_rate) * np.sin(angles)) / self.trail
+
+    @validated
+    def tow(self, caster: int, angle: float, speed: float, turning_rate: float) -> tuple[Tow, float]:
+        """For a constant speed and turning rate: the caster as a tow in closed form, and its kingpin's speed [m/s].
+
+        The caster's angle beta at time t is then tow.relative_angle(kingpin speed * t) + (angle - tow.angle).
+        """
+        x, y = self.places[index_of("Casters.tow", "caster", caster, len(self.places))]
+        along, across = speed - y * turning_rate, x * turning_rate
+        size = math.hypot(along, across)
+        radius = math.inf if turning_rate == 0 or size == 0 else size / turning_rate
+        direction = math.atan2(across, along)
+        return Tow(self.trail, math.remainder(angle - direction, 2 * math.pi), radius), size
+
+    @validated
+    def swing(self, angles: tuple[float, ...], speed: Input, turning_rate: Input, t: Times) -> tuple[Array, Array]:
+        """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and the integration's error (times,).
+
+        speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. Straight back from a small
+        angle the caster swings round to pi; from exactly zero it stays, which no real one does.
+        """
+        times = sample_times("casters", t)
+
+        def rates(state: Array) -> Array:
+            time = state[..., 0]
+            u = speed(time) if callable(speed) else np.full(np.shape(time), speed)
+            w = turning_rate(time) if callable(turning_rate) else np.full(np.shape(time), turning_rate)
+            own = self.turning_rates(state[..., 1:], u, w) - np.asarray(w)[..., None]
+            return np.concatenate([np.ones((*time.shape, 1)), own], axis=-1)
+
+        first = np.array([0.0, *angles])
+        last = float(times.max(initial=0.0))
+        if last == 0:
+            return np.broadcast_to(first[1:], (len(times), len(angles))).copy(), np.zeros(len(times))
+        return integrate(rates, first, last)(times)[:, 1:], error_of(rates, first, times)
+
+
+@dataclass(frozen=True)
+class Cart(EmbeddedScene):
+    """c = (x, y, theta of the axle's middle; the casters' directions in the world), nu = (speed, turning rate).
+
+    mass [kg] and inertia [kg m^2] of the cart, its centre of mass `centre` [m] ahead of the axle; kingpins `front` [m]
+    ahead, `width` [m] apart; casters with their wheel `trail` [m] and centre of mass `caster_centre` [m] behind the
+    kingpin. speed [m/s] and turning_rate [rad/s] of the axle, angles [rad] of the casters against the cart (0: trailing
+    as when going ahead) at t = 0. The fixed axle's two wheels stop the same motion: one row is modelled, and with
+    `redundant` both. Raises InvalidMechanism for numbers not finite or lengths and masses not positive.
+    """
+
+    name: ClassVar[str] = "cart"
+    source: ClassVar[str] = "section 18.5, contact with ideal wheels and skates; box 18.3"
+
+    mass: Positive = 2.0
+    inertia: Positive = 0.3
+    centre: float = 0.4
+    front: float = 0.7
+    width: Positive = 0.4
+    trail: Positive = 0.1
+    caster_mass: Positive = 0.1
+    caster_inertia: Positive = 1e-3
+    caster_centre: float = 0.05
+    speed: float = 1.0
+    turning_rate: float = 1.0
+    angles: tuple[float, float] = (1.5, -2.5)
+    pose: Triple = (0.0, 0.0, 0.0)
+    redundant: bool = False
+    duration: Positive = 3.0
+    horizon: Positive = 3.0
+
+    @property
+    def casters(self) -> Casters:
+        return Casters(((self.front, self.width / 2), (self.front, -self.width / 2)), self.trail)
+
+    @property
+    def start(self) -> Array:
+        directions = [self.pose[2] + angle for angle in self.angles]
+        return np.array([*self.pose, *directions, self.speed, self.turning_rate])
+
+    @property
+    def freedoms(self) -> int:
+        return 2
+
+    def coordinate_rates(self, coordinates: NDArray[Any], velocities: NDArray[Any]) -> NDArray[Any]:
+        heading, directions = coordinates[..., 2], coordinates[..., 3:]
+        speed, turning = velocities[..., 0], velocities[..., 1]
+        own = self.casters.turning_rates(directions - heading[..., None], speed, turning)
+        moved = np.stack([speed * np.cos(heading), speed * np.sin(heading), turning], axis=-1)
+        return np.concatenate([moved, own], axis=-1)
+
+    def tangent(self, coordinates: Any) -> tuple[Any, Any]:
+        heading, directions = coordinates[..., 2], coordinates[..., 3:]
+        ahead = components(heading, self.centre, 0.0)
+        poses = [np.stack([coordinates[..., 0] + ahead[0], coordinates[..., 1] + ahead[1], heading], axis=-1)]
+        for index, (x, y) in enumerate(self.casters.places):
+            kingpin = components(heading, x, y)
+            behind = components(directions[..., index], self.caster_centre, 0.0)
+            place = [coordinates[..., axis] + kingpin[axis] - behind[axis] for axis in (0, 1)]
+            poses.append(np.stack([*place, directions[..., index]], axis=-1))
+        columns = []
+        for speed, turning in ((1.0, 0.0), (0.0, 1.0)):
+            own = self.casters.turning_rates(directions - heading[..., None], speed, turning)
+            parts = [*components(heading, speed, self.centre * turning), turning + 0 * heading]
+            for index, (x, y) in enumerate(self.casters.places):
+                kingpin = components(heading, speed - y * turning, x * turning)
+                swung = components(directions[..., index], 0.0, -self.caster_centre * own[..., index])
+                parts += [kingpin[0] + swung[0], kingpin[1] + swung[1], own[..., index]]
+            columns.append(np.stack(parts, axis=-1))
+        return np.stack(poses, axis=-2), np.stack(columns, axis=-1)
+
+    def solved(self, until: float) -> Integrated:
+        return integrate(self.rates, self.start, until)
+
+    def truth_error(self, t: ArrayLike) -> Array:
+        """A bound on this truth's own error (times,) [m, rad]: what a coarser tolerance changes."""
+        return error_of(self.rates, self.start, self.times(t))
+
+    def mechanism(self) -> Mechanism:
+        coordinates, velocities = self._split(self.start)
+        poses, tangent = self.tangent(coordinates)
+        twists = (tangent @ velocities).reshape(3, 3)
+        masses = (self.mass, self.caster_mass, self.caster_mass)
+        inertias = (self.inertia, self.caster_inertia, self.caster_inertia)
+        names = ("cart", "left caster", "right caster")
+        bodies = bodies_of(names, masses, inertias, poses, twists)
+        joints: list[Joint] = [Skate("axle", None, "cart", (-self.centre, 0.0))]
+        if self.redundant:
+            joints = [
+                Skate("left wheel", None, "cart", (-self.centre, self.width / 2)),
+                Skate("right wheel", None, "cart", (-self.centre, -self.width / 2)),
+            ]
+        for name, (x, y) in zip(names[1:], self.casters.places, strict=True):
+            joints.append(Pin(f"{name}'s kingpin", "cart", name, (x - self.centre, y), (self.caster_centre, 0.0)))
+            joints.append(Skate(f"{name}'s wheel", None, name, (self.caster_centre - self.trail, 0.0)))
+        return Mechanism(bodies, tuple(joints))

@@ -1,0 +1,229 @@
+"""Rows of ours in MuJoCo: they are the mechanism's own, by numba and by Python, and one that is lost is told."""
+
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from engines import Unsupported
+from engines.mujoco import EXTENDED
+from engines.mujoco.construction import WrittenJoint
+from engines.mujoco.user_rows import RowWriter
+from engines.rolling_table import rolled
+from engines.tree import spanning_tree
+from reference.joints import Joint, Pin, Rod, Skate, Slot
+from reference.mechanism import Body, Mechanism
+from reference.rolling.roll import Roll
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.trajectory import energy
+from tests.mechanisms import bar, four_bar
+
+SLEIGH = ChaplyginSleigh()
+STIFFNESS, DAMPING = 5.0, 3.0
+
+
+def jumble() -> Mechanism:
+    """An arm on the ground, a block in its slot, a bar on the block, and a body that flies; skates between them all."""
+    bodies = (
+        bar("arm", (0.0, 0.0), (1.0, 0.4)),
+        Body("block", 0.7, 0.05, (0.5, 0.2, 0.3)),
+        bar("tail", (0.5, 0.2), (0.9, -0.5)),
+        Body("flyer", 1.1, 0.2, (2.0, 1.0, -0.4)),
+    )
+    half = bodies[0].mass / 2
+    joints: tuple[Joint, ...] = (
+        Pin("A", None, "arm", (0.0, 0.0), (-half, 0.0)),
+        Slot("slot", "arm", "block", (0.0, 0.0), 0.0, (0.0, 0.0)),
+        Pin("B", "block", "tail", (0.0, 0.0), (-bodies[2].mass / 2, 0.0)),
+        Skate("tail skate", None, "tail", (0.1, 0.05), 0.3),
+        Skate("arm skate", None, "arm", (-half, 0.0), 0.2),
+        Skate("between", "tail", "flyer", (0.3, -0.2), -0.5),
+        Skate("other", "flyer", "block", (0.2, 0.1), 1.5),
+    )
+    return Mechanism(bodies, joints, (0.0, -9.81))
+
+
+# A slot and rods as rows, for pairs that no link joins.
+CROSS = Slot("cross", "tail", "flyer", (0.1, 0.2), 0.4, (0.3, -0.1))
+RODS = (
+    Rod("rod", "block", "flyer", (0.1, 0.0), (-0.2, 0.3), 0.5),
+    Rod("stay", None, "tail", (3.0, 1.0), (0.1, 0.2), 2.0),
+)
+
+
+def written(joint: Any) -> WrittenJoint:
+    ends = joint.first, joint.second
+    match joint:
+        case Skate():
+            return WrittenJoint("skate", *ends, (*joint.second_point, joint.angle, DAMPING))
+        case Slot():
+            numbers = (*joint.first_point, *joint.second_point, joint.line_angle, STIFFNESS, DAMPING)
+            return WrittenJoint("slot", *ends, numbers)
+        case _:
+            numbers = (*joint.first_point, *joint.second_point, joint.length, STIFFNESS, DAMPING)
+            return WrittenJoint("rod", *ends, numbers)
+
+
+def test_written_rows_are_the_mechanisms_rows_in_the_trees_coordinates() -> None:
+    mechanism, random = jumble(), np.random.default_rng(0)
+    tree = spanning_tree(mechanism)
+    assert [link.kind for link in tree.links] == ["hinge", "slot", "hinge", "free"]
+    assert tree.loops == ()
+    joints = [*(joint for joint in mechanism.joints if isinstance(joint, Skate)), CROSS, *RODS]
+    ahead = 0.01
+    late, writer = (RowWriter(tree, range(tree.coordinates), list(map(written, joints)), 0, by) for by in (ahead, 0.0))
+    for _ in range(5):
+        q, v, a = random.normal(size=(3, tree.coordinates))
+        jacobian, right = writer.rows(q, v)
+        for found, same in zip(late.rows(q - ahead * v, v), (jacobian, right), strict=True):
+            assert np.abs(found - same).max() < 1e-12 * np.abs(same).max()
+        own = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
+        # The ground first, which rests.
+        pose, twist, change = (
+            np.vstack([np.zeros(3), each[0]]) for each in tree.motion(*(each[None] for each in (q, v, a)))
+        )
+        # The mechanism's own rows, by another path: maximal coordinates, and the bias by a complex step.
+        for row, joint in enumerate(joints):
+            ends = [own[joint.first], own[joint.second]]
+            poses, twists, velocity, step = pose[ends], twist[ends], twist[ends].ravel(), 1e-100
+            line = joint.rows(*poses)[0]
+            turned = joint.rows(*(poses + 1j * step * twists))[0].imag / step
+            slip = line @ velocity
+            wanted = -turned @ velocity - DAMPING * slip
+            if not isinstance(joint, Skate):
+                wanted -= STIFFNESS * joint.gap(*poses, 0.0)[0]
+            assert jacobian[row] @ v == pytest.approx(slip, rel=1e-12, abs=1e-12)
+            # J a - right is the same number in both: tree coordinates accelerate, bodies do so besides by turning.
+            expected = line @ change[ends].ravel() - wanted
+            assert jacobian[row] @ a - right[row] == pytest.approx(expected, rel=1e-11, abs=1e-11)
+
+
+def test_written_rows_of_rolling_are_those_of_the_joint_and_its_velocity_term() -> None:
+    gears = EllipticGears()
+    roll = next(joint for joint in gears.mechanism().joints if isinstance(joint, Roll))
+    mechanism = Mechanism(gears.mechanism().bodies, (roll,))
+    joint = WrittenJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
+    writer = RowWriter(spanning_tree(mechanism), range(6), [joint])
+    pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
+    # The joint's rows are along e_t and e_n, ours along x and y: the same two conditions, turned.
+    contact = roll.rolling.contact(pose[:, 1, 2] - pose[:, 0, 2])
+    angle = contact.tangent_angle + pose[:, 0, 2]
+    for i in range(len(pose)):
+        ours, right = writer.rows((pose[i] - mechanism.pose).ravel(), twist[i].ravel())
+        basis = np.array([[np.cos(angle[i]), np.sin(angle[i])], [np.sin(angle[i]), -np.cos(angle[i])]])
+        # Exact motion has neither gap nor slip, so that only rounding times the gain of 100 / s^2 is added.
+        assert np.abs(basis @ ours - mechanism.rows(pose[i])).max() < 1e-13
+        assert np.abs(basis @ right - mechanism.bias(pose[i], twist[i])).max() < 1e-11
+
+
+SCRIPT = """
+import json, sys
+if sys.argv[1] == "without":
+    sys.modules["numba"] = None
+from engines.mujoco import EXTENDED
+from reference.joints import Skate
+from reference.mechanism import Body, Mechanism
+from reference.scenes.catalogue import CarAndTrailer, RollingEllipse
+from reference.scenes.slider_crank.slotted_lever import SlottedLever
+found = []
+for scene in (CarAndTrailer(), RollingEllipse(), SlottedLever()):
+    motion = EXTENDED.build(scene.mechanism(), 1e-3)(3, 20)
+    found.append([motion.pose.tolist(), motion.reaction.tolist(), motion.warnings])
+wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (1e9, 0.0, 1e9))
+lost = EXTENDED.build(Mechanism((wild,), (Skate("skate", None, "sleigh", (0.0, 0.0)),)), 0.1)(5, 10)
+print(json.dumps([found, lost.reset_at, lost.warnings]))
+"""
+
+
+def test_without_numba_python_writes_the_same_rows() -> None:
+    def asked(word: str) -> Any:
+        command = [sys.executable, "-c", SCRIPT, word]
+        return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+    (motions, *lost), (plain, *lost_too) = asked("with"), asked("without")
+    assert lost == lost_too
+    assert lost[0] is not None
+    for (pose, reaction, warnings), (same_pose, same_reaction, same_warnings) in zip(motions, plain, strict=True):
+        # The same sums of products, each rounded once or twice more, over sixty steps.
+        assert np.abs(np.subtract(pose, same_pose)).max() < 1e-13
+        assert np.abs(np.subtract(reaction, same_reaction)).max() < 1e-11 * np.abs(reaction).max()
+        assert warnings == same_warnings == []
+
+
+def test_a_row_that_is_no_number_makes_the_reference_none() -> None:
+    model = EXTENDED.model(SLEIGH.mechanism(), 1e-3)
+    data = mujoco.MjData(model.compiled)
+    data.qvel[:] = 1e200  # its square is beyond all numbers
+    with model.hooked():
+        mujoco.mj_forward(model.compiled, data)
+    assert np.isnan(data.efc_aref).all()
+
+
+def test_a_motion_that_blows_up_inside_a_callback_ends_as_a_reset() -> None:
+    wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (1e9, 0.0, 1e9))
+    mechanism = Mechanism((wild,), (Skate("skate", None, "sleigh", (0.0, 0.0)),))
+    motion = EXTENDED.build(mechanism, 1e-1)(20, 10)
+    assert motion.reset_at is not None
+    assert motion.warnings != ()
+
+
+def test_the_callback_is_as_it_was_even_after_a_failure() -> None:
+    assert mujoco.get_mjcb_control() is None
+    run = EXTENDED.build(SLEIGH.mechanism(), 1e-2)
+
+    def fail() -> None:
+        with run.model.hooked():
+            assert mujoco.get_mjcb_control() is not None
+            raise RuntimeError("on purpose")
+
+    with pytest.raises(RuntimeError, match="on purpose"):
+        fail()
+    assert mujoco.get_mjcb_control() is None
+    run(2, 1)
+    assert mujoco.get_mjcb_control() is None
+
+
+@pytest.mark.parametrize("setting", [{"jacobian": "auto"}, {"jacobian": "sparse"}, {"islands": True}], ids=str)
+def test_rows_are_not_written_where_the_solver_would_not_read_them(setting: dict[str, Any]) -> None:
+    with pytest.raises(Unsupported, match="dense"):
+        replace(EXTENDED, **setting).build(SLEIGH.mechanism(), 1e-3)
+
+
+def test_rows_work_beside_loops_and_drives() -> None:
+    """A skate that a four-bar's motion satisfies already changes nothing, though it shares every force."""
+    mechanism = four_bar(crank_rate=10.0)
+    crank = mechanism.bodies[0]
+    along = Skate("idle", None, "crank", (-crank.mass / 2, 0.0))  # at its pin, where nothing moves
+    both = replace(mechanism, joints=(*mechanism.joints, along))
+    plain, skated = EXTENDED.build(mechanism, 1e-3)(10, 10), EXTENDED.build(both, 1e-3)(10, 10)
+    # The row has no inertia to act on in the tree: rounding.
+    assert np.abs(plain.pose - skated.pose).max() < 1e-10
+
+
+def ridden() -> Mechanism:
+    """A body that turns about a blade on another body, which moves too."""
+    floor = Body("floor", 3.0, 1.0, (0.0, 0.0, 0.2), (0.3, 0.0, 0.5))
+    arm, at = 0.2 * np.array([np.cos(0.7), np.sin(0.7)]), np.array([0.4, 0.1])
+    point = at - arm
+    velocity = np.array([0.3, 0.0]) + 0.5 * np.array([-point[1], point[0]]) - np.array([-arm[1], arm[0]])
+    rider = Body("rider", 1.0, 0.1, (0.4, 0.1, 0.7), (*velocity.tolist(), -1.0))
+    return Mechanism((floor, rider), (Skate("blade", "floor", "rider", (-0.2, 0.0)),))
+
+
+def test_a_row_between_two_bodies_that_move_does_no_work() -> None:
+    mechanism = ridden()
+    motion = EXTENDED.build(mechanism, 1e-3)(10, 50)
+    total = energy(mechanism, motion)
+    # RK4 over half a second of about a radian a second in steps of 1e-3 s: rounding, and 1e-12 of a soft row.
+    assert np.abs(mechanism.slip(motion.pose, motion.twist)).max() < 1e-11
+    assert np.abs(total - total[0]).max() < 1e-11 * total[0]
