@@ -74,10 +74,9 @@ static void aim(World *world, const double *own, double dt)
 {
     cpBody *body = world->bodies[(int)own[0]];
     cpConstraint *groove = world->joints[(int)own[1]];
-    double ahead = own[5] ? dt : 0;
     cpVect place = cpBodyGetPosition(body), velocity = cpBodyGetVelocity(body);
-    double x = place.x + velocity.x * ahead, y = place.y + velocity.y * ahead;
-    double angle = cpBodyGetAngle(body) + cpBodyGetAngularVelocity(body) * ahead + own[2];
+    double x = place.x + velocity.x * dt, y = place.y + velocity.y * dt;
+    double angle = cpBodyGetAngle(body) + cpBodyGetAngularVelocity(body) * dt + own[2];
     cpGrooveJointSetGrooveA(groove, cpv(x + own[3] * cos(angle), y + own[3] * sin(angle)));
     cpGrooveJointSetGrooveB(groove, cpv(x + own[4] * cos(angle), y + own[4] * sin(angle)));
 }
