@@ -7,11 +7,16 @@ The chapter's rates (18.70), (18.71), times their denominator, are a direction t
 that keeps the loop closed and vanishes only at a change point (bars in line). With (theta, beta, phi)' = u t,
 kinetic energy I(q) u^2 / 2 and potential energy V(q), Lagrange's equation is I u' + u^2 (grad I . t) / 2 = -grad V . t.
 At a crank limit the first component of t passes zero: the crank turns back, the branch changes its sign, smoothly.
+
+Integrated are the angles and w = sqrt(I) u, the root of twice the kinetic energy, with w' = -grad V . t / sqrt(I): they
+are smooth where u is large, beside a change point. Second derivatives of the angles are not integrated: what leads off
+the curve by d there, where it turns with a radius r, would change rates by d / r at each passage.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -20,11 +25,15 @@ from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign, Valid, validated
 from reference.numerics import windows
+from reference.numerics.integration import IntegrationFailed
 from reference.scenes.four_bar.linkage import FourBar
 
 Array = NDArray[np.float64]
 
+States = Callable[[Array], Any]
 TOLERANCE = windows.TOLERANCE / 10  # a thousand roundings of numpy.longdouble, or one of a double
+# Of the longest bar's square: what t comes down to where bars lie in line but for the rounding of their lengths.
+PASSED = 1e-7
 
 
 class BarAngles(NamedTuple):
@@ -62,26 +71,47 @@ class CurveMotion(Valid):
             )
         return np.append(angle, np.longdouble(theta_dot) / along)
 
-    def motion(self, start: Any, until: float, stages: int = windows.STAGES) -> windows.Windows:
-        """Angles and rates of the three bars up to `until` [s] from a start, in extended precision.
+    def motion(self, start: Any, until: float, stages: int = windows.STAGES) -> States:
+        """States (times, 4) of a start, up to `until` [s], in extended precision: call it with times (times,) [s].
 
         Raises IntegrationFailed at a change point.
         """
-        angle, u = start[:3], start[3]
-        rate = u * self._direction(angle)
+        rate = start[3] * self._direction(start[:3])
         shortest = min(self.four_bar.lengths)
-        unit = max(float(np.abs(rate).max()), math.sqrt(math.hypot(*self.gravity) / shortest)) or 1.0
-        return windows.integrate(self._accelerations, angle, rate, until, unit, stages, TOLERANCE)
+        unit = np.longdouble(max(float(np.abs(rate).max()), math.sqrt(math.hypot(*self.gravity) / shortest)) or 1.0)
+        # Angles are counted in parts of a radian that pass for rates [rad/s], as w does with the largest inertia.
+        largest, nearest = np.sqrt(self._own.max()), PASSED * max(self.four_bar.lengths) ** 2
+
+        def slopes(_: Any, state: Any) -> Any:
+            angle = state[..., :3] / unit
+            direction = self._direction(angle)
+            if np.abs(direction).max(axis=-1).min() < nearest:
+                # A window that comes there is too long, however short it is.
+                raise IntegrationFailed("four-bar: the motion comes to a change point")
+            root = np.sqrt(self._inertia(angle, direction)) / largest
+            turning = unit * (state[..., 3:] / root[..., None]) * direction
+            return np.concatenate([turning, (self._pull(angle, direction) / root)[..., None] / largest**2], axis=-1)
+
+        root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
+        state = np.append(unit * start[:3], start[3] * root)
+        # What is known of the first order is the rate of something that nothing asks for.
+        by = windows.integrate(slopes, np.zeros(4), state, until, float(unit), stages, TOLERANCE)
+
+        def states(times: Array) -> Any:
+            found = by(times)[:, 4:]
+            angle = found[:, :3] / unit
+            root = np.sqrt(self._inertia(angle, self._direction(angle))) / largest
+            return np.column_stack([angle, found[:, 3] / root])
+
+        return states
 
     def bar_angles(self, states: Any) -> BarAngles:
-        """Angles, rates and accelerations of the bars in states (times, 6) of `motion`."""
-        angle, rate = np.split(states, 2, axis=-1)
-        values = (angle, rate, self._accelerations(angle, rate))
+        """Angles, rates and accelerations of the bars in states (times, 4)."""
+        angle, u = states[:, :3], states[:, 3:]
+        direction, bend = self._direction_and_bend(angle)
+        change = self._change(angle, states[:, 3], direction, bend)[:, None]
+        values = (angle, u * direction, change * direction + u**2 * bend)
         return BarAngles(*(np.asarray(value, dtype=float) for value in values))
-
-    def at(self, start: Any) -> Any:
-        """The state (1, 6) of a start."""
-        return np.concatenate([start[:3], start[3] * self._direction(start[:3])])[None]
 
     def _closed(self, angle: Any) -> Any:
         """beta and phi of a closed loop, by Newton in extended precision: the start is known in double only."""
@@ -113,25 +143,37 @@ class CurveMotion(Valid):
         turning = np.roll(direction, 1, axis=-1) - np.roll(direction, -1, axis=-1)
         return direction, factor * np.cos(difference) * turning
 
-    def _accelerations(self, angle: Any, rate: Any) -> Any:
-        """The second derivatives (..., 3) of the angles: u' t + u^2 (dt/dq) t, with u from the rates u t."""
-        l1, l2, _ = (np.longdouble(length) for length in self.four_bar.lengths)
+    @property
+    def _own(self) -> Any:
+        """The bars' inertias (3,) about their ends, with what hangs there [kg m^2]."""
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
-        t, bend = self._direction_and_bend(angle)
-        u = np.sum(rate * t, axis=-1) / np.sum(t * t, axis=-1)
         lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
-        own = lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])
-        cross = m2 * l1 * l2
+        return lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])
+
+    @property
+    def _cross(self) -> Any:
+        """What couples crank and coupler while they are in line [kg m^2]."""
+        return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
+
+    def _inertia(self, angle: Any, t: Any) -> Any:
+        """I (...,) at angles (..., 3)."""
+        coupling = self._cross * np.cos(angle[..., 1] - angle[..., 0])
+        return np.sum(self._own * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
+
+    def _pull(self, angle: Any, t: Any) -> Any:
+        """-grad V . t (...,)."""
+        m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
+        carried = np.array(self.four_bar.lengths, dtype=np.longdouble) * np.array([m1 / 2 + m2, m2 / 2, m3 / 2])
+        force = np.longdouble(self.gravity[1]) * np.cos(angle) - np.longdouble(self.gravity[0]) * np.sin(angle)
+        return np.sum(carried * force * t, axis=-1)
+
+    def _change(self, angle: Any, u: Any, t: Any, bend: Any) -> Any:
+        """u' (...,) at angles (..., 3) and u (...,)."""
         between = angle[..., 1] - angle[..., 0]
-        coupling, fading = cross * np.cos(between), -cross * np.sin(between)
-        inertia = np.sum(own * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
+        coupling, fading = self._cross * np.cos(between), -self._cross * np.sin(between)
         inertia_slope = (
-            2 * np.sum(own * t * bend, axis=-1)
+            2 * np.sum(self._own * t * bend, axis=-1)
             + coupling * (bend[..., 0] * t[..., 1] + t[..., 0] * bend[..., 1])
             + fading * (t[..., 1] - t[..., 0]) * t[..., 0] * t[..., 1]
         )
-        carried = lengths * np.array([m1 / 2 + m2, m2 / 2, m3 / 2])
-        force = np.longdouble(self.gravity[1]) * np.cos(angle) - np.longdouble(self.gravity[0]) * np.sin(angle)
-        pull = np.sum(carried * force * t, axis=-1)
-        change = (pull - u**2 * inertia_slope / 2) / inertia
-        return change[..., None] * t + u[..., None] ** 2 * bend
+        return (self._pull(angle, t) - u**2 * inertia_slope / 2) / self._inertia(angle, t)

@@ -16,10 +16,10 @@ from reference.checks import InvalidMechanism, Positive, Sign
 from reference.joints import Drive, Joint, Pin, Vector, bodies_of
 from reference.kinds import Floats
 from reference.mechanism import Mechanism
-from reference.numerics.windows import COARSE_STAGES, STAGES, Windows
+from reference.numerics.windows import COARSE_STAGES, STAGES
 from reference.scene import Scene
 from reference.scenes.four_bar.forces import Densities, three_densities
-from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion
+from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
 from reference.trajectory import Trajectory
 
@@ -188,7 +188,7 @@ class FreeFourBar(FourBarScene):
         curve = self._curve
         start = curve.start(self.start, self.rate, self.branch)
         if not times.any():  # a mechanism needs no more than the start
-            return curve.bar_angles(np.repeat(curve.at(start), len(times), axis=0))
+            return curve.bar_angles(np.repeat(start[None], len(times), axis=0))
         try:
             return curve.bar_angles(_integrated(self, max(self.duration, float(times.max())), stages)(times))
         except ArithmeticError as failure:
@@ -201,7 +201,7 @@ class FreeFourBar(FourBarScene):
 
 
 @lru_cache(maxsize=8)
-def _integrated(scene: FreeFourBar, until: float, stages: int) -> Windows:
+def _integrated(scene: FreeFourBar, until: float, stages: int) -> States:
     """Kept for all equal scenes, since samples of every number ask for it."""
     curve = scene._curve
     return curve.motion(curve.start(scene.start, scene.rate, scene.branch), until, stages)

@@ -183,8 +183,7 @@ def _by_hand(model: Model, mechanism: Mechanism) -> list[tuple[Part, tuple[float
                     records.append((Part.ZEROED, (body, hand._angle, hand._arm, hand._push, hand._spin)))
                 case AimedGroove():
                     row = constraints.index(hand.constraint)
-                    aim = (body, row, hand._angle, hand._back, hand._front)
-                    records.append((Part.AIMED, aim))
+                    records.append((Part.AIMED, (body, row, hand._angle, hand._back, hand._front)))
                 case _:
                     raise Unsupported("this method aims rows by code of ours in Python, which the page has not")
     return records
