@@ -1,4 +1,4 @@
-"""Builds and released versions of an engine: found, installed apart, run in a process of their own, refused in a line."""
+"""Builds and released versions of an engine: found, installed apart, run in a process of their own, or refused."""
 
 from __future__ import annotations
 
