@@ -14,40 +14,29 @@ import mujoco
 import numpy as np
 import pytest
 
-from reports import __main__ as command_line
 from tests.test_check import FOUR_BAR
+from tests.test_command_line import call, here
+
+__all__ = ["here"]
 
 
-def call(*words):
-    """The exit status of the command line."""
-    with pytest.raises(SystemExit) as ending:
-        command_line.main([str(word) for word in words])
-    return ending.value.code
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(folder, capfd):
-    (folder / "four_bar.xml").write_text(FOUR_BAR)
+def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
+    (here / "four_bar.xml").write_text(FOUR_BAR)
     words = ("check", "four_bar.xml", "--duration", 0.2, "--html", "out.html", "--markdown", "sub/out.md", "--json")
     assert call(*words) == 1
     out, err = capfd.readouterr()
     assert json.loads(out)["met"] is False
     assert "crosscheck: Your settings miss the tolerance" in err.splitlines()[-1]
     assert "following the ideal motion" in err  # progress
-    assert "data:image/svg+xml" in (folder / "out.html").read_text()
-    page = (folder / "sub/out.md").read_text()
+    assert "data:image/svg+xml" in (here / "out.html").read_text()
+    page = (here / "sub/out.md").read_text()
     for name in ("out_1.svg", "out_2.svg"):
         assert f"]({name})" in page
-        xml.parse(folder / "sub" / name)
+        xml.parse(here / "sub" / name)
 
 
-def test_a_model_within_its_tolerance_ends_well(folder, capfd):
-    (folder / "four_bar.xml").write_text(FOUR_BAR)
+def test_a_model_within_its_tolerance_ends_well(here, capfd):
+    (here / "four_bar.xml").write_text(FOUR_BAR)
     assert call("check", "four_bar.xml", "--duration", 0.05, "--tolerance", 0.1) == 0
     assert "Your settings meet the tolerance" in capfd.readouterr().out
 
@@ -56,24 +45,22 @@ def test_a_model_within_its_tolerance_ends_well(folder, capfd):
     ("text", "sentence"),
     [
         ("while True:\n    pass", "CPU"),
-        ("import os\nos.abort()", "its process was lost: aborted with signal 6"),
         ("import os\nos._exit(3)", "its process was lost"),
         (
             "import pymunk\nfrom pymunk._chipmunk_cffi import lib\nspace, body = pymunk.Space(), pymunk.Body(1, 1)\n"
             "space.add(body)\nlib.cpSpaceAddBody(space._space, body._body)",
-            "You must not add it a second time. Failed condition: body->space != space",
+            "its process was lost: aborted with signal 6 ... a second time. Failed condition: body->space != space",
         ),
     ],
-    ids=["endless", "aborting", "leaving", "aborted by Chipmunk"],
+    ids=["endless", "leaving", "aborted by Chipmunk"],
 )
-def test_a_script_that_ends_its_process_or_never_ends_is_one_line(folder, capfd, text, sentence):
-    (folder / "script.py").write_text(text)
-    assert call("check", "script.py:space", "--limit", 2) == 2
+def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, sentence):
+    (here / "script.py").write_text(text)
+    assert call("check", "script.py:space", "--limit", 1) == 2
     out, err = capfd.readouterr()
     assert out == ""
     (line,) = [line for line in err.splitlines() if line.startswith("crosscheck: ")]
-    assert sentence in line
-    assert "script.py:space" in line
+    assert all(part in line for part in (*sentence.split(" ... "), "script.py:space"))
     assert "Traceback" not in err
 
 
@@ -93,18 +80,18 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(folder, capfd,
         (("view", "penduum_1"), "did you mean"),
     ],
 )
-def test_bad_words_are_one_line(folder, capfd, words, sentence):
+def test_bad_words_are_one_line(here, capfd, words, sentence):
     assert call(*words) == 2
     out, err = capfd.readouterr()
     assert sentence in err.splitlines()[-1]
     assert out == ""
 
 
-def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_comments(folder):
+def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_comments(here):
     assert call("export", "free_four_bar", "--to", "pymunk", "--step", 1e-4, "--out", "alone.py") == 0
-    text = (folder / "alone.py").read_text()
+    text = (here / "alone.py").read_text()
     assert "crosscheck" not in text
-    told = subprocess.run([sys.executable, "-I", "alone.py"], cwd=folder, capture_output=True, text=True, check=True)
+    told = subprocess.run([sys.executable, "-I", "alone.py"], cwd=here, capture_output=True, text=True, check=True)
     last = told.stdout.splitlines()[-1]
     assert last.startswith("1.0000 s")
     poses = eval(last.split("s ", 1)[1])
@@ -119,14 +106,14 @@ def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_commen
         assert abs(angle - own[2]) < 0.1
 
 
-def test_a_view_without_a_display_is_an_animation_in_a_file(folder, capfd, monkeypatch):
+def test_a_view_without_a_display_is_an_animation_in_a_file(here, capfd, monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
     assert call("view", "pendulum_2") == 0
     assert "no viewer: there is no display" in capfd.readouterr().out
-    xml.parse(folder / "pendulum_2.svg")
-    assert len(re.findall(r"@keyframes m0b\d", (folder / "pendulum_2.svg").read_text())) == 2  # of each body
+    xml.parse(here / "pendulum_2.svg")
+    assert len(re.findall(r"@keyframes m0b\d", (here / "pendulum_2.svg").read_text())) == 2  # of each body
     assert call("view", "pendulum_2") == 2
     assert "--force" in capfd.readouterr().err
 
@@ -153,7 +140,7 @@ class Window:
         self.seen.append(float(self.data.time))
 
 
-def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(folder, monkeypatch):
+def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypatch):
     """Tried by hand in Xvfb as well: the bars are seen from above, and move."""
     viewer = types.ModuleType("mujoco.viewer")
     viewer.launch_passive = Window  # type: ignore[attr-defined]
@@ -165,4 +152,4 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(folder, monkeyp
     np.testing.assert_allclose(window.seen, [1e-3, 2e-3, 3e-3])
     assert window.model.ngeom >= 5
     assert window.look == {"show_left_ui": False, "show_right_ui": False}
-    assert not list(folder.iterdir())
+    assert not list(here.iterdir())

@@ -7,18 +7,29 @@ import subprocess
 import sys
 from contextlib import closing
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
+from engines import registry
+from engines.lagrange import Lagrange
+from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports import __main__ as program
 from reports.cli import commands, selection
 from reports.cli import report as report_command
+from reports.model import catalogue
+from reports.model.cells import Cell
 from reports.model.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
+from reports.model.measure import blank, measure
+from reports.model.outcomes import Outcome
+from reports.pages import index, rendering
 from reports.run import files
 from reports.run.files import write_whole
 from reports.run.store import Store
 from reports.write.csv_files import as_csv
 from tests.rows import row
+from tests.test_reports import PAGE
+from tests.toys import Disc, Toy
 
 ROOT = Path(__file__).resolve().parent.parent
 ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
@@ -47,14 +58,22 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_results_go_below_the_current_folder_and_a_second_run_has_nothing_to_run(here, capfd):
-    assert call("run", *ONE_CELL) == FINE
-    assert "1 of 1 cells run" in capfd.readouterr().out
+def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capfd):
+    one_stored(here)
     assert call("run", *ONE_CELL) == FINE
     assert "0 of 1 cells run" in capfd.readouterr().out
+    (here / "crosscheck-results" / "cells.sqlite").write_text("no results\n" * 1000)
+    for words in (("report",), ("show", ONE_CELL[0])):
+        assert call(*words) == REFUSED
+        assert "is damaged" in one_line(capfd.readouterr().err)
+    assert call("run", *ONE_CELL) == FINE
+    out, err = capfd.readouterr()
+    assert "cells.sqlite.damaged-1" in one_line(err)
+    assert "1 of 1 cells run" in out
     assert call("show", ONE_CELL[0]) == FINE
+    kept = {"cells.sqlite", "cells.sqlite.damaged-1", "truths"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == kept
     assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
-    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite", "truths"}
 
 
 @pytest.mark.parametrize("words", [("show", "driven_four_bar"), ("report",), ("report", "--publish")])
@@ -64,6 +83,12 @@ def test_reading_commands_make_no_store(words, here, capfd):
     assert call(*words, "--results", "my results") == REFUSED
     assert "--results 'my results'" in capfd.readouterr().err
     assert list(here.iterdir()) == []
+
+
+def one_stored(folder):
+    """As after a run of ONE_CELL."""
+    with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
+        store.put(blank(Cell(DrivenFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 
 
 def checkout(folder, monkeypatch):
@@ -78,21 +103,18 @@ def checkout(folder, monkeypatch):
 
 def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
     texts = checkout(here / "checkout", monkeypatch)
-    assert call("run", *ONE_CELL) == FINE
-    capfd.readouterr()
+    one_stored(here)
     assert call("report", "--publish") == REFUSED
     said = one_line(capfd.readouterr().err)
     left, total = (int(said.split()[place]) for place in (4, 6))
     assert 0 < total - left <= 1
     assert said.endswith("crosscheck run --full\n")
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
-    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite", "truths"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
 
 
 def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, monkeypatch, capfd):
     """Its cells are not missing, since nobody can run them: they would be taken out without a word."""
-    from engines import registry
-
     texts = checkout(here / "checkout", monkeypatch)
     texts["reports/results/errors.csv"] = as_csv(
         [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
@@ -100,8 +122,7 @@ def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, m
     (here / "checkout/reports/results/errors.csv").write_text(texts["reports/results/errors.csv"])
     absent = {"bullet": "bullet needs pybullet", "mjx": "mjx needs jax", "exudyn": "it is in no row"}
     monkeypatch.setattr(registry, "ABSENT", absent)
-    assert call("run", *ONE_CELL) == FINE
-    capfd.readouterr()
+    one_stored(here)
     assert call("report", "--publish") == REFUSED
     said = one_line(capfd.readouterr().err)
     assert "bullet needs pybullet; mjx needs jax" in said
@@ -118,12 +139,6 @@ def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
 
 def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
     """With a grid of one cell and one page of one line, since rendering is not the subject."""
-    from reports.model import catalogue
-    from reports.model.cells import Cell
-    from reports.pages import index, rendering
-    from tests.test_reports import PAGE
-    from tests.toys import Disc, Toy
-
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
@@ -133,8 +148,6 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     )
     monkeypatch.setattr(index, "render_readme", lambda text, material: f"{text}, with a table")
     with Store(here / "crosscheck-results" / "cells.sqlite") as store:
-        from reports.model.measure import measure
-
         store.put(measure(cell, repeat=False))
     assert call("report") == FINE
     assert (here / "checkout" / "README.md").read_text() == "a readme"
@@ -147,19 +160,6 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     assert not (here / "crosscheck-results/index.md").exists()
 
 
-def test_a_damaged_store_is_told_and_the_run_goes_on(here, capfd):
-    assert call("run", *ONE_CELL) == FINE
-    (here / "crosscheck-results" / "cells.sqlite").write_text("no results\n" * 1000)
-    capfd.readouterr()
-    for words in (("report",), ("show", ONE_CELL[0])):
-        assert call(*words) == REFUSED
-        assert "is damaged" in one_line(capfd.readouterr().err)
-    assert call("run", *ONE_CELL) == FINE
-    out, err = capfd.readouterr()
-    assert "cells.sqlite.damaged-1" in one_line(err)
-    assert "1 of 1 cells run" in out
-
-
 @pytest.mark.parametrize("command", [("run", *ONE_CELL), ("show", "driven_four_bar"), ("report",)])
 def test_results_that_can_not_be_a_folder_are_one_line(command, here, capfd):
     (here / "file").write_text("mine")
@@ -170,34 +170,23 @@ def test_results_that_can_not_be_a_folder_are_one_line(command, here, capfd):
 
 
 def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
-    old, new = {}, {}
-    for name in ("a.md", "b.md", "c.md"):
-        (tmp_path / name).write_text("old")
-        old[tmp_path / name], new[tmp_path / name] = "old", "new\n"
-    synced = []
-
-    def fails_at_the_third(descriptor):
-        synced.append(descriptor)
-        if len(synced) == 3:
-            raise OSError(28, "No space left on device")
+    old = {tmp_path / name: "old" for name in ("a.md", "b.md", "c.md")}
+    new = dict.fromkeys(old, "new\n")
+    for path, text in old.items():
+        path.write_text(text)
+    full = OSError(28, "No space left on device")
 
     def texts():
         return {path: path.read_text() for path in tmp_path.iterdir()}
 
-    with monkeypatch.context() as patched:
-        patched.setattr(files.os, "fsync", fails_at_the_third)
-        with pytest.raises(files.FileTrouble, match=r"c\.md can't be written \(No space left on device\): make room"):
+    for ends, told in (
+        ([None, None, full], pytest.raises(files.FileTrouble, match=r"c\.md can't be written \(No space.*make room")),
+        ([KeyboardInterrupt], pytest.raises(KeyboardInterrupt)),
+    ):
+        with monkeypatch.context() as patched, told:
+            patched.setattr(files.os, "fsync", Mock(side_effect=ends))
             write_whole(new, "make room")
-    assert texts() == old
-
-    def interrupted(descriptor):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patched:
-        patched.setattr(files.os, "fsync", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            write_whole(new, "make room")
-    assert texts() == old
+        assert texts() == old
     (tmp_path / "d.md").mkdir()
     with pytest.raises(files.FileTrouble, match=r"d\.md can't be written \(a folder has its name\)"):
         write_whole({**new, tmp_path / "d.md": "new"}, "make room")
@@ -215,13 +204,6 @@ def test_a_link_is_replaced_and_what_it_leads_to_is_not(tmp_path):
     assert not (tmp_path / "page.md").is_symlink()
 
 
-def failing(error):
-    def command(arguments):
-        raise error
-
-    return command
-
-
 @pytest.mark.parametrize(
     ("error", "status", "line"),
     [
@@ -235,13 +217,13 @@ def failing(error):
     ],
 )
 def test_each_ending_has_its_status_and_its_line(error, status, line, monkeypatch, capfd):
-    monkeypatch.setattr(commands, "invoke", failing(error))
+    monkeypatch.setattr(commands, "invoke", Mock(side_effect=error))
     assert call("list") == status
     assert capfd.readouterr() == ("", line)
 
 
 def test_a_mistake_of_the_program_itself_is_not_hidden(monkeypatch):
-    monkeypatch.setattr(commands, "invoke", failing(ZeroDivisionError()))
+    monkeypatch.setattr(commands, "invoke", Mock(side_effect=ZeroDivisionError))
     with pytest.raises(ZeroDivisionError):
         program.main(["list"])
 

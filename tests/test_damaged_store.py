@@ -67,6 +67,10 @@ def test_a_store_damaged_anywhere_is_put_aside_and_the_run_goes_on(tmp_path, kin
     with Store(path) as store:
         assert store.notice == ""
         assert set(store.get(CELLS)) == {CELLS[0]}
+    path.write_text("a second one\n" * 100)
+    with Store(path) as store:
+        assert "damaged-2" in store.notice
+    assert (tmp_path / "cells.sqlite.damaged-1").read_bytes() == old
 
 
 def scribbled(path, seed, count):
@@ -102,56 +106,31 @@ def test_random_bytes_anywhere_end_in_no_traceback_and_no_wrong_row(tmp_path, co
         assert "--results" in told
 
 
-def test_a_second_damaged_store_does_not_replace_the_first(tmp_path):
-    for count in (1, 2):
-        (tmp_path / "cells.sqlite").write_text(f"no results, {count}\n" * 100)
-        with Store(tmp_path / "cells.sqlite") as store:
-            assert f"damaged-{count}" in store.notice
-    assert (tmp_path / "cells.sqlite.damaged-1").read_text().startswith("no results, 1")
-    assert (tmp_path / "cells.sqlite.damaged-2").read_text().startswith("no results, 2")
-
-
-def of_another_schema(path):
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("pragma user_version=7")
-
-
-def with_other_columns(path):
-    path.unlink()
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("create table results (key text, value text)")
-
-
-def of_another_program(path):
-    path.unlink()
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("create table moz_places (id integer)")
-
-
-def a_folder(path):
-    path.unlink()
-    path.mkdir()
-
-
 @pytest.mark.parametrize(
-    ("make", "telling"),
+    ("statement", "telling"),
     [
-        (of_another_schema, "newer version"),
-        (with_other_columns, "another program"),
-        (of_another_program, "another program"),
-        (a_folder, "file"),
+        ("pragma user_version=7", "newer version"),
+        ("create table results (key text, value text)", "another program"),
+        ("create table moz_places (id integer)", "another program"),
+        ("", "file"),
     ],
 )
-def test_what_is_no_store_of_ours_is_left_alone_with_a_sentence(tmp_path, make, telling):
-    path = filled(tmp_path / "cells.sqlite", CELLS[:2])
-    make(path)
-    old = None if path.is_dir() else path.read_bytes()
+def test_what_is_no_store_of_ours_is_left_alone_with_a_sentence(tmp_path, statement, telling):
+    path = tmp_path / "cells.sqlite"
+    if statement.startswith("pragma"):
+        filled(path, CELLS[:2])
+    if statement:
+        with closing(sqlite3.connect(path)) as connection, connection:
+            connection.execute(statement)
+    else:
+        path.mkdir()
+    old = path.read_bytes() if statement else None
     for use in (Store, Store.read):
         with pytest.raises(FileTrouble, match=telling) as told, use(path):
             pass
         assert "--results" in str(told.value)
     assert names(tmp_path) == {"cells.sqlite"}
-    assert path.is_dir() or path.read_bytes() == old
+    assert path.is_dir() if old is None else path.read_bytes() == old
 
 
 @pytest.mark.parametrize("version", [0, 1])

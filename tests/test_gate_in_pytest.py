@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
+from engines import Promise
+from reports.gate import grid_tests
+from reports.gate.theory import Case
 from tests.test_gate import row
 from tests.test_gate_baseline import written
+from tests.toys import Disc, Toy
+
+
+@dataclass(frozen=True)
+class Absent(Toy):
+    """One whose package is not installed."""
+
+    missing: str = "needs what pip install brings"
+
 
 SUITE = """
 import pytest
@@ -36,10 +49,13 @@ def suite(pytester):
 
 
 def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
-    found = suite.runpytest_inprocess(
-        "-s", "--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md"
+    """A test of all verdicts is kept with it, and one of nothing is not."""
+    suite.makepyfile(
+        f"{SUITE}\ndef test_of_all(verdicts):\n    assert len(verdicts) == 1\n\ndef test_of_nothing(): pass\n"
     )
-    found.assert_outcomes(passed=1, deselected=2)
+    chosen = ("--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md")
+    found = suite.runpytest_inprocess("-s", *chosen)
+    found.assert_outcomes(passed=2, deselected=3)
     found.stdout.fnmatch_lines(
         ["*ran [[]'toy two'[]]*", "*crosscheck*", "scene *bound*", "disc *toy two*", "written to *"]
     )
@@ -47,37 +63,17 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
     assert "toy one" not in (suite.path / "out.md").read_text()
 
 
-def test_a_test_of_all_verdicts_is_kept_with_what_is_selected_and_an_engine_that_is_not_there_is_skipped(suite):
-    suite.makepyfile(
-        test_all=SUITE
-        + """
-def test_of_all(verdicts):
-    assert len(verdicts) == 1
-
-def test_of_nothing():
-    pass
-
-from dataclasses import dataclass
-from reports.gate import grid_tests
-
-@dataclass(frozen=True)
-class Absent(Toy):
-    missing: str = "needs what pip install planar-crosscheck[moon] brings"
-
-def test_absent():
-    grid_tests.verdict_of({}, Case(Disc(), Absent(), Promise(2)))
-"""
-    )
-    selected = suite.runpytest_inprocess("test_all.py", "--engine", "toy two", "--baseline", "errors.csv")
-    selected.assert_outcomes(passed=2, deselected=4)
-    absent = suite.runpytest_inprocess("test_all.py", "-k", "absent", "-rs", "--baseline", "errors.csv")
-    absent.assert_outcomes(skipped=1, deselected=5)
-    absent.stdout.fnmatch_lines(["*needs what pip install planar-crosscheck[[]moon[]] brings"])
+def test_an_engine_that_is_not_there_is_skipped_with_its_extra():
+    with pytest.raises(pytest.skip.Exception, match="what pip install brings"):
+        grid_tests.verdict_of({}, Case(Disc(), Absent(), Promise(2)))
 
 
 def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
-    pytest.importorskip("xdist", reason="pytest-xdist comes with the extra `test`: pip install -e '.[test]'")
-    found = suite.runpytest_subprocess("-n", "1", "-rs", "--baseline", "errors.csv")
+    """As pytest-xdist marks the configuration of its workers."""
+    suite.makeconftest(
+        'pytest_plugins = ["reports.gate.pytest_plugin"]\ndef pytest_configure(config): config.workerinput = {}\n'
+    )
+    found = suite.runpytest_inprocess("-rs", "-p", "no:xdist", "--baseline", "errors.csv")
     found.assert_outcomes(skipped=3)
     found.stdout.fnmatch_lines(["*the grid has workers of its own: pytest -m crosscheck, without -n"])
 

@@ -15,6 +15,7 @@ from reports.__main__ import main
 from reports.model.cells import Cell
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome, describe_exit
+from reports.model.tasks import Motion
 from reports.run.queue import apart, usable
 from reports.run.running import missing, run_cells, run_into, worker_count
 from reports.run.store import Store
@@ -40,19 +41,11 @@ def test_each_way_to_fail_is_an_outcome_of_its_own(failed_rows, variant, outcome
     assert failed_rows[variant].sentence
 
 
-def test_a_sound_cell_among_crashing_ones_is_measured(failed_rows):
-    row = failed_rows["default"]
-    assert row.outcome == Outcome.FINISHED
-    assert row.angle == pytest.approx(row.step**2, rel=1e-9)
-
-
-def test_an_abort_tells_its_signal_and_its_last_words(failed_rows):
+def test_a_sentence_is_the_engines_own_or_tells_the_signal_and_the_last_words(failed_rows):
+    assert failed_rows["default"].angle == pytest.approx(failed_rows["default"].step ** 2, rel=1e-9)
     assert "signal 6 (SIGABRT)" in failed_rows["abort"].sentence
     assert "Aborting due to Toy error: no such thing" in failed_rows["abort"].sentence
     assert failed_rows["exit"].sentence == describe_exit(3)
-
-
-def test_the_sentence_of_a_refusal_is_the_engine_s_own(failed_rows):
     assert failed_rows["refuse"].sentence == "mass is -1; it must be greater than zero"
     assert failed_rows["unsupported"].sentence == "it has no pins"
 
@@ -81,30 +74,35 @@ def test_cells_refuse_counts_that_cannot_be(field, value):
         replace(Cell(Disc(), Toy(), 1), **{field: value})
 
 
-def test_a_cell_that_was_timed_out_is_run_again_with_more_time_and_never_with_less(tmp_path):
-    cells = [Cell(Disc(), Toy(), 1)]
+def test_what_was_timed_out_is_run_again_with_more_time_and_never_with_less(tmp_path):
+    cell = Cell(Disc(), Toy(), 1)
+    items = [cell, Motion(cell)]
+
+    def outcomes(store):
+        return {result.outcome for result in (store.get(items[:1])[cell], store.answers(items[1:])[items[1]])}
+
     with Store(tmp_path / "cells.sqlite") as store:
-        assert run_into(store, cells, limit=1e-9) == 1
-        assert store.get(cells)[cells[0]].outcome == Outcome.TIMED_OUT
-        assert store.get(cells)[cells[0]].sentence == "did not end within 1e-09 s of CPU time"
-        assert run_into(store, cells, limit=1e-9) == 0
-        assert run_into(store, cells, limit=5e-10) == 0
-        assert missing(cells, store, limit=2e-9) == tuple(cells)
-        assert run_into(store, cells) == 1
-        assert store.get(cells)[cells[0]].outcome == Outcome.FINISHED
-        assert run_into(store, cells, limit=1e-9) == 0
-        assert store.get(cells)[cells[0]].outcome == Outcome.FINISHED
+        assert run_into(store, items, limit=1e-9) == 2
+        assert outcomes(store) == {Outcome.TIMED_OUT}
+        assert store.get(items[:1])[cell].sentence == "did not end within 1e-09 s of CPU time"
+        assert run_into(store, items, limit=1e-9) == run_into(store, items, limit=5e-10) == 0
+        assert missing(items, store, limit=2e-9) == tuple(items)
+        assert run_into(store, items) == 2
+        assert outcomes(store) == {Outcome.FINISHED}
+        assert run_into(store, items, limit=1e-9) == 0
+        assert outcomes(store) == {Outcome.FINISHED}
 
 
-def test_a_cell_killed_from_outside_twice_is_told_and_not_stored(tmp_path):
+def test_what_is_killed_from_outside_twice_is_told_and_not_stored(tmp_path):
     cells = [Cell(Disc(), RoughToy("kill"), 1), Cell(Disc(), Toy(), 1)]
-    rows = []
+    task = Motion(cells[0])
+    done = []
     with Store(tmp_path / "cells.sqlite") as store:
-        with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost, the others are stored.*SIGKILL"):
-            run_into(store, cells, done=rows.append)
-        assert missing(cells, store) == (cells[0],)
+        with pytest.raises(WorkersLost, match=r"2 of 3 cells are lost, the others are stored.*SIGKILL"):
+            run_into(store, [*cells, task], done=done.append)
+        assert set(missing([*cells, task], store)) == {cells[0], task}
         assert list(store.get(cells)) == [cells[1]]
-    assert {row.variant: row.outcome for row in rows} == {"kill": Outcome.LOST, "default": Outcome.FINISHED}
+    assert sorted(result.outcome for result in done) == [Outcome.FINISHED, Outcome.LOST, Outcome.LOST]
 
 
 def test_lost_workers_are_one_line_and_status_1_at_the_command_line(monkeypatch, tmp_path, capsys):

@@ -18,9 +18,9 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 
 from reference.chapter.centrodes import from_poses
-from reports import __main__ as command_line
 from reports.pages.centrodes.page import returned
 from reports.write.templates import TEMPLATES
+from tests.test_command_line import call
 
 HEADER = "t,x,y,angle"
 
@@ -33,13 +33,6 @@ def ladder(count=101, low=0.2, high=1.3):
 
 def as_text(table, header=HEADER):
     return "\n".join([header, *(",".join(repr(float(v)) for v in row) for row in table)]) + "\n"
-
-
-def call(*words):
-    """The exit status of the command line."""
-    with pytest.raises(SystemExit) as ending:
-        command_line.main([str(word) for word in words])
-    return ending.value.code
 
 
 def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, capfd):

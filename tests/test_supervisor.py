@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -108,36 +109,28 @@ def test_the_probe_sees_what_is_left_behind():
     }
 
 
-def test_a_worker_goes_on_after_a_job_that_leaves_nothing():
-    processes = {result for _, result, _ in supervise(act, ["process"] * 5, limit=60.0, workers=1)}
-    assert len(processes) == 1
-
-
-def test_results_that_cannot_travel_are_failures_with_a_sentence():
-    told = {item: result for item, result, _ in supervise(act, ["unreadable", "unsendable", "huge", "large"], 60.0, 2)}
-    assert told["large"] == bytes(10**7)
-    assert all(told[name].outcome == Outcome.FAILED for name in ("unreadable", "unsendable", "huge"))
-    assert told["unreadable"].sentence.startswith("its result can't be read: TypeError")
-    assert told["unsendable"].sentence == "TypeError: it stays here"
-    assert told["huge"].sentence.startswith("OverflowError: a result of 2684")
-
-
-def test_an_item_that_cannot_be_sent_is_a_failure_and_no_other_one_suffers():
-    items = [threading.Lock(), "process"]
+def test_what_cannot_travel_is_a_failure_with_a_sentence_and_its_worker_goes_on_after_what_leaves_nothing():
+    items = [*["process"] * 3, threading.Lock(), "unreadable", "unsendable", "huge", "large"]
     told = [result for _, result, _ in supervise(act, items, limit=60.0, workers=1)]
-    assert told[0].outcome == Outcome.FAILED
-    assert told[0].sentence.startswith("can't be sent to a worker: TypeError")
-    assert isinstance(told[1], int)
+    assert len({*told[:3]}) == 1
+    assert told.pop() == bytes(10**7)
+    assert all(loss.outcome == Outcome.FAILED for loss in told[3:])
+    assert told[3].sentence.startswith("can't be sent to a worker: TypeError")
+    assert told[4].sentence.startswith("its result can't be read: TypeError")
+    assert told[5].sentence == "TypeError: it stays here"
+    assert told[6].sentence.startswith("OverflowError: a result of 2684")
 
 
-@pytest.mark.parametrize("name", ["kill once", "segfault once"])
-def test_a_cell_whose_worker_was_killed_is_tried_once_more(tmp_path, name):
-    (row,) = run_cells([Cell(Disc(), RoughToy(name, folder=str(tmp_path)), 1)])
-    assert row.outcome == Outcome.FINISHED
-    assert row.angle == pytest.approx(row.step**2, rel=1e-9)
+def test_a_cell_whose_worker_was_killed_is_tried_once_more(tmp_path):
+    for name in ("kill once", "segfault once"):
+        (tmp_path / name).mkdir()
+    cells = [Cell(Disc(), RoughToy(name, folder=str(tmp_path / name)), 1) for name in ("kill once", "segfault once")]
+    rows = {row.variant: row for row in run_cells(cells)}
+    assert {row.outcome for row in rows.values()} == {Outcome.FINISHED}
+    assert all(row.angle == pytest.approx(row.step**2, rel=1e-9) for row in rows.values())
     # A crash that does not come back is a finding about the engine; that somebody kills processes is none.
     crash = "the first try aborted with signal 11 (SIGSEGV), the second went through"
-    assert row.sentence == (crash if name == "segfault once" else "")
+    assert [rows[cell.engine.variant].sentence for cell in cells] == ["", crash]
 
 
 def test_waiting_for_a_busy_machine_is_no_time_of_the_cell():
@@ -197,38 +190,28 @@ def test_a_pool_whose_workers_never_start_is_told_in_one_line(monkeypatch):
         list(run_cells([Cell(Disc(), Toy(), 1)]))
 
 
-def test_a_system_without_room_for_processes_is_told_in_one_line(monkeypatch):
-    def full(*_: object) -> None:
-        raise BlockingIOError(11, "Resource temporarily unavailable")
+@pytest.mark.parametrize("seconds", [0.25, 1e6])
+def test_a_system_without_room_for_processes_is_waited_for_and_told_in_one_line(monkeypatch, seconds):
+    start, again = supervisor.start_worker, time.monotonic() + seconds
 
-    monkeypatch.setattr(supervisor, "start_worker", full)
-    with pytest.raises(WorkersLost, match="Resource temporarily unavailable"):
-        list(run_cells([Cell(Disc(), Toy(), 1)]))
-
-
-def test_a_system_that_has_room_again_a_moment_later_is_waited_for(monkeypatch):
-    start, again = supervisor.start_worker, time.monotonic() + 0.25
-
-    def full_at_first(*arguments):
+    def full(*arguments):
         if time.monotonic() < again:
             raise BlockingIOError(11, "Resource temporarily unavailable")
         return start(*arguments)
 
-    monkeypatch.setattr(supervisor, "start_worker", full_at_first)
-    assert [type(result) for _, result, _ in supervise(act, ["process"], limit=60.0, workers=1)] == [int]
+    monkeypatch.setattr(supervisor, "start_worker", full)
+    lost = pytest.raises(WorkersLost, match="Resource temporarily unavailable")
+    with lost if seconds > 1 else nullcontext():
+        assert [type(result) for _, result, _ in supervise(act, ["process"], limit=60.0, workers=1)] == [int]
 
 
 @pytest.mark.parametrize(
     ("code", "outside", "words"),
     [
         (-signal.SIGKILL, True, f"killed from outside with signal {signal.SIGKILL:d} (SIGKILL)"),
-        (-signal.SIGTERM, True, f"killed from outside with signal {signal.SIGTERM:d} (SIGTERM)"),
         (-signal.SIGHUP, True, f"killed from outside with signal {signal.SIGHUP:d} (SIGHUP)"),
         (-signal.SIGINT, True, f"killed from outside with signal {signal.SIGINT:d} (SIGINT)"),
-        (-signal.SIGSEGV, False, f"aborted with signal {signal.SIGSEGV:d} (SIGSEGV)"),
-        (-signal.SIGBUS, False, f"aborted with signal {signal.SIGBUS:d} (SIGBUS)"),
         (-signal.SIGFPE, False, f"aborted with signal {signal.SIGFPE:d} (SIGFPE)"),
-        (-signal.SIGILL, False, f"aborted with signal {signal.SIGILL:d} (SIGILL)"),
         (-200, False, "aborted with signal 200 (unknown)"),
         (3, False, "the process ended by itself with exit status 3"),
         (0xC0000005, False, "aborted with status 0xC0000005"),

@@ -27,7 +27,6 @@ from reports.pages.skate.page import path_picture
 from reports.run import store as store_module
 from reports.run.running import missing, run_into, run_items
 from reports.run.store import Store
-from reports.run.supervisor import WorkersLost
 from tests.present import present
 from tests.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy
@@ -56,11 +55,14 @@ def motion(variant: str = "", every: int = 1) -> Motion:
     return Motion(Cell(Disc(), FailingToy(variant) if variant else Toy(), every))
 
 
-def test_a_task_is_kept_to_the_last_bit_and_run_once(tmp_path):
-    tasks = [Sum((0.1, 0.2, np.nan)), Sum((1 / 3,)), motion()]
+def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
+    cell, tasks = Cell(Disc(), Toy(), 1), [Sum((0.1, 0.2, np.nan)), Sum((1 / 3,)), motion()]
+    results = []
     with Store(tmp_path / "cells.sqlite") as store:
-        assert run_into(store, tasks) == 3
-        assert run_into(store, tasks) == 0
+        assert missing([*tasks, cell], store) == (*tasks, cell)
+        assert run_into(store, [*tasks, cell], done=results.append) == len(results) == 4
+        assert run_into(store, [*tasks, cell]) == 0
+        assert store.get([cell])[cell].outcome == Outcome.FINISHED
         found = store.answers([*tasks, Sum((5.0,))])
     assert set(found) == set(tasks)
     for task in tasks:
@@ -74,72 +76,36 @@ def test_a_task_is_kept_to_the_last_bit_and_run_once(tmp_path):
                 assert found[task].array(name).shape == value.shape
                 assert found[task].array(name).tobytes() == value.tobytes()
     assert found[tasks[1]].number("sum") == 1 / 3
-    cell = tasks[2].cell
     run = cell.engine.build(cell.scene.mechanism(), cell.step)(cell.sample_count, cell.every)
     kept = trajectory_of(found[tasks[2]])
     for name in ("t", "pose", "twist", "reaction"):
         assert np.array_equal(getattr(kept, name), getattr(run, name)), name
 
 
-def test_cells_and_tasks_are_run_together_each_into_its_own_kind(tmp_path):
-    cell, task = Cell(Disc(), Toy(), 1), motion()
-    results = []
+ENDS = {
+    motion("abort"): (Outcome.ABORTED, "SIGABRT"),
+    motion("raise"): (Outcome.FAILED, "RuntimeError: something else"),
+    motion("refuse"): (Outcome.REFUSED, "mass is -1; it must be greater than zero"),
+    motion("unsupported"): (Outcome.UNSUPPORTED, "it has no pins"),
+    Sum(()): (Outcome.REFUSED, "there is nothing to add up"),
+    Sum((0.0,)): (Outcome.UNSUPPORTED, "zero has no sum here"),
+}
+
+
+def test_what_became_of_a_task_is_its_answer_and_is_kept_too_and_a_second_try_is_told(tmp_path):
+    again = Motion(Cell(Disc(), RoughToy("segfault once", folder=str(tmp_path)), 1))
     with Store(tmp_path / "cells.sqlite") as store:
-        assert missing([task, cell], store) == (task, cell)
-        assert run_into(store, [task, cell], done=results.append) == 2
-        assert missing([task, cell], store) == ()
-        assert store.get([cell])[cell].outcome == Outcome.FINISHED
-        assert store.answers([task])[task].finished
-    assert len(results) == 2
-
-
-@pytest.mark.parametrize(
-    ("task", "outcome", "sentence"),
-    [
-        (motion("abort"), Outcome.ABORTED, "SIGABRT"),
-        (motion("raise"), Outcome.FAILED, "RuntimeError: something else"),
-        (motion("refuse"), Outcome.REFUSED, "mass is -1; it must be greater than zero"),
-        (motion("unsupported"), Outcome.UNSUPPORTED, "it has no pins"),
-        (Sum(()), Outcome.REFUSED, "there is nothing to add up"),
-        (Sum((0.0,)), Outcome.UNSUPPORTED, "zero has no sum here"),
-    ],
-)
-def test_what_became_of_a_task_is_its_answer_and_is_kept_too(tmp_path, task, outcome, sentence):
-    with Store(tmp_path / "cells.sqlite") as store:
-        run_into(store, [task])
-        [answer] = store.answers([task]).values()
-        assert missing([task], store) == ()
-    assert answer.outcome == outcome
-    assert sentence in answer.sentence
-    assert sentence in answer.told
-    assert not answer.finished
-    assert not answer.values
-
-
-def test_a_task_that_was_timed_out_is_run_again_with_more_time(tmp_path):
-    task = Sum((1.0,))
-    with Store(tmp_path / "cells.sqlite") as store:
-        assert run_into(store, [task], limit=1e-9) == 1
-        assert store.answers([task])[task].outcome == Outcome.TIMED_OUT
-        assert missing([task], store, limit=1e-9) == ()
-        assert missing([task], store, limit=2e-9) == (task,)
-        assert run_into(store, [task]) == 1
-        assert store.answers([task])[task].finished
-
-
-def test_a_task_killed_from_outside_is_told_and_not_stored(tmp_path):
-    killed, sound = Motion(Cell(Disc(), RoughToy("kill"), 1)), Sum((1.0,))
-    with Store(tmp_path / "cells.sqlite") as store:
-        with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost, the others are stored.*motion: disc.*SIGKILL"):
-            run_into(store, [killed, sound])
-        assert missing([killed, sound], store) == (killed,)
-
-
-def test_a_second_try_is_told(tmp_path):
-    task = Motion(Cell(Disc(), RoughToy("segfault once", folder=str(tmp_path)), 1))
-    [(_, answer)] = run_items([task])
-    assert answer.finished
-    assert "the second went through" in answer.sentence
+        run_into(store, [*ENDS, again])
+        answers = store.answers([*ENDS, again])
+        assert missing([*ENDS, again], store) == ()
+    second = answers.pop(again)
+    assert second.finished
+    assert "the second went through" in second.sentence
+    for task, answer in answers.items():
+        outcome, sentence = ENDS[task]
+        assert (answer.outcome, answer.finished, answer.values) == (outcome, False, {})
+        assert sentence in answer.sentence
+        assert sentence in answer.told
 
 
 def test_the_key_of_a_task_is_that_of_its_numbers_its_kind_and_its_sources(monkeypatch):
@@ -269,8 +235,6 @@ def test_a_path_is_drawn_for_each_motion_that_was_kept():
     assert drawn[1] == drawn[0] + 2  # a path and the dot at its end
 
 
-@pytest.mark.parametrize("engine", [pymunk.TUNED, mujoco.TUNED], ids=lambda engine: engine.name)
-def test_the_motion_of_an_engine_is_the_same_from_a_worker(engine):
-    task = Motion(Cell(Disc(), engine, 3))
-    [(_, answer)] = run_items([task])
-    assert np.array_equal(answer.array("pose"), answered(task).array("pose"))
+def test_the_motion_of_an_engine_is_the_same_from_a_worker():
+    for task, answer in run_items([Motion(Cell(Disc(), engine, 3)) for engine in (pymunk.TUNED, mujoco.TUNED)]):
+        assert np.array_equal(answer.array("pose"), answered(task).array("pose"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import time
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
@@ -13,7 +14,6 @@ import pytest
 from engines.registry import VARIANTS
 from reference.scenes.catalogue import SCENES
 from reports.cli.selection import choose_cells
-from reports.model import spending
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.tasks import Motion, Task, Values
@@ -103,10 +103,7 @@ def test_the_published_timings_are_found_and_some_of_the_grid_is_in_them():
 
 
 def process_of(item: Kindred) -> int:
-    # Long enough for the other worker to be there.
-    total = 0.0
-    while total < 3e6:
-        total += 1.0
+    time.sleep(0.2)  # the other worker is there by then
     return os.getpid()
 
 
@@ -127,7 +124,7 @@ def where_it_stays(item: int) -> tuple[int, ...]:
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="this system keeps no process on a processor")
 def test_a_worker_that_times_stays_on_a_processor_of_its_own_and_others_on_none():
     own = queue.apart()
-    told = {found for _, found, _ in supervise(where_it_stays, range(8), 60.0, len(own), None, None, True)}
+    told = {found for _, found, _ in supervise(where_it_stays, range(4), 60.0, len(own), None, None, True)}
     assert told <= {(one,) for one in own}
     assert [found for _, found, _ in supervise(where_it_stays, [0], 60.0, 1)] == [queue.usable()]
 
@@ -170,23 +167,7 @@ def test_more_workers_than_cores_run_what_is_timed_first_and_alone(monkeypatch):
 
     items = [Cell(Disc(), Toy(), 1), Where(1), Cell(Disc(), Toy(), 2, "map")]
     assert {item for item, _ in run_items(items, workers=3, supervised=told)} == set(items)
-    assert rounds == [(["Cell"], 1, True), (["Where", "Cell"], 3, False)] or rounds == [
-        (["Cell"], 1, True),
-        (["Cell", "Where"], 3, False),
-    ]
+    assert [(sorted(names), *rest) for names, *rest in rounds] == [(["Cell"], 1, True), (["Cell", "Where"], 3, False)]
     rounds.clear()
     assert len(list(run_items(items, workers=3, timed=False, supervised=told))) == 3
     assert [each[1:] for each in rounds] == [(3, False)]
-
-
-def test_the_time_of_a_part_is_its_own(monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr(spending.time, "process_time", lambda: now[0])
-    spending.taken()
-    with spending.spending("outer"):
-        now[0] += 2.0
-        with spending.spending("inner"):
-            now[0] += 5.0
-        now[0] += 1.0
-    assert spending.taken() == {"outer": 3.0, "inner": 5.0}
-    assert spending.taken() == {}
