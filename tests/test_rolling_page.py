@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -22,13 +21,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
-from reports.pages.rendering import render_page
-from reports.pages.rolling import page as rolling_page
-from reports.pages.rolling.experiments import FAILURES
 from reports.pages.rolling.methods import absent_contact, parting
-from tests import test_any_rows as rendering
-
-undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 
 def row(scene, engine, every, samples=None):
@@ -89,25 +82,6 @@ def test_a_reset_after_the_stop_is_no_part_of_the_comparison():
     assert stopped_where_it_ends(RollingEllipse(), flat) == (flat, "")
 
 
-def test_a_shipped_contact_does_not_converge_and_a_tuned_one_does():
-    shipped = [row(RollingEllipse(), mujoco.DEFAULT, every).angle for every in (10, 100)]
-    tuned = [row(RollingEllipse(), mujoco.TUNED, every).angle for every in (10, 100)]
-    # 0.02 s of lag, whatever the step.
-    assert shipped[1] > 0.7 * shipped[0] > 1e-2
-    assert tuned[1] < 0.2 * tuned[0]
-
-
-def test_a_polygons_error_falls_with_its_corners_and_not_with_the_step():
-    eight, many = pymunk_methods.ROLL_FACETED[0], pymunk_methods.ROLL_FACETED[-1]
-    errors = {
-        (engine.variant, every): row(RollingEllipse(), engine, every).angle
-        for engine in (eight, many)
-        for every in (10, 100)
-    }
-    assert errors[many.variant, 100] > 0.5 * errors[many.variant, 10] > 0.05
-    assert errors[many.variant, 100] < errors[eight.variant, 100]
-
-
 def test_nearly_conformal_rolling_that_breaks_in_mujoco_is_told():
     scene = DiscInHole(clearance=1e-2)
     warned = row(scene, mujoco.EXTENDED, 1)
@@ -165,12 +139,6 @@ def test_forces_that_motion_does_not_determine_are_left_out_of_the_gears_errors(
     assert np.isnan(truth.reaction).any()
 
 
-def test_no_experiment_of_the_page_is_without_a_run_or_an_observation():
-    for failure in FAILURES:
-        assert failure.cells or failure.observations, failure.title
-    assert len({failure.title for failure in FAILURES}) == len(FAILURES)
-
-
 def test_the_round_trip_and_the_rate_of_the_page_are_as_exact_as_it_says():
     _, curves = centrodes_page.exact()
     # Splines of degree 7 at 400 points over 2 rad: 1e-10 in the curves, less in what they give back (asked: 1e-8).
@@ -188,11 +156,3 @@ def test_the_centre_tells_engines_apart_by_their_velocities():
     centre = {cell.engine.variant: error for cell, error, *_ in centrodes_page.measured(material)}
     assert set(centre) == {"default", "extended"}
     assert centre["extended"] < 1e-2 * centre["default"]
-
-
-def test_both_pages_are_written_even_when_nothing_was_run_and_every_picture_has_its_file(undrawn):
-    for page in (rolling_page.PAGE, centrodes_page.PAGE):
-        files = render_page(page, Material({}), "the command")
-        shown = set(re.findall(r"\]\((\w+\.svg)\)", files[f"{page.name}.md"]))
-        assert shown == {name for name in files if name.endswith(".svg")}
-        assert len(shown) >= 2
