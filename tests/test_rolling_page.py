@@ -74,12 +74,11 @@ def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
 
 
 def test_a_reset_after_the_stop_is_no_part_of_the_comparison():
-    scene = RollingOnCircle()
-    whole = motion_of(Cell(scene, mujoco.EXTENDED, 1))
+    scene, flat = RollingOnCircle(), RollingEllipse()
+    whole, other = (motion_of(Cell(each, mujoco.EXTENDED, 1)) for each in (scene, flat))
     for reset, kept in ((1.1, None), (0.5, 0.5)):
         assert stopped_where_it_ends(scene, replace(whole, reset_at=reset))[0].reset_at == kept
-    flat = motion_of(Cell(RollingEllipse(), mujoco.EXTENDED, 1))
-    assert stopped_where_it_ends(RollingEllipse(), flat) == (flat, "")
+    assert stopped_where_it_ends(flat, other) == (other, "")
 
 
 def test_nearly_conformal_rolling_that_breaks_in_mujoco_is_told():

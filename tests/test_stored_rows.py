@@ -26,12 +26,3 @@ def test_every_field_of_a_row_comes_back(tmp_path):
     assert replace(told, energy=0.0) == replace(stored, energy=0.0)
     kinds = {"str": str, "int": int, "float": float}
     assert all(isinstance(getattr(told, f.name), kinds[str(f.type)]) for f in fields(Measurement))
-
-
-def test_each_cell_has_its_own_row_the_newest_and_only_what_was_named_is_forgotten(tmp_path):
-    with Store(tmp_path / "cells.sqlite") as store:
-        for number, cell in enumerate(CELLS):
-            store.put(row(key=cell.key, angle=float(number)))
-        store.put(row(key=CELLS[1].key, angle=7.0))
-        assert [found.angle for found in store.get(CELLS).values()] == [0.0, 7.0, 2.0]
-        assert [found.angle for found in store.get(CELLS[::-1]).values()] == [2.0, 7.0, 0.0]
