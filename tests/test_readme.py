@@ -29,10 +29,6 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     assert float(said.split()[3]) < 1e-4
 
 
-def test_it_is_shorter_than_150_lines():
-    assert len(README.splitlines()) < 150
-
-
 def test_both_parts_are_written_and_none_tells_a_time():
     told = {name: README.split(marks(name)[0])[1].split(marks(name)[1])[0] for name in ("findings", "overview")}
     assert len(re.findall("^- ", told["findings"], re.MULTILINE)) == 10

@@ -47,15 +47,10 @@ def test_real_contact_parts_from_the_ideal_motion_where_it_must_slip_or_hop_and_
     assert fine[0] < 1e-3
     # After it, it is not the step's any more: the body flies, a good part of its radius away.
     assert fine[1] > 0.5 * coarse[1] > 0.1 * scene.radius
-    # Where it never must, they never part.
-    flat = RollingDisc()
-    assert flat.comparable_until == math.inf
-    assert run_of(parting, flat, engine, 100)[1] < 1e-2
-
-
-def test_a_constraint_follows_the_ideal_motion_where_no_contact_could():
-    before, after = run_of(parting, RollingOnCircle(), mujoco.EXTENDED, 10)
-    assert max(before, after) < 1e-8
+    # Where it never must, they never part; and a constraint holds where no contact could.
+    assert RollingDisc().comparable_until == math.inf
+    assert run_of(parting, RollingDisc(), engine, 100)[1] < 1e-2
+    assert max(run_of(parting, scene, mujoco.EXTENDED, 10)) < 1e-8
 
 
 def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
