@@ -55,6 +55,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: place.get(Path(item.path).name, len(FIRST)))
 
 
+@pytest.fixture
+def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands run what they run in this process: workers take seconds to start, and are the subject of other tests."""
+    from reports.run import cluster, supervisor
+
+    def supervised(work: Any, items: Any, *terms: Any, **named: Any) -> Any:
+        return ((item, work(item), "") for item in items)
+
+    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, supervised))
+    monkeypatch.setattr(supervisor, "supervise", supervised)  # for what commands import when they are called
+
+
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Append the names of skipped tests to the file that CROSSCHECK_SKIPPED names, for `.ci/run`."""
     target = os.environ.get("CROSSCHECK_SKIPPED")

@@ -105,34 +105,21 @@ def test_a_scene_of_a_lesson_is_drawn_as_there():
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "refusal", "told"),
     [
-        (["free_four_bar", "--to", "bmp"], "--to is 'bmp'; there are svg, gif, mp4"),
-        (["free_four_bar", "--engines", "pymunk defautl"], "did you mean 'pymunk default'"),
-        (["four_bar"], "'four_bar' names 3 scenes; give one of"),
+        (["free_four_bar", "--to", "bmp"], BadInput, "--to is 'bmp'; there are svg, gif, mp4"),
+        (["free_four_bar", "--engines", "pymunk defautl"], BadInput, "did you mean 'pymunk default'"),
+        (["four_bar"], BadInput, "'four_bar' names 3 scenes; give one of"),
+        (["free_four_bar", "--output", "mine.svg"], FileTrouble, "is there already"),
+        (["free_four_bar", "--output", "mine.svg/x.svg"], FileTrouble, "give another --output"),
     ],
 )
-def test_bad_words_are_refused_in_a_line(words, told, tmp_path, monkeypatch):
+def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, told, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(BadInput, match=re.escape(told)):
+    (tmp_path / "mine.svg").write_text("mine")
+    with pytest.raises(refusal, match=re.escape(told)):
         invoke(["animate", *words])
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "free_four_bar.svg").write_text("mine")
-    with pytest.raises(FileTrouble, match="is there already"):
-        invoke(["animate", "free_four_bar"])
-    assert (tmp_path / "free_four_bar.svg").read_text() == "mine"
-
-
-def test_a_folder_that_can_not_be_is_told_before_anything_is_run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "file").write_text("")
-    with pytest.raises(FileTrouble, match="give another --output"):
-        invoke(["animate", "free_four_bar", "--output", "file/x.svg"])
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("mine.svg", "mine")]
 
 
 def test_mp4_is_written_by_the_program_of_a_package_where_none_is_installed(monkeypatch, tmp_path):

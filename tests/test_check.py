@@ -21,7 +21,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check import rendering
-from reports.check.checked import check
+from reports.check.checked import check, read
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
 from reports.check.picture_data import from_text, shown_of

@@ -13,10 +13,10 @@ from reports.run.store import Store
 
 
 def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
-    pages = [page for page in PAGES if page.name in ("four_bar", "person")]
+    pages = [page for page in PAGES if page.name in ("reactions", "integrators")]
     path = tmp_path / "cells.sqlite"
     with Store(path) as store:
-        for cell in [next(c for c in shown_cells(page) if c.engine.name == "lagrange") for page in pages]:
+        for cell in [next(c for c in shown_cells(page) if c.engine.name == "pymunk") for page in pages]:
             store.put(measure(cell, repeat=False))
     with Store.read(path) as store:
         material = {page: material_of(page, store) for page in pages}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import runpy
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,12 +45,9 @@ def test_every_snippet_runs_and_finds_the_numbers_of_the_page(erratum, capsys):
     assert len(capsys.readouterr().out.splitlines()) == 1
 
 
-def test_there_is_a_snippet_for_every_slip_and_no_other():
+def test_every_slip_has_a_snippet_and_is_refereed_by_several_engines(said):
     names = {path.name for path in (TEMPLATES / SNIPPETS).iterdir() if path.suffix == ".py"}
     assert names == {f"slip_{erratum.number:02}.py" for erratum in ERRATA}
-
-
-def test_every_slip_that_can_be_computed_is_refereed_by_several_engines(said):
     for erratum in ERRATA:
         engines = {ruling.method.split()[0] for ruling in said if ruling.number == erratum.number}
         assert len(engines) >= 2, erratum.number
@@ -128,16 +124,12 @@ def test_a_table_tells_by_how_much_each_formula_misses_what_decides_for_each_eng
     ]
 
 
-def test_the_page_quotes_every_slip_and_says_where_there_is_nothing_to_compute(text):
+def test_the_page_quotes_every_slip(text):
     for erratum in ERRATA:
-        assert erratum.quoted in text
-        assert erratum.corrected in text
-        assert digits(erratum.values().decides) in text
-    for slip in WORD_SLIPS:
-        assert f"**{slip.number}**" in text
+        for words in (erratum.quoted, erratum.corrected, digits(erratum.values().decides)):
+            assert words in text
+    assert all(f"**{slip.number}**" in text for slip in WORD_SLIPS)
     assert len(re.findall("```python", text)) == len(ERRATA)
-    for number in (3, 4, 5, 6, 7, 8, 9, 12, 13, 14, 15, 16, 17, 20, 21, 22, 29, 30):
-        assert re.search(rf"^\| (\d+, )?{number}(, \d+)? \|", text, re.MULTILINE), number
 
 
 def test_the_command_prints_every_slip_once(capfd):
@@ -154,7 +146,5 @@ def test_an_unknown_slip_is_refused_in_one_line(capfd):
     with pytest.raises(SystemExit) as ending:
         command_line.main(["errata", "3"])
     out, err = capfd.readouterr()
-    assert ending.value.code == 2
-    assert out == ""
+    assert (ending.value.code, out, err.count("\n")) == (2, "", 1)
     assert "there are 1, 2, 10" in err
-    assert Path(__file__).name not in err

@@ -68,8 +68,3 @@ def test_it_holds_no_results_and_uses_what_everybody_may_use():
         "engines.lagrange",
         "engines",
     }
-
-
-def test_its_parts_fill_45_minutes():
-    text = "\n".join("".join(cell["source"]) for cell in CELLS if cell["cell_type"] == "markdown")
-    assert sum(int(minutes) for minutes in re.findall(r"^## .*\((\d+) minutes\)", text, re.MULTILINE)) == 45

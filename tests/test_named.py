@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from dataclasses import replace
 from importlib.util import find_spec
@@ -153,10 +154,7 @@ def test_numbers_are_set_by_name_and_called_in_the_order_of_the_fields():
     assert one.name == other.name == "free_four_bar crank=0.45 rate=3 gravity=(0,-1.5)"
     assert FreeFourBar.name == scene("free_four_bar").name == "free_four_bar"
     assert with_settings(scene("car_and_trailer"), {"redundant": "True"}).name == "car_and_trailer redundant=True"
-
-
-def test_a_number_set_to_what_it_is_leaves_the_scene_as_it_is():
-    own = scene("free_four_bar")
+    own = scene("free_four_bar")  # set to what it is, it stays as it is
     assert with_settings(own, {"crank": "0.4"}) is own
 
 
@@ -178,14 +176,14 @@ def test_a_number_that_can_not_be_is_a_sentence(name, text, telling):
 
 
 @pytest.mark.parametrize("original", SCENES, ids=lambda each: each.name)
-def test_a_scene_of_other_numbers_keeps_its_name_on_its_way_to_a_worker(original: Scene):
-    import pickle
-
+def test_a_scene_keeps_its_numbers_and_its_name_on_its_way_to_a_worker(original: Scene):
     number = "revolutions" if original.name == "driven_four_bar" else "duration"
     changed = with_settings(original, {number: "0.75"})
-    again = pickle.loads(pickle.dumps(changed))
-    assert (again, again.name) == (changed, changed.name)
     assert changed.name == f"{original.name} {number}=0.75"
+    for one in (original, changed):
+        one.mechanism()
+        again = pickle.loads(pickle.dumps(one))
+        assert (again, again.name, repr(again)) == (one, one.name, repr(one))
 
 
 RUN = ("--engine", "lagrange", "--variant", "rk4 projection", "--every", "1")
@@ -198,7 +196,7 @@ def no_pages(monkeypatch):
     monkeypatch.setattr(catalogue, "PAGES", ())
 
 
-def test_a_scene_of_other_numbers_is_run_stored_shown_and_reported(here, no_pages, capfd):
+def test_a_scene_of_other_numbers_is_run_stored_shown_and_reported(here, no_pages, at_home, capfd):
     settings = ("--set", "rate=2", "--set", "length=0.5")
     assert call("run", "pendulum_1", *settings, *RUN) == FINE
     assert "pendulum_1 length=0.5 rate=2" in capfd.readouterr().out

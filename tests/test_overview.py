@@ -42,67 +42,66 @@ def cell_of(rows, quantity: str = "angle", method: str = "mujoco tuned", steps=S
     return line[head.index(f"{engine} {variant}")]
 
 
+POWER = (1e-2, 1e-4, 1e-6)
+
+
+def tuned(step: float, **changes):
+    return row_of("mujoco tuned", step=step, **changes)
+
+
 @pytest.mark.parametrize(
-    ("errors", "words"),
+    ("errors", "more", "words"),
     [
-        ((1e-2, 1e-4, 1e-6), "0.01, 1.0e-4, 1.0e-6; order 2.0"),
-        ((1e-2, 1e-13), "0.01, 1.0e-13, -; to rounding"),
-        ((1e-2, 3e-5, 2e-5, 2e-5), "0.01, 3.0e-5, 2.0e-5; **plateau 2.0e-5**"),
-        ((1e-2, 3e-5, 2.9e-5), "0.01, 3.0e-5, 2.9e-5; **levels off**"),
-        ((1e-4, 1e-3), "1.0e-4, 1.0e-3, -; **least at 100 ms**, then worse"),
-        ((1e-2, 1e-4, 1e-1), "0.01, 1.0e-4, 0.1; **least at 10 ms**, then worse"),
-        ((1e-2,), "0.01, -, -"),
+        (POWER, [], "0.01, 1.0e-4, 1.0e-6; order 2.0"),
+        ((1e-2, 1e-13), [], "0.01, 1.0e-13, -; to rounding"),
+        ((1e-2, 3e-5, 2e-5, 2e-5), [], "0.01, 3.0e-5, 2.0e-5; **plateau 2.0e-5**"),
+        ((1e-2, 3e-5, 2.9e-5), [], "0.01, 3.0e-5, 2.9e-5; **levels off**"),
+        ((1e-4, 1e-3), [], "1.0e-4, 1.0e-3, -; **least at 100 ms**, then worse"),
+        ((1e-2, 1e-4, 1e-1), [], "0.01, 1.0e-4, 0.1; **least at 10 ms**, then worse"),
+        ((1e-2, 1e-4, 1e-6, 1e-3), [], "0.01, 1.0e-4, 1.0e-6; **least at 1 ms**, then worse"),
+        ((1e-2,), [], "0.01, -, -"),
         # Two errors that cancel at the second step: the limit is told, and that what lies below it is luck.
-        ((1e-2, 1e-4, 1.0e-3, 1.1e-3, 1.11e-3), "0.01, 1.0e-4, 1.0e-3; **plateau 1.1e-3** (less is luck)"),
-        ((1e-2, 1e-3, 1.0e-5, 1.1e-3, 1.2e-3, 1.2e-3), "0.01, 1.0e-3, 1.0e-5; **plateau 1.2e-3** (less is luck)"),
+        ((1e-2, 1e-4, 1.0e-3, 1.1e-3, 1.11e-3), [], "0.01, 1.0e-4, 1.0e-3; **plateau 1.1e-3** (less is luck)"),
+        ((1e-2, 1e-3, 1.0e-5, 1.1e-3, 1.2e-3, 1.2e-3), [], "0.01, 1.0e-3, 1.0e-5; **plateau 1.2e-3** (less is luck)"),
+        # Luck is told only of errors that stand there.
+        ((1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3), [], "0.01, 2.0e-3, 1.6e-3; **plateau 1.5e-3**"),
+        # A row at a usual step leaves the order alone.
+        (POWER, [tuned(1e-4, angle=0.3, purpose="usual")], "0.01, 1.0e-4, 1.0e-6; order 2.0"),
+        (
+            POWER[:1],
+            [tuned(1e-2, angle=1e-4, purpose="usual"), tuned(1e-3, angle=1e-6)],
+            "0.01, 1.0e-4, 1.0e-6; order 2.0",
+        ),
+        # What fails says so in its place, and at the finest step; at all usual steps once.
+        (POWER[:2], [tuned(1e-3, outcome=Outcome.TORN)], "0.01, 1.0e-4, torn; **torn** at 1 ms"),
+        (
+            (),
+            [tuned(10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
+            + [tuned(10.0**-i, angle=10.0 ** (2 - i)) for i in (4, 5, 6)],
+            "saturated; order 1.0",
+        ),
+        ((), [tuned(1e-2, outcome=o) for o in (Outcome.TORN, Outcome.TORN, Outcome.RESET)], "torn, reset"),
     ],
 )
-def test_a_cell_has_the_errors_at_the_usual_steps_and_what_a_smaller_step_brings(errors, words):
-    assert cell_of(falling("mujoco tuned", errors)) == words
-
-
-def test_luck_is_told_only_of_errors_that_stand_there():
-    errors = (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3)
-    assert cell_of(falling("mujoco tuned", errors)) == "0.01, 2.0e-3, 1.6e-3; **plateau 1.5e-3**"
+def test_a_cell_has_the_errors_at_the_usual_steps_and_what_a_smaller_step_brings(errors, more, words):
+    rows = [*falling("mujoco tuned", errors), *more]
+    assert cell_of(rows) == words
+    if "order" in words or "**" in words:  # outcomes alone stand in the order of their rows
+        assert cell_of(rows[::-1]) == words
 
 
 def test_steps_are_told_where_they_were_run_and_no_other_step_stands_for_them():
-    rows = falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-8))
-    rows += [row_of("mujoco tuned", step=9e-2, angle=7e-3), row_of("mujoco tuned", step=9.95e-4, angle=8e-6)]
+    rows = falling("mujoco tuned", (*POWER, 1e-8))
+    rows += [tuned(9e-2, angle=7e-3), tuned(9.95e-4, angle=8e-6)]
     assert cell_of([row for row in rows if row.step not in (1e-1, 1e-3)]).startswith("-, 1.0e-4, 8.0e-6; ")
     assert cell_of(rows, steps={"usual": 1e-2}).startswith("1.0e-4; ")
 
 
-def test_rows_at_usual_steps_stand_in_the_cell_and_leave_the_order_alone():
-    rows = [*falling("mujoco tuned", (1e-2, 1e-4, 1e-6)), row_of("mujoco tuned", step=1e-4, angle=0.3, purpose="usual")]
-    assert cell_of(rows) == "0.01, 1.0e-4, 1.0e-6; order 2.0"
-    kept = [replace(row, purpose="usual") if row.step == 1e-2 else row for row in rows]
-    assert cell_of(kept) == "0.01, 1.0e-4, 1.0e-6; order 2.0"
-
-
-def test_an_error_that_grew_at_the_finest_step_has_no_order():
-    assert "order" not in cell_of(falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3)))
-
-
-def test_a_method_that_fails_at_a_step_says_so_in_its_place_and_at_its_finest_step_too():
-    rows = [*falling("mujoco tuned", (1e-2, 1e-4)), row_of("mujoco tuned", step=1e-3, outcome=Outcome.TORN)]
-    assert cell_of(rows) == "0.01, 1.0e-4, torn; **torn** at 1 ms"
-    assert cell_of(rows[::-1]) == cell_of(rows)
-
-
-def test_where_nothing_can_be_compared_the_outcomes_stand_and_where_nothing_ran_a_dash():
-    rows = [row_of("mujoco tuned", outcome=o) for o in (Outcome.TORN, Outcome.TORN, Outcome.RESET)]
-    assert cell_of(rows) == "torn, reset"
+def test_where_nothing_ran_there_is_a_dash():
     elsewhere = replace(PAGE, name="other", scenes=(OtherDisc(),))
+    rows = [row_of("mujoco tuned", outcome=Outcome.TORN)]
     both = [(PAGE, rows), (elsewhere, [row_of("mujoco default", scene="other_disc")])]
-    lines = table(overviews(both, STEPS)["mujoco"])[1:]
-    assert [line[1:] for line in lines] == [["-", "torn, reset"], ["-", "-"]]
-
-
-def test_outcomes_at_all_usual_steps_are_told_once():
-    rows = [row_of("mujoco tuned", step=10.0**-i, outcome=Outcome.SATURATED) for i in (1, 2, 3)]
-    rows += falling("mujoco tuned", (1, 1, 1, 1e-2, 1e-3, 1e-4))[3:]
-    assert cell_of(rows) == "saturated; order 1.0"
+    assert [line[1:] for line in table(overviews(both, STEPS)["mujoco"])[1:]] == [["-", "torn"], ["-", "-"]]
 
 
 def test_the_quantity_of_the_page_is_told_and_its_unit_beside_the_scene():
@@ -170,17 +169,10 @@ def test_a_cell_ends_with_who_holds_the_joints_and_a_shipped_engines_cell_with_w
 
 
 def test_a_document_has_a_text_between_its_marks_and_nothing_else_changed():
-    begin, end = marks("table")
-    text = f"before\n{begin}\nold\n{end}\nafter\n"
-    assert with_part(text, "table", "new") == f"before\n{begin}\nnew\n{end}\nafter\n"
-    for lacking in (text.replace(begin, ""), text.replace(end, ""), ""):
-        with pytest.raises(ValueError, match="lacks the marks"):
-            with_part(lacking, "table", "new")
-    with pytest.raises(ValueError, match="lacks the marks"):
-        with_part(text, "another", "new")
-
-
-def test_a_document_has_several_parts_and_may_end_one_before_it_begins():
     (begin, end), (other, last) = marks("table"), marks("index")
+    # It has several parts, and may end one before it begins.
     text = f"{end}\n{other}\nkept\n{last}\n{begin}\nold\n{end}\n{other}\n{last}"
-    assert with_part(text, "table", "new") == f"{end}\n{other}\nkept\n{last}\n{begin}\nnew\n{end}\n{other}\n{last}"
+    assert with_part(text, "table", "new") == text.replace("old", "new")
+    for lacking, part in ((text.replace(begin, ""), "table"), (text.replace(end, ""), "table"), (text, "another")):
+        with pytest.raises(ValueError, match="lacks the marks"):
+            with_part(lacking, part, "new")

@@ -9,6 +9,7 @@ import pytest
 
 from engines import Holder, Softness
 from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.pendulum.scenes import HundredLinks
 from reports.gate.prediction import COMPLIANCE, DAMPING, MOST_BODIES, STIFFNESS, Softened, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
@@ -20,6 +21,7 @@ from reports.write.page_tables import advice, advice_table, as_the_step_shrinks,
 from reports.write.programs import advised_settings, compact
 from reports.write.tables import markdown, outcome_grid
 from reports.write.templates import anchor
+from tests.present import present
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 
@@ -59,14 +61,14 @@ def test_a_small_error_at_a_coarse_step_that_a_finer_one_does_not_keep_is_luck()
 
 
 def test_of_costs_that_are_equal_within_their_scatter_the_first_method_of_the_page_is_advised():
-    rows = [row_of("a late", angle=1e-10, cpu=1.0), row_of("a early", angle=1e-10, cpu=1.2)]
-    for order, expected in ((("a early", "a late"), "a early"), (("a late", "a early"), "a late")):
+    late, early = row_of("a late", angle=1e-10, cpu=1.0), row_of("a early", angle=1e-10, cpu=1.2)
+    for rows, order, expected in (
+        ((late, early), ("a early", "a late"), "a early"),
+        ((late, early), ("a late", "a early"), "a late"),
+        ((late, replace(early, cpu=1.3)), ("a early", "a late"), "a late"),
+    ):
         (found,) = advice(rows, "angle", order)
-        assert found.row is not None
-        assert found.row.method == expected
-    (found,) = advice([rows[0], replace(rows[1], cpu=1.3)], "angle", ("a early", "a late"))
-    assert found.row is not None
-    assert found.row.method == "a late"
+        assert present(found.row).method == expected
 
 
 def test_a_scenes_table_has_each_method_at_the_same_step_and_says_what_a_smaller_one_brings():
@@ -202,48 +204,35 @@ def test_a_heading_is_linked_as_github_links_it(heading, end):
     assert anchor(heading) == end
 
 
+@dataclass(frozen=True)
+class Soft(Plain):
+    name: str = "toy"
+    variant: str = "soft"
+    share: float = COMPLIANCE
+
+    def build(self, mechanism, dt):
+        raise NotImplementedError
+
+    def softness(self, mechanism, dt):
+        return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
+
+
 def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
-    @dataclass(frozen=True)
-    class Soft(Plain):
-        name: str = "toy"
-        variant: str = "soft"
-        share: float = COMPLIANCE
-
-        def build(self, mechanism, dt):
-            raise NotImplementedError
-
-        def softness(self, mechanism, dt):
-            return Softness(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
-
     scene, engine = FreeFourBar(duration=0.1), Soft()
     (task,) = soft_tasks(scene, (engine,))
     answers: dict[Task, Answer] = {task: answered(task)}
     own = answers[task].number("angle")
     assert own > 0
     assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(own)
-    assert declared_error(answers, scene, replace(engine, share=3 * COMPLIANCE), "angle", 1e-3) == pytest.approx(
-        3 * own
-    )
+    softer = replace(engine, share=3 * COMPLIANCE)
+    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * own)
     assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
     assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
     assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
 
 
 def test_the_judge_is_not_asked_where_it_would_take_minutes():
-    from reference.scenes.pendulum.scenes import HundredLinks
 
     assert len(HundredLinks().mechanism().bodies) > MOST_BODIES
-
-    @dataclass(frozen=True)
-    class Soft(Plain):
-        name: str = "toy"
-        variant: str = "soft"
-
-        def build(self, mechanism, dt):
-            raise NotImplementedError
-
-        def softness(self, mechanism, dt):
-            return Softness(STIFFNESS, DAMPING, COMPLIANCE, (True,) * mechanism.row_count)
-
     assert soft_tasks(HundredLinks(), (Soft(),)) == ()
     assert all(isinstance(task, Softened) for task in soft_tasks(FreeFourBar(), (Soft(),)))

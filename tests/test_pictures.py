@@ -26,6 +26,7 @@ from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
 from tests.drawn import annotation, handles
 from tests.mechanisms import four_bar, pendulum
+from tests.present import present
 from tests.toys import Disc
 
 
@@ -86,16 +87,11 @@ def test_configurations_have_each_pose_under_its_title_and_methods_over_them_whe
     assert words == ["truth", "wrong", "right: not visibly off"]
 
 
-def test_an_outline_has_further_points_in_order_along_the_body():
+def test_an_outline_has_further_points_in_order_along_the_body_and_a_path_those_of_the_truth():
     mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
     found = outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
     assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
-
-
-def test_the_path_of_a_point_is_where_the_truth_has_it():
-    scene = Disc(rate=2.0)
-    t = np.array([0.0, math.pi / 4])
-    found = path(scene, "disc", (1.0, 0.5), t)
+    found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
     assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
 
 
@@ -105,43 +101,36 @@ def test_a_strip_takes_its_poses_at_equal_times_and_says_so():
     assert strip.caption == "Turning: every 0.25 s"
     assert Strip(Disc(duration=2.0), "Turning", 3).times() == pytest.approx([0.0, 1.0, 2.0])
     assert Strip(Disc(), "Once", 1, start=0.125).caption == "Once: 0.125 s"
+    strips = [
+        Strip(Disc(duration=end), name, 2, ends={"disc": ((1.0, 0.0),)}) for end, name in ((1.0, "One"), (3.0, "Two"))
+    ]
+    assert [panel.get_title(loc="left") for panel in stroboscope(strips).axes] == [each.caption for each in strips]
 
 
 def test_a_stroboscope_has_every_pose_of_its_scene_the_last_in_full_ink():
-    scene = Disc(rate=2.0, duration=1.0)
     ends = {"disc": ((1.0, 0.0),)}
-    [panel] = stroboscope((Strip(scene, "Turning", 3, ends=ends, trace=("disc", (0.0, 1.0))),), columns=1).axes
-    assert panel.get_title(loc="left") == "Turning: every 0.5 s"
+    strip = Strip(Disc(rate=2.0, duration=1.0), "Turning", 3, ends=ends, trace=("disc", (0.0, 1.0)))
+    [panel] = stroboscope((strip,), columns=1).axes
     bars = [line for line in panel.get_lines() if line.get_color() == LIGHT.ink]
-    for line, angle, alpha in zip(bars, (0.0, 1.0, 2.0), (PALEST, PALEST + (1 - PALEST) * 0.5**1.5, 1.0), strict=True):
+    for line, angle in zip(bars, (0.0, 1.0, 2.0), strict=True):
         points = np.asarray(line.get_xydata(), dtype=float)
         assert points[:2] == pytest.approx(np.array([[0, 0], [math.cos(angle), math.sin(angle)]]), abs=1e-12)
-        assert line.get_alpha() == pytest.approx(alpha)
+    strengths = [present(line.get_alpha()) for line in bars]
+    assert strengths == sorted(strengths)
+    assert (strengths[0], strengths[-1]) == (PALEST, 1.0)
     [trace] = [line for line in panel.get_lines() if line.get_color() == LIGHT.second]
     points = np.asarray(trace.get_xydata(), dtype=float)
-    assert points[0] == pytest.approx([0.0, 1.0])
-    assert points[-1] == pytest.approx([-math.sin(2.0), math.cos(2.0)])
+    assert points[[0, -1]] == pytest.approx(np.array([[0.0, 1.0], [-math.sin(2.0), math.cos(2.0)]]))
 
 
 def test_a_film_moves_each_pose_to_the_right_and_stands_on_its_floor():
-    scene = Disc(rate=0.0, duration=1.0)
-    strip = Strip(scene, "Film", 3, ends={"disc": ((1.0, 0.0),)}, spread=1.5, floor=True)
+    strip = Strip(Disc(rate=0.0, duration=1.0), "Film", 3, ends={"disc": ((1.0, 0.0),)}, spread=1.5, floor=True)
     [panel] = stroboscope((strip,), columns=1).axes
     bars = [line for line in panel.get_lines() if line.get_color() == LIGHT.ink]
     assert [np.asarray(line.get_xydata())[0, 0] for line in bars] == pytest.approx([0.0, 1.5, 3.0])
     assert all(line.get_alpha() == 1.0 for line in bars)
-    assert any(
-        set(np.asarray(line.get_ydata())) == {0.0} and line.get_color() == LIGHT.quiet for line in panel.get_lines()
-    )
-
-
-def test_strips_stand_in_their_own_panels():
-    ends = {"disc": ((1.0, 0.0),)}
-    one, two = (Strip(Disc(duration=end), title, 2, ends=ends) for end, title in ((1.0, "One"), (3.0, "Two")))
-    assert [panel.get_title(loc="left") for panel in stroboscope((one, two)).axes] == [
-        "One: every 1 s",
-        "Two: every 3 s",
-    ]
+    floors = [line for line in panel.get_lines() if line.get_color() == LIGHT.quiet]
+    assert any(set(np.asarray(line.get_ydata())) == {0.0} for line in floors)
 
 
 def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_colour():
@@ -162,13 +151,12 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
     assert has(left, [[9.0, 8.0]])  # the dot at its end
     assert has(left, [[0.5, 0.4], [0.5, 0.6]])  # a blade of 0.2 m upright about its middle
     assert [(text.get_text(), annotation(text).xy) for text in left.texts] == [("here", (0.25, 1.5))]
-    assert (left.get_xlabel(), left.get_ylabel()) == ("x [m]", "y [m]")
-    assert (right.get_xlabel(), right.get_ylabel()) == ("time [s]", "m")
-    assert (left.get_yscale(), right.get_yscale(), right.get_xscale()) == ("linear", "log", "linear")
+    assert (right.get_xlabel(), right.get_ylabel(), right.get_yscale()) == ("time [s]", "m", "log")
     assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
-    legend = left.figure.legends[0]
-    assert [text.get_text() for text in legend.get_texts()] == ["truth", "wrong"]
-    assert [to_hex(handle.get_color()) for handle in handles(legend)] == [to_hex(LIGHT.ink), to_hex(LIGHT.first)]
+    assert [to_hex(handle.get_color()) for handle in handles(left.figure.legends[0])] == [
+        to_hex(LIGHT.ink),
+        to_hex(LIGHT.first),
+    ]
     # What is not framed does not stretch the picture.
     assert left.get_xlim()[1] < 2
     assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
@@ -177,19 +165,15 @@ def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_c
 def test_friction_is_that_of_the_scenes_law_with_each_limits_instant():
     scenes = (RollingEllipse(), RollingOnCircle())
     for panel, scene in zip(rolling_charts.draw_friction(scenes).axes, scenes, strict=True):
-        assert panel.get_title(loc="left") == scene.name.replace("_", " ")
         demanded = lines(panel)[0]
         assert demanded[5:50, 1] == pytest.approx(scene.motion_law.required_friction(demanded[5:50, 0]))
         assert demanded[-1, 0] == pytest.approx(scene.hop or scene.duration)
         slips = {mu: scene.motion_law.slip(mu, scene.duration) for mu in rolling_charts.COEFFICIENTS}
         marked = [tuple(line[0]) for line in lines(panel) if len(line) == 1]
         assert marked == [(pytest.approx(slip), mu) for mu, slip in slips.items() if slip is not None]
-        told = [text.get_text() for text in panel.texts]
-        assert [word for word in told if "slips" in word] == [
-            f"slips {s:.3f} s" for s in slips.values() if s is not None
-        ]
-        assert [word for word in told if "hops" in word] == ([] if scene.hop is None else [f"hops {scene.hop:.3f} s"])
-        assert panel.get_xlabel() == "time [s]"
+        told = sorted(text.get_text() for text in panel.texts if "s " in text.get_text())
+        hops = [] if scene.hop is None else [f"hops {scene.hop:.3f} s"]
+        assert told == sorted([*hops, *(f"slips {s:.3f} s" for s in slips.values() if s is not None)])
         assert panel.get_xlim() == (0, scene.duration)
 
 
@@ -202,7 +186,6 @@ def test_accelerations_are_drawn_in_their_units():
     assert term[-1, 0] == pytest.approx(180.0)
     fit = lines(right)[0]
     assert fit[:, 0] * fit[:, 1] == pytest.approx(np.ones(len(fit)))
-    assert (right.get_xscale(), right.get_yscale()) == ("log", "log")
 
 
 def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_truths_rates():
@@ -218,9 +201,6 @@ def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_trut
     truth = scene.motion(first[:, 0]).twist[:, :, 2]
     assert first[:, 1] == pytest.approx(truth[:, 0])
     assert second[:, 1] == pytest.approx(truth[:, 1])
-    assert (rates.get_xlabel(), rates.get_ylabel()) == ("time [s]", "rate [rad/s]")
-    words = {text.get_text(): text.get_color() for text in rates.texts}
-    assert words == {"first gear": LIGHT.first, "second gear": LIGHT.second}
 
 
 def test_roulettes_have_their_point_on_their_path():
@@ -250,7 +230,7 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
         c, s = math.cos(theta[index]), math.sin(theta[index])
         assert has(panel, own @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
         assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, produced to the centre
-    above, below = draw_rate(curves).axes
+    above, _ = draw_rate(curves).axes
     run, total = lines(above)
     assert run[:, 0] == pytest.approx(np.degrees(theta))
     # The centre runs its radius in a radian; splines of the curves know that to 1e-6 away from their ends.
@@ -262,4 +242,3 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     (run, total), [missed] = lines(draw_rate(wrong).axes[0]), lines(draw_rate(wrong).axes[1])
     assert missed[5:-5, 1] == pytest.approx(np.abs(total / run - 1)[5:-5, 1])
     assert missed[20, 1] > 0.1
-    assert (above.get_ylabel(), below.get_xlabel()) == ("m/rad", "angle of the coupler [degrees]")

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import os
 import platform
 from importlib import metadata
 
 import pytest
-from rich.console import Console
 
 from engines.lagrange import loading
-from reports.cli.terminal import print_table
 from reports.pages.index import foot
 from reports.write import provenance
 from reports.write.provenance import machine, still_installed, versions
@@ -76,15 +73,3 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert told.startswith("an architecture, 97 processors, ")
     assert platform.node() not in told
     assert "/" not in told.replace("w/", "")
-
-
-def test_a_table_on_the_terminal_has_its_columns_in_order_and_keeps_brackets():
-    out = io.StringIO()
-    print_table(
-        Console(file=out, width=80), "A [b] title", ("method", "step [s]"), (("a x", "0.1"), ("b [y]", "0.01")), 1
-    )
-    title, head, *_, first, second = [line.replace("┃", " ").replace("│", " ") for line in out.getvalue().splitlines()]
-    assert title.split() == ["A", "[b]", "title"]
-    assert head.split() == ["method", "step", "[s]"]
-    assert first.split() == ["a", "x", "0.1"]
-    assert second.split() == ["b", "[y]", "0.01"]

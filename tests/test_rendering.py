@@ -88,19 +88,6 @@ def test_methods_that_are_not_featured_stand_on_the_data_page_alone():
     assert ("| mujoco tuned" in everything, "| mujoco default" in everything) == (True, True)
 
 
-def test_outcomes_of_a_page_are_those_that_its_tables_tell():
-    rows = {
-        **{Cell(DISC, Toy("default"), 10**i): r for i, r in enumerate(falling("mujoco default", (1e-2, 1e-4, 1e-6)))},
-        **{Cell(DISC, Toy("soft"), 10**i): r for i, r in enumerate(falling("mujoco soft", (1e-2, 3e-5, 3e-5, 3e-5)))},
-    }
-    torn = Cell(DISC, Toy("torn"), 1, "failure")
-    page = replace(PAGE, scenes=(DISC,), failures=(Failure("T", "E", (torn,)),))
-    rows[torn] = row_of("mujoco torn", purpose="failure", outcome=Outcome.TORN, sentence="it tore")
-    text = render_page(page, Material(rows), "the command")["base_data.md"]
-    told = [word for word in re.findall(r"^- \*\*([\w ]+)\*\*: ", text, re.MULTILINE) if word in set(Outcome)]
-    assert told == ["finished", "converged", "plateau", "torn"]
-
-
 def test_a_page_judges_by_the_quantity_that_it_compares():
     errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
     errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -21,13 +20,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
-from reports.pages.rendering import render_page
-from reports.pages.rolling import page as rolling_page
-from reports.pages.rolling.experiments import FAILURES
 from reports.pages.rolling.methods import absent_contact, parting
-from tests import test_any_rows as rendering
-
-undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 
 def row(scene, engine, every, samples=None):
@@ -53,15 +46,10 @@ def test_real_contact_parts_from_the_ideal_motion_where_it_must_slip_or_hop_and_
     assert fine[0] < 1e-3
     # After it, it is not the step's any more: the body flies, a good part of its radius away.
     assert fine[1] > 0.5 * coarse[1] > 0.1 * scene.radius
-    # Where it never must, they never part.
-    flat = RollingDisc()
-    assert flat.comparable_until == math.inf
-    assert run_of(parting, flat, engine, 100)[1] < 1e-2
-
-
-def test_a_constraint_follows_the_ideal_motion_where_no_contact_could():
-    before, after = run_of(parting, RollingOnCircle(), mujoco.EXTENDED, 10)
-    assert max(before, after) < 1e-8
+    # Where it never must, they never part; and a constraint holds where no contact could.
+    assert RollingDisc().comparable_until == math.inf
+    assert run_of(parting, RollingDisc(), engine, 100)[1] < 1e-2
+    assert max(run_of(parting, scene, mujoco.EXTENDED, 10)) < 1e-8
 
 
 def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
@@ -80,31 +68,11 @@ def test_a_comparison_stops_where_it_is_no_longer_valid_and_says_so():
 
 
 def test_a_reset_after_the_stop_is_no_part_of_the_comparison():
-    scene = RollingOnCircle()
-    whole = motion_of(Cell(scene, mujoco.EXTENDED, 1))
+    scene, flat = RollingOnCircle(), RollingEllipse()
+    whole, other = (motion_of(Cell(each, mujoco.EXTENDED, 1)) for each in (scene, flat))
     for reset, kept in ((1.1, None), (0.5, 0.5)):
         assert stopped_where_it_ends(scene, replace(whole, reset_at=reset))[0].reset_at == kept
-    flat = motion_of(Cell(RollingEllipse(), mujoco.EXTENDED, 1))
-    assert stopped_where_it_ends(RollingEllipse(), flat) == (flat, "")
-
-
-def test_a_shipped_contact_does_not_converge_and_a_tuned_one_does():
-    shipped = [row(RollingEllipse(), mujoco.DEFAULT, every).angle for every in (10, 100)]
-    tuned = [row(RollingEllipse(), mujoco.TUNED, every).angle for every in (10, 100)]
-    # 0.02 s of lag, whatever the step.
-    assert shipped[1] > 0.7 * shipped[0] > 1e-2
-    assert tuned[1] < 0.2 * tuned[0]
-
-
-def test_a_polygons_error_falls_with_its_corners_and_not_with_the_step():
-    eight, many = pymunk_methods.ROLL_FACETED[0], pymunk_methods.ROLL_FACETED[-1]
-    errors = {
-        (engine.variant, every): row(RollingEllipse(), engine, every).angle
-        for engine in (eight, many)
-        for every in (10, 100)
-    }
-    assert errors[many.variant, 100] > 0.5 * errors[many.variant, 10] > 0.05
-    assert errors[many.variant, 100] < errors[eight.variant, 100]
+    assert stopped_where_it_ends(flat, other) == (other, "")
 
 
 def test_nearly_conformal_rolling_that_breaks_in_mujoco_is_told():
@@ -164,12 +132,6 @@ def test_forces_that_motion_does_not_determine_are_left_out_of_the_gears_errors(
     assert np.isnan(truth.reaction).any()
 
 
-def test_no_experiment_of_the_page_is_without_a_run_or_an_observation():
-    for failure in FAILURES:
-        assert failure.cells or failure.observations, failure.title
-    assert len({failure.title for failure in FAILURES}) == len(FAILURES)
-
-
 def test_the_round_trip_and_the_rate_of_the_page_are_as_exact_as_it_says():
     _, curves = centrodes_page.exact()
     # Splines of degree 7 at 400 points over 2 rad: 1e-10 in the curves, less in what they give back (asked: 1e-8).
@@ -187,11 +149,3 @@ def test_the_centre_tells_engines_apart_by_their_velocities():
     centre = {cell.engine.variant: error for cell, error, *_ in centrodes_page.measured(material)}
     assert set(centre) == {"default", "extended"}
     assert centre["extended"] < 1e-2 * centre["default"]
-
-
-def test_both_pages_are_written_even_when_nothing_was_run_and_every_picture_has_its_file(undrawn):
-    for page in (rolling_page.PAGE, centrodes_page.PAGE):
-        files = render_page(page, Material({}), "the command")
-        shown = set(re.findall(r"\]\((\w+\.svg)\)", files[f"{page.name}.md"]))
-        assert shown == {name for name in files if name.endswith(".svg")}
-        assert len(shown) >= 2

@@ -22,7 +22,7 @@ from reports.model.scaling_fit import series_of
 from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
 from reports.pages.scaling.experiments import BandedChain
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, scaling_chart
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
 from reports.pages.skate import page as skate
 
 
@@ -109,7 +109,3 @@ def test_the_page_is_whole_with_rows_and_without(material):
     for method in {row.method for row in material.rows.values()}:
         assert files["scaling.md"].count(f"| {method} |") == 3, method
     assert "Nothing was run yet" in render_page(PAGE, Material({}), "the command")["scaling.md"]
-
-
-def test_a_chart_of_nothing_is_not_an_error():
-    assert scaling_chart(()).axes

@@ -34,7 +34,6 @@ from reports.site.rows import explored
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "reports" / "results"
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
-TAKES = [(lesson.name, name) for lesson in LESSONS for name in lesson.takes]
 # What a page may differ from the reference by: 13 digits after the point, and rounding.
 HELD = 1e-12
 
@@ -84,16 +83,18 @@ def files(source, tmp_path_factory):
         return build(source)
 
 
-@pytest.mark.parametrize(("lesson", "name"), TAKES)
-def test_a_page_holds_the_motion_of_the_reference(lesson, name):
-    take = take_of(lesson, name)
-    held = json.loads(json.dumps(data(shown(take, {})), allow_nan=False))
-    truth = take.scene.motion(held["t"])
-    pose = np.array(held["truth"]["pose"]).reshape(truth.pose.shape)
-    # The time in the page has been rounded as well: what that moves is the speed times half of its last digit.
-    speed = float(np.abs(truth.twist).max())
-    assert np.abs(pose - truth.pose).max() < HELD + speed * 1e-13
-    assert 2 <= len(held["t"]) <= 152
+def test_a_page_holds_the_motion_of_the_reference():
+    # A scene is in several takes of its lesson: its motion is asked for once.
+    for take in {
+        (take.scene, take.samples, take.start, take.end): take for lesson in LESSONS for take in lesson.takes.values()
+    }.values():
+        held = json.loads(json.dumps(data(shown(take, {})), allow_nan=False))
+        truth = take.scene.motion(held["t"])
+        pose = np.array(held["truth"]["pose"]).reshape(truth.pose.shape)
+        # The time in the page has been rounded as well: what that moves is the speed times half of its last digit.
+        speed = float(np.abs(truth.twist).max())
+        assert np.abs(pose - truth.pose).max() < HELD + speed * 1e-13
+        assert 2 <= len(held["t"]) <= 152
 
 
 def test_a_changed_length_would_be_noticed_in_a_page():
@@ -142,19 +143,12 @@ def test_every_lesson_has_five_steps_of_words_and_shows_takes_that_it_has():
 
 
 def test_sections_that_lessons_quote_are_on_their_pages():
-    for lesson in LESSONS:
-        for step in lesson.steps:
-            if step.section:
-                page, heading = step.section
-                found = section((RESULTS / f"{page}.md").read_text("utf-8"), heading)
-                assert found is not None
-                assert len(found) > 40
-    assert section("# A\n\ntext\n", "Nothing") is None
-
-
-def test_a_comment_in_code_ends_no_section_and_a_heading_of_a_higher_rank_does():
+    for page, heading in (step.section for lesson in LESSONS for step in lesson.steps if step.section):
+        assert len(section((RESULTS / f"{page}.md").read_text("utf-8"), heading) or "") > 40, heading
+    # A comment in code ends no section, and a heading of a higher rank does.
     page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
     assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
+    assert section(page, "Nothing") is None
 
 
 def test_a_picture_stands_without_a_script():
@@ -206,15 +200,11 @@ def test_data_of_a_page_are_json(files):
     assert {f"take-{name}" for name in LESSONS[0].takes} <= set(page.json)
 
 
-def test_formulas_are_found_outside_of_code_alone():
+def test_formulas_are_found_outside_of_code_alone_and_keep_their_place():
     formulas = Formulas()
     html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n", formulas)
     assert set(formulas.found) == {("x^2", False), ("\\frac{a} {b}", True)}
-
-
-def test_formulas_keep_their_place():
-    formulas = Formulas()
-    text = html("$b$ then $a$ then $b$", formulas)
+    text = html("$b$ then $a$ then $b$", Formulas())
     assert markdown.with_formulas(text, ["(B)", "(A)"]) == "<p>(B) then (A) then (B)</p>\n"
 
 

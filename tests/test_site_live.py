@@ -158,7 +158,8 @@ def test_doubles_of_a_page_are_the_same_to_the_last_bit():
 
 
 def test_a_live_scene_holds_the_truth_of_every_place():
-    live = LIVE["skate: the sleigh"]
+    whole = LIVE["skate: the sleigh"]
+    live = replace(whole, sliders=whole.sliders[-1:])  # every place has a model of each engine, which takes its time
     held = json.loads(json.dumps(live_data(live, {}), allow_nan=False))
     frames = np.arange(live.frames + 1)
     for index, scene in enumerate(live.places()):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import pickle
 import re
 from pathlib import Path
 
@@ -13,7 +12,6 @@ import pytest
 import reports.pages
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
-from reference.scenes.catalogue import SCENES
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reports.cli.selection import choose_cells, known_engines
@@ -26,8 +24,6 @@ from reports.pages.skate import page as skate
 from reports.pages.skate.experiments import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
-from reports.plots.plane_panels import Blades, Panel, paths
-from reports.plots.plane_panels import Path as Line
 from reports.plots.theme import svg
 from tests.present import present
 
@@ -86,22 +82,17 @@ def test_a_turning_skate_on_a_slope_stands_as_high_as_before_after_each_turn():
 
 
 def test_bad_skates_on_a_slope_are_refused():
-    with pytest.raises(InvalidMechanism, match="gravity"):
-        SkateOnSlope(gravity=math.nan)
-    with pytest.raises(InvalidMechanism, match="mass"):
-        SkateOnSlope(mass=0.0)
     with pytest.raises(InvalidMechanism, match="skate_on_slope"):
         SkateOnSlope().motion([-1.0])
     with pytest.raises(InvalidMechanism, match="2 points and 3 angles"):
         HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0)))
-
-
-def test_two_skates_never_hold_a_body_and_three_whose_axles_meet_do_not_either():
-    with pytest.raises(InvalidMechanism, match="leave 1 freedom"):
-        HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0)), angles=(0.5, -0.5))
-    # All axles through the centre of mass: it turns about it.
-    with pytest.raises(InvalidMechanism, match="leave 1 freedom"):
-        HeldBySkates(points=((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))
+    # Two skates never hold a body, and three do not whose axles all go through the centre of mass: it turns about it.
+    for points, angles in (
+        (((0.5, 0.0), (-0.5, 0.0)), (0.5, -0.5)),
+        (((0.5, 0.0), (-0.5, 0.0), (0.0, 0.4)), (math.pi / 2, math.pi / 2, 0.0)),
+    ):
+        with pytest.raises(InvalidMechanism, match="leave 1 freedom"):
+            HeldBySkates(points=points, angles=angles)
 
 
 def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apart():
@@ -169,31 +160,7 @@ def test_a_run_has_the_named_methods_of_a_page_and_those_of_its_experiments():
     assert set(cells) < set(everything)
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
-def test_a_scene_travels_to_another_process_after_it_was_used(scene):
-    scene.mechanism()
-    again = pickle.loads(pickle.dumps(scene))
-    assert again == scene
-    assert repr(again) == repr(scene)
-
-
 def test_pictures_of_the_reference_are_drawn_and_the_same_each_time():
-    for picture in (
-        skate.parking,
-        skate.slope,
-        wheels.tows,
-        wheels.casters,
-        wheels.reversing,
-    ):
-        text = svg(picture(), "a picture")
-        assert text.startswith("<?xml")
+    for picture in (skate.parking, wheels.tows, wheels.casters, wheels.reversing):
+        assert picture().axes
     assert svg(skate.slope(), "a picture") == svg(skate.slope(), "a picture")
-
-
-def test_a_wrong_motion_does_not_stretch_a_picture_and_a_broken_one_is_no_error():
-    near, far = np.array([[0.0, 0.0], [1.0, 1.0]]), np.array([[0.0, 0.0], [math.nan, 0.0], [9.0, 9.0]])
-    panel = Panel("t", [Line(near), Line(far, "wrong", framed=False)], [Blades([[0.5, 0.5, 0.0]], 0.2)])
-    low, high = panel.corners()
-    assert (low >= 0).all()
-    assert (high <= 1).all()
-    assert "<svg" in svg(paths([panel]), "t")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from reports.cli.selection import page_cells
 from reports.model.catalogue import PAGES
 from reports.model.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
 from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_step, usual_cells, usual_variants
@@ -23,10 +22,6 @@ NAMES = (
 SCENES = [(page, scene) for page in PAGES for scene in page.scenes if scene.name in NAMES]
 
 
-def test_they_are_a_screens_mujocos_and_half_of_that():
-    assert {"1/60 s": pytest.approx(0.016667, abs=1e-6), "2 ms": 2e-3, "1 ms": 1e-3} == USUAL_STEPS
-
-
 @pytest.mark.parametrize(("page", "scene"), SCENES, ids=[scene.name for _, scene in SCENES])
 def test_a_scene_is_run_at_each_usual_step_once_within_a_hundredth(page, scene):
     engines = [engine for engine in page.engines_of(scene) if engine.variant in FEATURED]
@@ -41,12 +36,6 @@ def test_a_scene_is_run_at_each_usual_step_once_within_a_hundredth(page, scene):
     assert all(any(is_step(cell.step, step) for step in USUAL_STEPS.values()) for cell in added)
     assert all(cell.step * cell.every * cell.sample_count == pytest.approx(scene.duration) for cell in added)
     assert all(estimated_cost(cell) <= COST_LIMIT for cell in added)
-
-
-def test_they_add_less_than_a_third_to_the_grid_and_belong_to_it():
-    cells = [cell for page in PAGES if page.name in ("four_bar", "skate") for cell in page_cells(page)]
-    added = [cell for cell in cells if cell.purpose == "usual"]
-    assert 0 < len(added) < len(cells) / 3
 
 
 def test_a_step_that_the_sweep_has_is_not_run_twice_and_one_that_it_left_out_for_its_cost_is_not_run():

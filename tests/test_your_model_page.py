@@ -26,23 +26,23 @@ def found(answer: Answer):
 
 
 def page(answers) -> str:
-    return render_page(PAGE, Material({}, answers), "the command")["your_model.md"]
+    """The page's text; each text is made once, since its pictures take their time."""
+    name = str(sorted(walk.key for walk in answers))
+    if name not in PAGES:
+        PAGES[name] = render_page(PAGE, Material({}, answers), "the command")["your_model.md"]
+    return PAGES[name]
+
+
+PAGES: dict[str, str] = {}
 
 
 def test_the_page_tells_what_was_found(answers):
     assert all(answer.finished for answer in answers.values())
-    files = render_page(PAGE, Material({}, answers), "the command")
-    text = files["your_model.md"]
+    text = page(answers)
     for walk, answer in answers.items():
-        told = found(answer)
-        assert walk.text.strip() in text
-        assert told["advised"]["words"] in text
-        for line in told["advised"]["lines"]:
-            assert line in text
-    assert len([name for name in files if name.endswith(".svg")]) == 6
-
-
-def test_the_page_without_answers_says_that_nothing_was_checked():
+        advised = found(answer)["advised"]
+        assert all(words in text for words in (walk.text.strip(), advised["words"], *advised["lines"]))
+    assert text.count(".svg)") == 6
     assert page({}).count("was not checked yet") == 3
 
 
@@ -61,11 +61,8 @@ def test_an_answer_is_the_same_at_every_run(answers):
 
 
 def test_every_model_of_others_is_on_the_page_by_name(answers):
-    text = page(answers)
-    told = text[text.index("## Models that others ship") :]
+    told = page(answers).partition("## Models that others ship")[2]
     for row in others.rows():
         assert f"`{row['model']}`" in told
         assert row["reason"].replace("|", "\\|") in told
-    assert "| Gymnasium | `half_cheetah` | read: 7 bodies, with `--without armature` |" in told
-    assert len(others.rows()) >= 50
-    assert len({(row["source"], row["model"]) for row in others.rows()}) == len(others.rows())
+    assert len({(row["source"], row["model"]) for row in others.rows()}) == len(others.rows()) >= 50

@@ -1,9 +1,15 @@
-"""What remarks under experiments on chains say ("falls", "stays", "tears"), held against the committed rows."""
+"""What remarks under experiments say ("falls", "stays", "tears"), held against the committed rows."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 
+import pytest
+
+from engines import mujoco, pymunk
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
+from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure
@@ -11,6 +17,9 @@ from reports.pages.atlas.page import lines as atlas_lines
 from reports.pages.four_bar import experiments as four_bar_failures
 from reports.pages.n_four_bar import experiments as n_four_bar_failures
 from reports.pages.pendulum import experiments as pendulum_failures
+from reports.pages.rolling import experiments as rolling_failures
+from reports.pages.rolling.experiments import polygon_cells, softness_cells
+from reports.pages.skate import experiments as skate_failures
 from reports.pages.slider_crank import experiments as slider_crank_failures
 from tests.committed_rows import committed_rows
 
@@ -191,3 +200,48 @@ def test_what_the_map_of_sleighs_says() -> None:
     assert naive[min(naive)][-1].comparable
     assert not naive[max(naive)][-1].comparable
     assert all(told[-1].comparable for own in found.values() for told in own.values())
+
+
+def test_steps_far_too_large_open_the_contact_more_at_larger_steps_and_no_engine_warns() -> None:
+    length = next(f for f in rolling_failures.FAILURES if f.title == "Steps far too large").cells[0].scene
+    for rows in methods(rolling_failures.FAILURES, "Steps far too large").values():
+        gaps = [row.gap for row in rows]
+        assert gaps == sorted(gaps, reverse=True)
+        assert all(row.outcome == Outcome.TORN and "without a warning" in row.sentence for row in rows)
+        assert gaps[-1] > 0.2 * length.mechanism().length_scale
+
+
+def test_corners_alone_make_the_error_of_a_coarse_polygon_and_with_512_the_step_still_has_a_part() -> None:
+    rows = committed_rows([cell for _, cell in polygon_cells()])
+    angle = {(corners, cell.every): rows[cell].angle for corners, cell in polygon_cells()}
+    for corners in (32, 128):
+        assert angle[corners, 100] == pytest.approx(angle[corners, 10], rel=0.05)
+    assert 0.7 < angle[512, 100] / angle[512, 10] < 0.9
+
+
+def test_a_soft_contacts_error_is_its_time_constants_and_a_stiff_ones_is_the_steps_too() -> None:
+    rows = committed_rows([cell for _, cell in softness_cells()])
+    angle = {(constant, cell.every): rows[cell].angle for constant, cell in softness_cells()}
+    assert angle[2e-2, 10] == pytest.approx(angle[2e-2, 100], rel=0.05)
+    assert abs(angle[6e-3, 10] / angle[6e-3, 100] - 1) > 0.2
+    assert angle[2e-3, 10] > 2 * angle[2e-3, 100]
+    # The shortest constant is not the best one.
+    assert angle[2e-4, 100] > angle[6e-4, 100]
+
+
+def test_a_second_wheel_on_an_axle_changes_no_methods_position_error() -> None:
+    for scene, doubled in ((CarAndTrailer(), CarAndTrailer(redundant=True)), (Cart(), Cart(redundant=True))):
+        for engine in (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED):
+            for every in (1, 10):
+                one, two = Cell(scene, engine, every), Cell(doubled, engine, every, "failure")
+                rows = committed_rows([one, two])
+                assert rows[two].position == pytest.approx(rows[one].position, rel=0.01)
+
+
+def test_mujocos_default_blade_does_not_creep_at_rest_and_its_tuned_row_does() -> None:
+    found = methods(skate_failures.FAILURES, "At rest across a slope")
+    rows = {(name, row.step): row for name, own in found.items() for row in own}
+    assert rows["pymunk default", 0.01].position == 0
+    for step in (0.01, 0.001):
+        assert rows["mujoco default", step].position < 1e-12
+        assert rows["mujoco tuned", step].position > 1e-7
