@@ -19,7 +19,9 @@ from tests.toys import Disc, Toy
 class Absent(Toy):
     """One whose package is not installed."""
 
-    missing: str = "needs what pip install brings"
+    @property
+    def missing(self) -> str:
+        return "needs what pip install brings"
 
 
 SUITE = """

@@ -28,7 +28,6 @@ TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {
 SYMMETRIC = ("min", "max", "minimum", "maximum", "fmin", "fmax", "hypot", "suppress", "isinstance", "hasattr", "get")
 LAYOUT = (
     "reports/plots/",
-    "reports/charts/",
     "reports/site/",
     "reports/cli/",
 )  # sizes and colours stand there, which no test should hold
