@@ -222,22 +222,17 @@ def test_every_engine_imports_another_s_package_by_an_import_alone():
         assert not [text for text in texts if 'import_module("engines.' in text.replace(f'("{own}', "")], module
 
 
-class Bytes:
-    """`Path.read_bytes` as if one of our own files had a byte more."""
-
-    def __init__(self, monkeypatch):
-        self.path: Path | None = None
-        self.read = Path.read_bytes
-        monkeypatch.setattr(Path, "read_bytes", lambda path: self.read(path) + (b"\n" if path == self.path else b""))
-
-    def touching(self, path: Path | None) -> None:
-        self.path = path
-        forget()
-
-
 @pytest.fixture
 def touch(monkeypatch):
-    return Bytes(monkeypatch).touching
+    """Call it with a path: from now on `Path.read_bytes` reads that file as if it had a byte more; None for no file."""
+    read, touched = Path.read_bytes, [None]
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + (b"\n" if path == touched[0] else b""))
+
+    def touching(path: Path | None) -> None:
+        touched[0] = path
+        forget()
+
+    return touching
 
 
 @pytest.mark.parametrize(
@@ -284,21 +279,17 @@ def test_a_stored_cell_runs_again_where_a_source_of_it_is_changed_and_only_there
         (AROUND, "pymunk", True),
         (Toy(), "numpy", True),
         (mujoco.TUNED, "matplotlib", False),
+        (Toy(), "Python", True),
     ],
 )
 def test_a_packages_version_counts_for_the_rows_that_use_it(monkeypatch, engine, distribution, counts):
     before = fingerprint(FreeFourBar(), engine)
     original = importlib.metadata.version
     monkeypatch.setattr(importlib.metadata, "version", lambda name: "0.0.1" if name == distribution else original(name))
+    if distribution == "Python":
+        monkeypatch.setattr(platform, "python_version", lambda: "3.99.0")
     forget()
     assert (fingerprint(FreeFourBar(), engine) != before) == counts
-
-
-def test_pythons_own_version_counts(monkeypatch):
-    before = fingerprint(Toy())
-    monkeypatch.setattr(platform, "python_version", lambda: "3.99.0")
-    forget()
-    assert fingerprint(Toy()) != before
 
 
 def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, monkeypatch):
