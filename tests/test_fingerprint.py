@@ -20,10 +20,9 @@ from engines.registry import INSTALLED
 from reference.four_bar.scenes import FreeFourBar
 from reports.model import fingerprint as fingerprint_module
 from reports.model.cells import Cell
-from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_behind, modules_of, normalised, with_required
+from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_behind, modules_of, with_required
 from reports.model.measure import blank
 from reports.run.store import Store
-from tests.lower_bounds import PYPROJECT, lower_bounds
 from tests.toys import Disc, FailingToy, Toy
 
 # Looking through all that is installed takes half a second, and is the same in every test.
@@ -326,7 +325,6 @@ def test_every_number_of_a_cell_is_in_its_key():
         replace(cell, every=2),
         replace(cell, samples=7),
         replace(cell, purpose="failure"),
-        replace(cell, purpose="map"),
     ]
     assert len({cell.key, *(other.key for other in others)}) == 1 + len(others)
     assert Cell(Disc(), Toy(), 1).key == cell.key == Cell(Disc(), Toy(), 1, samples=Disc().samples).key
@@ -349,12 +347,3 @@ def test_what_is_required_in_turn_is_found_without_extras_and_without_what_is_no
     assert with_required(["Engine"]) == {"engine", "binding", "parser-of-c"}
     assert with_required(["drawing"]) == {"drawing"}
     assert with_required(["nothing"]) == set()
-    assert normalised("MuJoCo_core.X") == "mujoco-core-x"
-
-
-def test_every_dependency_has_a_lower_bound_that_can_be_tried():
-    bounds = lower_bounds(PYPROJECT.read_text(encoding="utf-8"))
-    assert "numpy==2.0" in bounds
-    assert len(bounds) == len(set(bounds)) > 10
-    with pytest.raises(ValueError, match="'loose' has no lower bound"):
-        lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')

@@ -31,8 +31,6 @@ NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 
 class Slow(Disc):
-    """Another scene."""
-
     name = "slow disc"
 
 
