@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.check.pictures import PictureData, Pose
+from reports.check.picture_data import PictureData, Pose
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import Softened, all_tasks
 from reports.model.catalogue import PAGES

@@ -21,11 +21,12 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes import SCENES
 from reports.check import rendering
-from reports.check.checked import check
+from reports.check.checked import check, read
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
-from reports.check.pictures import from_text, pictures, shown_of
-from reports.check.request import CheckReport, CheckRequest, answered, read
+from reports.check.picture_data import from_text, shown_of
+from reports.check.pictures import pictures
+from reports.check.request import CheckReport, CheckRequest, answered
 from reports.check.telling import data, sections, verdict
 from tests.toys import Disc
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported
-from engines.reading import Change, Reading
+from engines.entry_points import registered_by_key
+from engines.loading import Kind
+from engines.reading import Change, Reader, Reading
 from reference.trajectory import Trajectory
 from reference.validation import InvalidMechanism
 from reports.check.facts import Facts, facts_of
@@ -29,6 +32,25 @@ from reports.check.judging import (
 
 PATIENCE = 5.0  # s of CPU time for all settings together
 LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
+
+
+MEMBERS = ("words", "reads", "read")
+
+
+def readers() -> dict[str, Reader]:
+    """Who reads a user's models, by the keys of the entry point group `crosscheck.readers`."""
+    lacking = "it lacks words, reads or read"
+    kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
+    return registered_by_key("crosscheck.readers", kind)
+
+
+def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None) -> Reading:
+    """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
+    known = readers().values()
+    for reader in known:
+        if reader.reads(word):
+            return reader.read(word, folder, without, key, step)
+    raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in known)}")
 
 
 @dataclass(frozen=True, eq=False)

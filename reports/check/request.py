@@ -6,36 +6,14 @@ A user's script is run in that process: if it raises, ends the process or never 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from engines import Unsupported
-from engines.entry_points import registered_by_key
-from engines.loading import Kind
-from engines.reading import Reader, Reading
 from reference.validation import InvalidMechanism
-from reports.check.checked import check
+from reports.check.checked import check, read
 from reports.check.telling import Section, data, sections, verdict
-
-MEMBERS = ("words", "reads", "read")
-
-
-def readers() -> dict[str, Reader]:
-    """Who reads a user's models, by the keys of the entry point group `crosscheck.readers`."""
-    lacking = "it lacks words, reads or read"
-    kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
-    return registered_by_key("crosscheck.readers", kind)
-
-
-def read(word: str, folder: Path, without: Sequence[str] = (), key: str = "", step: float | None = None) -> Reading:
-    """A user's model by the first reader that knows its kind. Raises ValueError and Unsupported."""
-    known = readers().values()
-    for reader in known:
-        if reader.reads(word):
-            return reader.read(word, folder, without, key, step)
-    raise ValueError(f"{word or repr(word)} is no model; give {' or '.join(reader.words for reader in known)}")
 
 
 @dataclass(frozen=True)
@@ -90,7 +68,8 @@ def answered(request: CheckRequest) -> CheckReport | Refused:
         drawn = {}
         if request.pictures:
             told("drawing")
-            from reports.check.pictures import pictures, shown_of  # a second of imports
+            from reports.check.picture_data import shown_of
+            from reports.check.pictures import pictures  # a second of imports
 
             drawn = pictures(shown_of(found))
     except (Unsupported, InvalidMechanism, ValueError) as reason:

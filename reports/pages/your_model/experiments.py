@@ -7,9 +7,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.check.checked import Checked, Tried, check
-from reports.check.pictures import shown_of
-from reports.check.request import read
+from reports.check.checked import Checked, Tried, check, read
+from reports.check.picture_data import shown_of
 from reports.check.telling import data
 from reports.model.tasks import Task, Values
 

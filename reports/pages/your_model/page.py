@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from reference.four_bar import FreeFourBar
-from reports.check.pictures import from_text, pictures
+from reports.check.picture_data import from_text
+from reports.check.pictures import pictures
 from reports.model.page import Material, Page
 from reports.pages.your_model.experiments import WALKS, Walk
 from reports.write.tables import markdown, number
