@@ -224,7 +224,8 @@ def test_every_engine_imports_another_s_package_by_an_import_alone():
 @pytest.fixture
 def touch(monkeypatch):
     """Call it with a path: from now on `Path.read_bytes` reads that file as if it had a byte more; None for no file."""
-    read, touched = Path.read_bytes, [None]
+    read = Path.read_bytes
+    touched: list[Path | None] = [None]
     monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + (b"\n" if path == touched[0] else b""))
 
     def touching(path: Path | None) -> None:
