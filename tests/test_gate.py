@@ -31,8 +31,6 @@ NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 
 class Slow(Disc):
-    """Another scene."""
-
     name = "slow disc"
 
 
@@ -319,10 +317,9 @@ def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends(reason, fac
 
 
 def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
-    far, near = Check("gap", "gap", 3.0, 1.0), Check("error", "angle", 0.5, 1.0)
-    assert nearest((near, far)) is far
-    assert Check("error", "angle", 1.0, 0.0).nearness == math.inf
-    assert Check("error", "angle", 0.0, 0.0).passed
+    far, none = Check("gap", "gap", 3.0, 1.0), Check("error", "angle", 0.0, 0.0)
+    assert nearest((Check("error", "angle", 0.5, 1.0), far)) is far
+    assert (none.passed, replace(none, measured=1.0).nearness) == (True, math.inf)
 
 
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> CaseVerdict:

@@ -44,18 +44,18 @@ def test_the_judge_runs_to_the_end_of_a_scene(scene):
     assert _samples(scene) == scene.samples
 
 
+class Rounded(Cut):
+    """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
+
+    until = 27 * (0.705 / 70)
+
+
 def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least():
     scene = Cut()
     assert _samples(scene) == 11
     assert integrate(scene, 2, 1).t[-1] == pytest.approx(0.11, rel=1e-12)
     assert _samples(Brief()) == 1
     assert _samples(Rounded(duration=0.705)) == 27
-
-
-class Rounded(Cut):
-    """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
-
-    until = 27 * (0.705 / 70)
 
 
 class Unknown(Disc):

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.lower_bounds import PYPROJECT, lower_bounds
+
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = [path for folder in ("reference", "engines", "reports") for path in sorted((ROOT / folder).rglob("*.py"))]
 
@@ -126,3 +128,11 @@ def test_what_will_be_gone_is_an_error_in_our_own_code_alone_and_any_other_warni
         else:
             warnings.warn_explicit("it will be gone", kind, "file.py", 1, "numpy.random")
     assert len(told) == (kind is not UserWarning)
+
+
+def test_every_dependency_has_a_lower_bound_that_can_be_tried():
+    bounds = lower_bounds(PYPROJECT.read_text(encoding="utf-8"))
+    assert "numpy==2.0" in bounds
+    assert len(bounds) == len(set(bounds)) > 10
+    with pytest.raises(ValueError, match="'loose' has no lower bound"):
+        lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')

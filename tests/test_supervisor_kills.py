@@ -78,9 +78,7 @@ def test_among_kills_every_row_is_there_once_and_right(monkeypatch, seed, kills)
         killer.arm()
     killer.wait()
     assert sorted(row.settings for row in rows) == sorted(repr(cell.engine) for cell in cells)
-    factors = {
-        settings: factor for cell in cells for settings, factor in [(repr(cell.engine), vars(cell.engine)["factor"])]
-    }
+    factors = {repr(cell.engine): vars(cell.engine)["factor"] for cell in cells}
     done = [row for row in rows if row.outcome == Outcome.FINISHED]
     for row in done:
         assert row.angle == pytest.approx(factors[row.settings] * row.step**2, rel=1e-9)
@@ -138,7 +136,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize("delay", [0.1, 0.5, 3.0])
+@pytest.mark.parametrize("delay", [0.1, 2.0])
 def test_ctrl_c_reaches_all_processes_of_a_terminal_and_the_parent_alone_tells_it(tmp_path, delay):
     (tmp_path / "script.py").write_text(INTERRUPTED, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -151,7 +149,7 @@ def test_ctrl_c_reaches_all_processes_of_a_terminal_and_the_parent_alone_tells_i
     )
     assert process.stdout is not None
     assert process.stdout.readline() == b"starting\n"
-    time.sleep(delay)  # workers are started, or imported, or at work: what comes out is the same
+    time.sleep(delay)  # workers are started or at work: what comes out is the same
     os.killpg(process.pid, signal.SIGINT)
     assert process.communicate(timeout=60) == (b"interrupted\n", b"")
 
