@@ -14,6 +14,7 @@ from reference.scenes.many_links import SpinningRing
 from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
+from reference.validation import InvalidMechanism
 from reports.gate.prediction import all_tasks
 from reports.model.cells import Cell
 from reports.model.measure import measure
@@ -22,6 +23,7 @@ from reports.model.page import Material
 from reports.model.tasks import answered
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.pendulum import page as pendulum
+from reports.pages.pendulum.experiments import hardened
 from reports.pages.person import page as person
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
@@ -68,6 +70,22 @@ def test_the_rings_tension_is_that_of_a_rope():
     tension = scene.mass * scene.rate**2 * inner / (2 * math.sin(math.pi / scene.links))
     reaction = scene.motion([0.0, 0.3]).reaction.reshape(2, -1, 2)
     assert np.abs(np.linalg.norm(reaction, axis=-1) - tension).max() < 1e-13 * tension
+
+
+def test_two_links_are_no_ring():
+    with pytest.raises(InvalidMechanism, match="links is 2"):
+        SpinningRing(links=2)
+
+
+def test_a_ring_hardened_too_far_goes_wrong_with_its_joints_closed_and_without_a_word_of_the_engine():
+    scene = SpinningRing(duration=0.5, horizon=0.5)
+    wrong, right = (measured(scene, hardened("a", softening, "dense"), 1) for softening in (1e-8, 1e-6))
+    assert right.energy < 1e-9
+    # The energy is wrong by a large part of itself, the joint open by less than a thousandth of a link.
+    assert wrong.energy > 0.1
+    assert wrong.gap < 1e-3 * scene.length
+    said = [part for part in wrong.sentence.split("; ") if part]
+    assert all(part.startswith(("ours:", "its own estimate")) for part in said)
 
 
 def test_a_pushed_slider_keeps_its_energy_and_leaves_to_the_side_where_it_stood():

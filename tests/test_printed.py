@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import os
 import platform
 from importlib import metadata
 
 import pytest
+from rich.console import Console
 
 from engines.lagrange import loading
+from reports.cli.terminal import print_table
 from reports.pages.index import foot
 from reports.write import provenance
 from reports.write.provenance import machine, still_installed, versions
@@ -73,3 +76,13 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert told.startswith("an architecture, 97 processors, ")
     assert platform.node() not in told
     assert "/" not in told.replace("w/", "")
+
+
+def test_a_table_on_the_terminal_has_its_columns_in_order_and_keeps_brackets():
+    out = io.StringIO()
+    rows = (("a x", "0.1"), ("b [y]", "0.01"))
+    print_table(Console(file=out, width=80), "A [b] title", ("method", "step [s]"), rows, 1)
+    lines = [line.translate(str.maketrans("┃│", "  ")).split() for line in out.getvalue().splitlines()]
+    title, head, *_, first, second = lines
+    assert [title, head] == [["A", "[b]", "title"], ["method", "step", "[s]"]]
+    assert [first, second] == [["a", "x", "0.1"], ["b", "[y]", "0.01"]]
