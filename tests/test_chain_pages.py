@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from reference.validation import InvalidMechanism
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -14,7 +15,6 @@ from reference.scenes.many_links import SpinningRing
 from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
-from reference.validation import InvalidMechanism
 from reports.gate.prediction import all_tasks
 from reports.model.cells import Cell
 from reports.model.measure import measure

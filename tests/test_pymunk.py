@@ -16,10 +16,13 @@ from engines import Size
 from engines.extrapolated import Extrapolated
 from engines.lagrange import Lagrange
 from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED
+from engines.pymunk.methods import AIMED, SETTLED
 from engines.pymunk.running import Recorder
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.pendulum.scenes import TenLinks
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.trajectory import Trajectory, energy
 from tests.mechanisms import bar, four_bar, pendulum
 
@@ -281,3 +284,11 @@ def test_two_free_bodies_keep_their_momentum(method):
     momentum = np.sum(mass[:, None] * trajectory.twist[..., :2], axis=1)
     assert largest(momentum - momentum[0]) < 1e-11  # impulses are equal and opposite: rounding only
     assert largest(trajectory.reaction) > 0.1  # and there are some
+
+
+@pytest.mark.parametrize("method", [SETTLED, AIMED], ids=lambda method: method.variant)
+def test_how_often_a_run_is_sampled_changes_neither_its_poses_nor_its_iterations(method):
+    """A run begins with many iterations a step; they end with the steps that ask for them, wherever a sample stands."""
+    mechanism = TenLinks().mechanism() if method is SETTLED else ChaplyginSleigh().mechanism()
+    often, seldom = (method.build(mechanism, 1e-3)(60 // every, every).pose for every in (1, 10))
+    assert np.array_equal(often[::10], seldom)

@@ -107,10 +107,11 @@ def record(
     steps_between = range(every - 1)
     stopped = ""
     own = model.space.iterations
-    first = list(reversed(settling))
+    first = [own, *reversed(settling)] if settling else []  # the last one stays
 
     def settle(space: Any, dt: float) -> None:
-        lib.cpSpaceSetIterations(pointer, first.pop() if first else own)
+        if first:
+            lib.cpSpaceSetIterations(pointer, first.pop())
         step(space, dt)
 
     begin = time.process_time()
