@@ -67,16 +67,8 @@ def _line(cell: Cell) -> dict[str, str] | None:
     return next((line for line in _lines_of(cell) if (line["parameters"], line["settings"]) == own), None)
 
 
-def before_the_maps_went(cell: Cell) -> Cell:
-    """The cell under which the person's sweeps were published in a map; until they are published anew."""
-    if cell.scene.name != "person_one_foot" or not cell.engine.variant.endswith("sweeps, all of the gap"):
-        return cell
-    engine: Any = cell.engine
-    return replace(cell, engine=replace(engine, variant="all of the gap"), purpose="map")
-
-
 def _row(cell: Cell) -> Measurement | None:
-    line = _line(cell) or _line(before_the_maps_went(cell))
+    line = _line(cell)
     if line is None:
         return None
     told = {
