@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference.validation import InvalidMechanism
 
 from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
+from reference.checks import InvalidMechanism
 from reference.scenes.many_links import SpinningRing
 from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever

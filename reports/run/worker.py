@@ -86,18 +86,23 @@ class Worker:
 
     def exit_code(self) -> int | None:
         """Of a worker whose connection has ended; None if nobody knows how the process ended."""
-        wait([self.process.sentinel], PATIENCE)
-        with _reading:
-            return self.process.exitcode
+        return _exit_code(self.process)
 
     def stop(self) -> None:
         """End the process, whatever it does, and what it has started."""
         _kill(self.process)
         self.connection.close()
-        wait([self.process.sentinel], PATIENCE)
-        with _reading:
-            if self.process.exitcode is not None:
-                self.process.close()
+        if _exit_code(self.process) is not None:
+            self.process.close()
+
+
+def _exit_code(process: BaseProcess) -> int | None:
+    """Once the process has ended; None if nobody knows how, or it is still there after PATIENCE."""
+    ended = wait([process.sentinel], PATIENCE)
+    with _reading:
+        if ended:  # of a spawned process it is a pipe, closed a moment before the system tells the exit code
+            process.join(PATIENCE)
+        return process.exitcode
 
 
 def start_method(*modules: str) -> Any:
