@@ -160,7 +160,7 @@ def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
 
 def test_no_answer_is_stale_because_of_words_or_pictures():
     """A task's module, and what it imports, is apart from templates, commands and charts."""
-    words = re.compile(r"reports/(plots|cli|pages/(rendering|\w+/(page|expectations)))\b")
+    words = re.compile(r"reports/(plots|cli|pages/(rendering|\w+/page))\b")
     for kind in {type(task) for page in PAGES for task in all_tasks(page)}:
         places, _ = fingerprint._behind(frozenset({kind.__module__}))
         names = [place.relative_to(fingerprint.ROOT).as_posix() for place in places]

@@ -1,1 +1,1 @@
-"""The pages: one package a mechanism (page, experiments, expectations, template), and what they share."""
+"""The pages: one package a mechanism (page, experiments, template), and what they share."""

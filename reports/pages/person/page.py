@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from engines import Promise
 from engines.registry import VARIANTS
 from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
+from reports.model.checks import Deviation
 from reports.model.page import Material, Page
-from reports.pages.person.expectations import KNOWN, ORDERS
 from reports.pages.person.experiments import FAILURES
 from reports.plots.mechanisms import Points, Strip, stroboscope
 from reports.plots.theme import svg
@@ -42,6 +43,23 @@ def words(material: Material) -> Mapping[str, Any]:
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
     return {**lookups(material, SCENES), "freedoms": freedoms, "knee": knee}
 
+
+# Where a method is known to fall short on the person, and where its motion asks for another promise.
+# Observed on all three: an error of the fifth power is left.
+ORDERS = {
+    (scene, "pymunk extended"): Promise(5, reaction=4, differences=8, amplified=17.0)
+    for scene in ("person_swaying", "person_one_foot", "person_two_feet")
+}
+
+ESTIMATED = (
+    "ours: the judge takes the inverse inertia of the row itself, MuJoCo an estimate that is larger in this loop"
+)
+
+KNOWN: dict[tuple[str, str, str], Deviation] = {
+    ("person_two_feet", "mujoco tuned", "error"): Deviation(ESTIMATED, 1.2),
+    ("person_two_feet", "mujoco tuned", "rate"): Deviation(ESTIMATED, 5.8),
+    ("person_two_feet", "mujoco tuned", "gap"): Deviation(ESTIMATED, 6.1),
+}
 
 PAGE = Page(
     name=NAME,

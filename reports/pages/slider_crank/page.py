@@ -8,8 +8,9 @@ from typing import Any
 
 from engines.registry import VARIANTS
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reports.model.checks import Deviation
+from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.pages.slider_crank.expectations import KNOWN
 from reports.pages.slider_crank.experiments import FAILURES
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
@@ -39,6 +40,16 @@ def words(material: Material) -> Mapping[str, Any]:
     formulas = {"stretched": math.degrees(stretched), "in_line_again": math.degrees(folded), "stroke": shape.stroke()}
     return {**lookups(material, SCENES), **formulas}
 
+
+# Where a method is known to fall short on the slider-crank, each with its reason.
+EULER = "by design: a first-order method loses two turns of a free crank at the steps that are run here"
+SOFT = "by design: as shipped a loop is a spring of 0.02 s, whatever the step; its softness is the error that stays"
+
+KNOWN: dict[tuple[str, str, str], Deviation] = {
+    ("driven_slider_crank", "mujoco default", "order"): Deviation(SOFT, 2.5),
+    ("free_slider_crank", "pymunk default", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
+    ("free_slider_crank", "lagrange euler projection", "outcome"): Deviation(EULER, outcome=Outcome.SATURATED),
+}
 
 PAGE = Page(
     name=NAME,
