@@ -1,4 +1,7 @@
-"""The four-bar's formulas: the chapter's numbers, identities, wrong models, its forces, and its rates integrated."""
+"""The four-bar: the chapter's numbers, its range and its classes, its rates integrated, and where its scenes end.
+
+Its angles and rates in fifty digits are asked by `laws`, its motions and forces by `test_scenes`.
+"""
 
 import math
 from dataclasses import replace
@@ -8,25 +11,26 @@ import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.scenes.four_bar.linkage import FourBar
+from reference.scenes.catalogue import SCENES, scene
+from reference.scenes.four_bar.linkage import FourBar, Unreachable
+from reference.scenes.four_bar.scenes import (
+    DrivenFourBar,
+    FreeFourBar,
+    OverdrivenFourBar,
+    Parallelogram,
+    SpinningFourBar,
+)
+from reference.trajectory import joint_gap
 from tests.present import present
+from tests.reference.laws.linkages import closed
+from tests.reference.test_scenes import TRIPLE_ROCKER
 
 CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
 TURNED = FourBar(0.4, 1.1, 0.9, (-0.7, 0.9))
 WINDING = FourBar(1.0, 0.9, 1.1, (0.3, -0.4))
 WINDING_BACKWARD_GROUND = FourBar(2.0, 1.7, 1.5, (-0.6, 0.0))
 ROCKING = FourBar(0.9, 0.4, 0.8, (0.2, 0.8))
-EQUAL_CRANK_AND_GROUND = FourBar(1.0, 0.6, 0.9, (0.6, 0.8))
-LINKAGES = (CHAPTER, TURNED, WINDING, WINDING_BACKWARD_GROUND, ROCKING, EQUAL_CRANK_AND_GROUND)
 EPS = np.finfo(float).eps
-
-
-def reachable(linkage, count, inside=0.02):
-    """Crank angles spread over what is possible, away from its ends by a part of its width."""
-    intervals = linkage.crank_limits() or ((-9.0, 9.0),)
-    return np.concatenate(
-        [np.linspace(low + inside * (high - low), high - inside * (high - low), count) for low, high in intervals]
-    )
 
 
 def gap(linkage, theta, beta, phi):
@@ -34,72 +38,8 @@ def gap(linkage, theta, beta, phi):
     return np.abs(loop - linkage.rocker * np.exp(1j * phi) - complex(*linkage.ground))
 
 
-def precise(linkage, theta, branch):
-    """beta and phi at 50 digits by the intersection of two circles: another derivation, wrapped to (-pi, pi]."""
-    crank, coupler, rocker = (mpmath.mpf(length) for length in linkage.lengths)
-    b = crank * mpmath.expj(mpmath.mpf(float(theta)))
-    d = mpmath.mpc(*linkage.ground)
-    span = abs(d - b)
-    foot = (coupler**2 - rocker**2 + span**2) / (2 * span)
-    height = mpmath.sqrt(coupler**2 - foot**2)
-    c = b + (d - b) / span * mpmath.mpc(foot, branch * height)
-    return mpmath.arg(c - b), mpmath.arg(c - d)
-
-
 def wrapped(angle):
     return np.remainder(np.asarray(angle, dtype=float) + np.pi, 2 * np.pi) - np.pi
-
-
-def test_the_chapter_starts_at_a_quarter_and_three_quarters_of_pi():
-    beta, phi = CHAPTER.angles(math.pi / 2)
-    assert abs(beta - math.pi / 4) < 4 * EPS
-    assert abs(phi - 3 * math.pi / 4) < 4 * EPS
-
-
-def test_the_chapter_rates_at_the_start_are_minus_five_and_two_and_a_half():
-    assert np.allclose(CHAPTER.rates(math.pi / 2, 10.0), (-5.0, 2.5), rtol=8 * EPS, atol=0)
-
-
-def test_rates_are_the_printed_formulas_with_phi_read_from_d_to_c():
-    theta = reachable(CHAPTER, 200)
-    beta, phi = CHAPTER.angles(theta)
-    l1, l2, l3 = CHAPTER.lengths
-    printed = (
-        l1 / l2 * np.sin(phi - theta) / np.sin(beta - phi) * 10.0,
-        l1 / l3 * np.sin(beta - theta) / np.sin(beta - phi) * 10.0,
-    )
-    rates = CHAPTER.rates(theta, 10.0)
-    # The printed quotient loses what sin(beta - phi), at least 0.3 here, multiplies.
-    assert np.max(np.abs(np.array(rates) - printed)) < 1e-13
-    # Erratum 16: rod "CD" read from C to D keeps the rates, but does not close the loop.
-    assert np.min(gap(CHAPTER, theta, beta, phi + np.pi)) > 0.1
-
-
-def test_the_rotation_rates_satisfy_the_velocity_equation_of_the_loop():
-    rng = np.random.default_rng(5)
-    theta = reachable(TURNED, 300)
-    rate = rng.normal(size=theta.size)
-    beta, phi = TURNED.angles(theta, -1)
-    beta_dot, phi_dot = TURNED.rates(theta, rate, -1)
-
-    def residual(coupler_rate):
-        return np.abs(
-            TURNED.crank * rate * np.exp(1j * theta)
-            + TURNED.coupler * coupler_rate * np.exp(1j * beta)
-            - TURNED.rocker * phi_dot * np.exp(1j * phi)
-        )
-
-    assert np.max(residual(beta_dot)) < 1e-14  # (18.69), terms of order one
-    assert np.max(residual(-beta_dot)) > 0.1
-
-
-@pytest.mark.parametrize("change", [{"coupler": 1e-3}, {"rocker": 1e-3}, {"crank": 1e-3}])
-def test_a_length_off_by_a_millimetre_is_seen(change):
-    wrong = replace(CHAPTER, **{name: getattr(CHAPTER, name) + extra for name, extra in change.items()})
-    with mpmath.workdps(50):
-        truth = [float(value) for value in precise(CHAPTER, 1.0, 1)]
-    assert np.max(np.abs(np.array(CHAPTER.angles(1.0)) - truth)) < 1e-14
-    assert np.max(np.abs(np.array(wrong.angles(1.0)) - truth)) > 1e-4
 
 
 def random_linkages(count):
@@ -115,18 +55,26 @@ def random_linkages(count):
         yield linkage
 
 
-def test_random_linkages_close_in_both_branches_with_c_on_its_side_of_bd():
-    classes = set()
-    for linkage in random_linkages(300):
-        classes.add(linkage.grashof())
-        theta = reachable(linkage, 60, inside=1e-3)
-        for branch in (1, -1):
-            beta, phi = linkage.angles(theta, branch)
-            assert np.max(gap(linkage, theta, beta, phi)) < 2e-14  # about 50 roundings of lengths up to 3 m
-            b = linkage.crank * np.exp(1j * theta)
-            side = np.conj(complex(*linkage.ground) - b) * np.exp(1j * beta)
-            assert np.all(np.sign(side.imag) == branch)
-    assert classes == {"crank-rocker", "double-crank", "double-rocker", "triple-rocker"}
+def test_the_chapter_starts_at_a_quarter_and_three_quarters_of_pi_with_rates_of_minus_five_and_two_and_a_half():
+    beta, phi = CHAPTER.angles(math.pi / 2)
+    assert abs(beta - math.pi / 4) < 4 * EPS
+    assert abs(phi - 3 * math.pi / 4) < 4 * EPS
+    assert np.allclose(CHAPTER.rates(math.pi / 2, 10.0), (-5.0, 2.5), rtol=8 * EPS, atol=0)
+
+
+def test_rates_are_the_printed_formulas_with_phi_read_from_d_to_c():
+    theta = np.linspace(-9.0, 9.0, 200)
+    beta, phi = CHAPTER.angles(theta)
+    l1, l2, l3 = CHAPTER.lengths
+    printed = (
+        l1 / l2 * np.sin(phi - theta) / np.sin(beta - phi) * 10.0,
+        l1 / l3 * np.sin(beta - theta) / np.sin(beta - phi) * 10.0,
+    )
+    rates = CHAPTER.rates(theta, 10.0)
+    # The printed quotient loses what sin(beta - phi), at least 0.3 here, multiplies.
+    assert np.max(np.abs(np.array(rates) - printed)) < 1e-13
+    # Erratum 16: rod "CD" read from C to D keeps the rates, but does not close the loop.
+    assert np.min(gap(CHAPTER, theta, beta, phi + np.pi)) > 0.1
 
 
 def test_angles_are_continuous_at_every_crank_angle_for_random_linkages():
@@ -150,26 +98,16 @@ def test_a_double_crank_winds_with_its_crank(linkage, branch):
     assert np.max(np.abs(turned - 6 * np.pi)) < 1e-13  # three turns, to the rounding of theta
     shuffled = np.random.default_rng(0).permutation(theta.size)
     assert np.array_equal(linkage.angles(theta[shuffled], branch)[0], linkage.angles(theta, branch)[0][shuffled])
-
-
-def test_a_crank_rocker_does_not_wind():
-    theta = np.linspace(-10, 10, 41)
-    turned = np.array(CHAPTER.angles(theta + 20 * np.pi)) - CHAPTER.angles(theta)
-    assert np.max(np.abs(turned)) < 1e-13
-
-
-def test_the_mirror_image_has_the_mirrored_angles():
-    mirror = replace(TURNED, ground=(TURNED.ground[0], -TURNED.ground[1]))
-    theta = reachable(TURNED, 50)
-    difference = np.array(mirror.angles(-theta, -1)) + np.array(TURNED.angles(theta, 1))
-    assert np.max(np.abs(wrapped(difference))) < 1e-14
+    rocking = np.array(CHAPTER.angles(theta + 20 * np.pi)) - CHAPTER.angles(theta)
+    assert np.max(np.abs(rocking)) < 1e-13  # a crank-rocker does not wind
 
 
 def test_huge_crank_angles_and_odd_multiples_of_pi_are_exact_to_the_angle_given():
     theta = np.array([np.pi, -np.pi, 3 * np.pi, 1e6 * np.pi, 12345678.9, 1e15])
     beta, phi = CHAPTER.angles(theta)
     with mpmath.workdps(50):
-        truth = np.array([[float(value) for value in precise(CHAPTER, angle, 1)] for angle in theta]).T
+        bars = [closed(*CHAPTER.lengths, *CHAPTER.ground, mpmath.mpf(float(angle)), 1) for angle in theta]
+        truth = np.array([[float(mpmath.arg(bar)) for bar in bars[1:]] for bars in bars]).T
     assert np.max(np.abs(wrapped(np.array([beta, phi]) - truth))) < 1e-14
 
 
@@ -183,57 +121,6 @@ def test_arguments_broadcast_and_blocks_do_not_show():
     one = TURNED.kinematics(theta[2], -2.0, 0.0, -1)
     assert all(abs(many[2, 1] - value) < 1e-13 for many, value in zip(table, one, strict=True))
     assert CHAPTER.angles(np.zeros((0, 3)))[0].shape == (0, 3)
-
-
-def test_near_a_crank_limit_the_angle_error_is_rounding_over_the_root_of_the_distance():
-    (low, _), *_ = present(ROCKING.crank_limits())
-    for distance in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
-        theta = low + distance
-        with mpmath.workdps(50):
-            truth = np.array([float(value) for value in precise(ROCKING, theta, 1)])
-        error = np.max(np.abs(wrapped(np.array(ROCKING.angles(theta)) - truth)))
-        # d angle / d theta is about 1 / sqrt(distance): it multiplies the rounding of the lengths.
-        assert error < 20 * EPS / math.sqrt(distance)
-    beta, _ = ROCKING.angles(low)
-    other, _ = ROCKING.angles(low, -1)
-    assert abs(wrapped(beta - other)) < 20 * math.sqrt(EPS)
-
-
-def test_the_drive_torque_is_the_rate_of_work_of_all_bars():
-    density, gravity, rate, step = (1.0, 2.5, 0.4), (1.5, -9.81), -3.0, 1e-3
-
-    def work(theta):  # kinetic plus potential energy
-        motion = TURNED.kinematics(theta, rate, 0.0, -1)
-        mass = np.array(density) * TURNED.lengths
-        b = TURNED.crank * np.exp(1j * theta)
-        arm, follower = TURNED.coupler / 2 * np.exp(1j * motion.beta), TURNED.rocker / 2 * np.exp(1j * motion.phi)
-        centres = (b / 2, b + arm, complex(*TURNED.ground) + follower)
-        speeds = (b / 2 * rate, b * rate + arm * motion.beta_dot, follower * motion.phi_dot)
-        turning = (rate, motion.beta_dot, motion.phi_dot)
-        total = 0
-        for m, length, c, v, w in zip(mass, TURNED.lengths, centres, speeds, turning, strict=True):
-            total += m * (np.abs(v) ** 2 + length**2 / 12 * w**2) / 2
-            total -= m * (gravity[0] * c.real + gravity[1] * c.imag)
-        return total
-
-    weights = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840 / step
-    for theta in (0.3, 2.0, 4.4):
-        power = weights @ work(theta + rate * step * np.arange(-4, 5))
-        torque = TURNED.forces(theta, rate, 0.0, -1, density, gravity).torque
-        assert abs(torque * rate - power) < 1e-10  # energies of 20 J, rounded, over the step
-        wrong = TURNED.forces(theta, rate, 0.0, -1, density, (gravity[0], -gravity[1])).torque
-        assert abs(wrong * rate - power) > 1e-2
-
-
-def test_a_linkage_at_rest_without_weight_needs_no_force():
-    forces = CHAPTER.forces(np.linspace(0, 6, 20), 0.0, gravity=(0.0, 0.0))
-    assert max(np.max(np.abs(force)) for force in forces) == 0
-
-
-def test_the_ground_carries_the_weight_at_rest():
-    at_a, _, _, at_d = CHAPTER.forces(np.linspace(0, 6, 20), 0.0)[:4]
-    weight = 9.81 * sum(CHAPTER.lengths)
-    assert np.max(np.abs(at_a + at_d - (0.0, weight))) < 1e-13
 
 
 def test_integrated_rates_at_the_common_tolerance_miss_by_two_hundredths_in_one_revolution():
@@ -293,3 +180,189 @@ def test_a_limit_that_is_a_whole_number_of_steps_is_used_up(method, cost):
     short = CHAPTER.integrate_rates([0.0, 0.01, 0.02], method=method, every=10, limit=20 * cost - 1)
     assert short.evaluations == 19 * cost
     assert "stopped at" in short.stopped
+
+
+# Which linkages and crank angles there are
+
+
+def test_crank_limits_are_where_the_triangle_flattens_and_the_crank_is_refused_beyond():
+    for linkage in random_linkages(200):
+        limits = linkage.crank_limits()
+        turns = linkage.grashof() == "double-crank" or (
+            linkage.grashof() == "crank-rocker" and linkage.crank < linkage.rocker
+        )
+        assert (limits is None) == turns
+        for low, high in limits or ():
+            for end, outward in ((low, -1), (high, 1)):
+                span = abs(linkage.crank * np.exp(1j * end) - complex(*linkage.ground))
+                flat = (linkage.coupler + linkage.rocker, abs(linkage.coupler - linkage.rocker))
+                assert min(abs(span - s) for s in flat) < 1e-14
+                linkage.angles(end)
+                with pytest.raises(Unreachable):
+                    linkage.angles(end + outward * 1e-9)
+
+
+def test_an_unreachable_angle_is_named_with_the_possible_range():
+    (low, high), *_ = present(ROCKING.crank_limits())
+    with pytest.raises(Unreachable, match=r"crank angle 4\.5 rad") as refusal:
+        ROCKING.angles(np.array([(low + high) / 2, 4.5]))
+    assert f"{low:.9g}" in str(refusal.value)
+    assert f"{high:.9g}" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "ground", "name"),
+    [
+        ((1.0, 2.0, 2.5), (3.0, 0.0), "crank-rocker"),
+        ((2.5, 2.0, 1.0), (3.0, 0.0), "crank-rocker"),  # the rocker turns
+        ((2.0, 2.5, 3.0), (1.0, 0.0), "double-crank"),
+        ((2.0, 1.0, 2.5), (3.0, 0.0), "double-rocker"),
+        ((2.0, 2.2, 1.9), (3.0, 0.0), "triple-rocker"),
+        ((0.1, 0.3, 0.1), (0.3, 0.0), "change-point"),
+        ((0.1, 0.7, 0.2), (0.8, 0.0), "change-point"),  # 0.1 + 0.8 and 0.7 + 0.2 differ by rounding
+        # A hundredth of a nanometre a metre is none: s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
+        ((1.0, 1.5, 2.5 - 1e-11), (3.0, 0.0), "triple-rocker"),
+        ((1.0, 1.5, 2.5 + 1e-11), (3.0, 0.0), "crank-rocker"),
+    ],
+)
+def test_grashof_classes_by_name(lengths, ground, name):
+    crank, coupler, rocker = lengths
+    assert FourBar(crank, coupler, rocker, ground).grashof() == name
+
+
+def test_a_parallelogram_keeps_its_digits_beside_its_change_point():
+    parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
+    assert parallelogram.crank_limits() is None
+    for theta in (1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-100, -1e-100):
+        # One of the two branches is the parallelogram, whose coupler stays parallel to the ground.
+        pairs = np.array([wrapped(parallelogram.angles(theta, branch)) for branch in (1, -1)])
+        beta, phi = pairs[np.argmin(np.abs(pairs[:, 0]))]
+        # The formulas lose nothing here, where a difference of squared lengths would leave eps / theta.
+        assert abs(beta) < 4e-15
+        assert abs(phi - theta) < 4e-15
+
+
+def test_b_on_d_is_refused_where_c_is_not_determined():
+    kite = FourBar(1.0, 0.5, 0.5, (0.6, 0.8))
+    with pytest.raises(Unreachable, match="B lies on D"):
+        FourBar(1.0, 0.5, 0.5, (1.0, 0.0)).angles([1.0, 0.0])
+    theta = np.arctan2(0.8, 0.6) + np.array([-0.9, -1e-3, 1e-3, 0.9])
+    assert np.max(gap(kite, theta, *kite.angles(theta))) < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ((1.0, 1.0, 1.0, (0.0, 0.0)), "other than"),
+        ((1.0, 1.0, 1.0, (3.1, 0.0)), "can't be assembled"),
+        ((5.0, 1.0, 1.0, (1.0, 0.0)), "can't be assembled"),
+    ],
+)
+def test_impossible_linkages_are_refused_in_a_sentence(values, words):
+    with pytest.raises(InvalidMechanism, match=words):
+        FourBar(*values)
+
+
+# Scenes
+
+
+def test_the_nine_configurations_of_the_figure_end_where_they_begin():
+    # Erratum 20: nine times, the last of which is the first configuration again.
+    each = DrivenFourBar()
+    angle = each.motion(each.duration * np.arange(9) / 8).pose[:, :, 2]
+    steps = np.diff(angle[:, 0])
+    assert np.max(np.abs(steps - np.pi / 4)) < 1e-14
+    assert np.max(np.abs(angle[8, 1:] - angle[0, 1:])) < 1e-14
+
+
+def test_a_scene_is_sampled_every_hundredth_of_a_second():
+    assert FreeFourBar(duration=1.0).samples == 100
+    assert FreeFourBar(duration=1.0).spacing == 0.01
+    # A duration that is no multiple: the samples stand as near to that as their number allows.
+    assert DrivenFourBar().samples == round(0.2 * math.pi / 0.01)
+    assert DrivenFourBar().spacing == pytest.approx(0.2 * math.pi / 63, rel=1e-15)
+    assert FreeFourBar(duration=1e-3).samples == 1
+
+
+def test_a_triple_rocker_passes_its_crank_limits_and_changes_its_branch():
+    each = TRIPLE_ROCKER
+    accelerations = lambda times: each._bodies(each._angles(times))[2]  # noqa: E731
+    assert each.four_bar.grashof() == "triple-rocker"
+    times = np.linspace(0, each.duration, 2001)
+    motion, bend = each.motion(times[::5]), accelerations(times[::5])
+    (low, high), *_ = (
+        interval for interval in present(each.four_bar.crank_limits()) if interval[0] <= each.start <= interval[1]
+    )
+    theta, branch = motion.pose[:, 0, 2], each.branch_of(motion.pose)
+    assert np.min(theta) >= low - 1e-14
+    assert np.max(theta) <= high + 1e-14
+    assert set(branch) == {1, -1}
+    for change in np.flatnonzero(np.diff(branch)):
+        near = min(abs(theta[change] - low), abs(theta[change] - high))
+        assert near < 0.05  # less than the crank turns between samples
+        # No jolt: the speed changes by what the accelerations either side tell.
+        pair = slice(change, change + 2)
+        told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])
+        assert np.max(np.abs(np.diff(motion.twist[pair], axis=0)[0] - told)) < 0.1
+    # Before and after, the angles are those of the closed form on the branch reported.
+    beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
+    turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
+    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
+
+
+def test_a_start_that_can_not_be_is_refused_in_a_sentence():
+    triple = TRIPLE_ROCKER.four_bar
+    (_, high), *_ = present(triple.crank_limits())
+    with pytest.raises(Unreachable, match="possible is"):
+        replace(TRIPLE_ROCKER, start=high + 0.1)
+    with pytest.raises(InvalidMechanism, match="at its limit"):
+        replace(TRIPLE_ROCKER, start=high, rate=1.0)
+    with pytest.raises(InvalidMechanism, match="change point"):
+        FreeFourBar(crank=0.4, coupler=1.2, rocker=0.4, start=0.0)
+    with pytest.raises(InvalidMechanism, match="rate is 0"):
+        DrivenFourBar(rate=0.0)
+    with pytest.raises(InvalidMechanism, match="must be equal"):
+        Parallelogram(rocker=0.5)
+    with pytest.raises(ValueError, match="change point, beyond which two motions are possible"):
+        FreeFourBar(0.5, 1.2, 0.5, (1.2, 0.0), 1, 1.0, 8.0).motion(1.0)
+
+
+def test_a_start_at_rest_at_a_crank_limit_moves_off_it():
+    (_, high), *_ = present(TRIPLE_ROCKER.four_bar.crank_limits())
+    each = replace(TRIPLE_ROCKER, start=high, duration=0.2)
+    motion = each.motion(np.linspace(0, each.duration, 51))
+    assert np.max(np.abs(joint_gap(each.mechanism(), motion))) < 1e-14
+    assert np.max(np.abs(motion.twist[-1])) > 0.1
+
+
+def test_scenes_are_found_by_name_and_the_nearest_is_suggested():
+    names = [each.name for each in SCENES]
+    assert len(set(names)) == len(names)
+    assert all(scene(name).name == name for name in names)
+    assert scene("spinning_four_bar") == SpinningFourBar()
+    with pytest.raises(ValueError, match="did you mean 'free_four_bar'"):
+        scene("fre_fourbar")
+
+
+def test_a_freedom_appears_where_the_bars_are_in_line():
+    scene = Parallelogram()
+    mechanism = scene.mechanism()
+    assert mechanism.degrees_of_freedom() == (0, 0)
+    in_line = scene.motion([np.pi / 2 / scene.rate])
+    assert mechanism.degrees_of_freedom(in_line.pose[0]) == (1, 1)
+    assert np.all(np.isnan(in_line.reaction))
+    assert set(scene.branch_of(scene.motion(np.linspace(0, scene.duration, 101)).pose)) >= {-1, 1}
+
+
+@pytest.mark.parametrize("rate", [4.0, -4.0])
+def test_the_way_to_the_limit_depends_on_the_sense_of_rotation(rate):
+    scene = OverdrivenFourBar(start=0.3, rate=rate)
+    (low, high), *_ = present(scene.four_bar.crank_limits())
+    assert scene.stopping_time == pytest.approx((high - 0.3 if rate > 0 else 0.3 - low) / 4, rel=1e-14)
+    scene.motion([scene.stopping_time * (1 - 1e-9)])
+    with pytest.raises(Unreachable, match="can't close; possible is"):
+        scene.motion([scene.stopping_time * (1 + 1e-9)])
+    # |B - D| = coupler + rocker: 0.64 + 1.44 - 1.92 cos(theta) = 1
+    assert OverdrivenFourBar().stopping_time == pytest.approx(np.arccos(0.5625) / 4, rel=1e-15)
+    free = OverdrivenFourBar(crank=0.4, coupler=0.4 * np.sqrt(2), rocker=0.8 * np.sqrt(2), start=1.0)
+    assert free.stopping_time == np.inf

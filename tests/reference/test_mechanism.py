@@ -27,31 +27,6 @@ def driven() -> Mechanism:
     return four_bar(crank_rate=10.0, drive=10.0)
 
 
-def test_rows_are_the_derivative_of_the_gap(driven):
-    pose = driven.pose + RANDOM.normal(size=driven.pose.shape)
-    rows = driven.rows(pose)
-    step = 1e-30  # a complex step has no subtraction, so the comparison is at rounding level
-    for column in range(pose.size):
-        moved = pose.astype(complex).reshape(-1)
-        moved[column] += 1j * step
-        derivative = driven.gap(moved.reshape(pose.shape), 0.0).imag / step
-        np.testing.assert_allclose(rows[:, column], derivative, rtol=0, atol=1e-14)
-
-
-def test_the_bias_is_minus_the_rate_of_the_rows_times_the_velocity(driven):
-    pose, twist = driven.pose, RANDOM.normal(size=driven.twist.shape)
-    h = 1e-5  # central difference: error h^2 times the third derivative of a cosine, about 1e-10 times |v|^3
-    difference = (driven.rows(pose + h * twist) - driven.rows(pose - h * twist)) / (2 * h)
-    np.testing.assert_allclose(driven.bias(pose, twist), -difference @ twist.reshape(-1), atol=1e-8)
-
-
-def test_the_printed_rates_of_the_chapter_satisfy_the_rows_and_a_flipped_sign_does_not(driven):
-    assert np.max(np.abs(driven.slip(driven.pose, driven.twist))) < 1e-14
-    wrong = driven.twist.copy()
-    wrong[2, 2] *= -1
-    assert np.max(np.abs(driven.slip(driven.pose, wrong))) > 1
-
-
 def test_everything_broadcasts_over_times(driven):
     poses = driven.pose + RANDOM.normal(size=(5, *driven.pose.shape))
     twists = RANDOM.normal(size=poses.shape)
@@ -91,16 +66,6 @@ def test_an_engine_with_other_masses_and_gravity_has_applied_other_reactions():
     heavy = replace(mechanism, bodies=(replace(mechanism.bodies[0], mass=3.0),), gravity=(0.0, -2.0))
     np.testing.assert_allclose(found, heavy.reaction(mechanism.pose, resting), atol=1e-14)
     assert np.abs(found - own).max() > 0.1
-
-
-def test_freedoms_are_counted_by_rank_so_a_repeated_pin_changes_nothing():
-    assert four_bar().degrees_of_freedom() == (1, 1)
-    assert four_bar(10.0, drive=10.0).degrees_of_freedom() == (0, 0)
-    mechanism = pendulum()
-    assert mechanism.degrees_of_freedom() == (1, 1)
-    twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[0], name="A again")))
-    assert twice.degrees_of_freedom() == (1, 1)
-    assert Mechanism((mechanism.bodies[0],), ()).degrees_of_freedom() == (3, 3)
 
 
 def test_energy_gap_and_slip_need_no_reference():

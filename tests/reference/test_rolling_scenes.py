@@ -1,16 +1,17 @@
-"""Rolling under gravity: energy, exact multipliers, closed forms of hop, slip and small swings, elliptic gears."""
+"""Rolling under gravity: closed forms of hop, slip and small swings, the first instant of each, elliptic gears.
+
+Motions, forces and energies are asked by `test_scenes`.
+"""
 
 from __future__ import annotations
 
 import math
 import random
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Circle, Line, Ring
@@ -25,18 +26,7 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
-from reference.trajectory import energy, joint_gap, slip
 from tests.present import present
-
-SCENES = [RollingEllipse(), RollingDisc(), RollingCam(), RollingDownhill(), RollingInRing(), RollingOnCircle()]
-
-
-def by_name(scenes):
-    return pytest.mark.parametrize("scene", scenes, ids=[scene.name for scene in scenes])
-
-
-def times(scene):
-    return np.linspace(0, scene.duration, scene.samples + 1)
 
 
 def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
@@ -47,44 +37,6 @@ def test_the_incline_falls_to_minus_x_so_that_the_ellipse_goes_faster():
     # It sinks by the slope, but for the 0.1 m by which its half axes differ.
     assert up == pytest.approx(math.tan(scene.slope) * along, abs=0.11)
     assert abs(truth.twist[1, 0, 2]) > abs(truth.twist[0, 0, 2])
-
-
-@by_name(SCENES)
-def test_the_truth_keeps_energy_contact_and_newtons_law(scene):
-    mechanism, t = scene.mechanism(), times(scene)
-    truth = scene.motion(t)
-    assert mechanism.degrees_of_freedom() == (1, 1)
-    # Two hundred samples' rounding of about 10 J.
-    np.testing.assert_allclose(energy(mechanism, truth), energy(mechanism, truth)[0], rtol=0, atol=5e-12)
-    np.testing.assert_allclose(joint_gap(mechanism, truth), 0, atol=1e-13)
-    np.testing.assert_allclose(slip(mechanism, truth), 0, atol=1e-13)
-    law = scene.motion_law
-    theta, rate = law.states(t)
-    alpha = law.angular_acceleration(theta, rate)
-    acceleration = np.concatenate([law.rolling.acceleration(theta, rate, alpha), alpha[:, None]], axis=-1)
-    np.testing.assert_allclose(mechanism.reaction(truth.pose, acceleration[:, None, :]), truth.reaction, atol=1e-12)
-    # Euler's law about the centre of mass was not used: torque of the contact's force = I alpha.
-    arm, contact = law.rolling.contact(theta).arm, law.rolling.contact(theta)
-    force = truth.reaction[:, :1] * contact.tangent + truth.reaction[:, 1:] * contact.normal
-    torque = -(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
-    np.testing.assert_allclose(torque, law.inertia * alpha, atol=1e-12)
-
-
-@by_name(SCENES)
-def test_the_truths_own_error_is_below_a_picoradian_a_radian_turned(scene):
-    # What a coarser tolerance, up to 3e-12 a step over up to 60 steps, changes.
-    assert scene.motion_law.truth_error(times(scene)).max() < 2e-11
-
-
-@by_name(SCENES)
-def test_exact_multipliers_on_the_mechanism_give_the_same_motion(scene):
-    spacing = 0.05
-    run = TRUTH.build(scene.mechanism(), spacing)(10, 1)
-    truth = scene.motion(run.t)
-    # Both integrate at 1e-13 a step; the free directions of the multiplier form drift by a few of those.
-    np.testing.assert_allclose(run.pose, truth.pose, rtol=0, atol=2e-11)
-    np.testing.assert_allclose(run.twist, truth.twist, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(run.reaction, truth.reaction, rtol=0, atol=1e-9)
 
 
 def test_the_ellipses_known_extremes():
@@ -190,31 +142,9 @@ def test_the_top_of_an_ellipse_is_no_place_to_oscillate():
         law.equilibrium(0.8, within=0.3)
 
 
-def test_elliptic_gears_roll_on_each_other_as_their_closed_form_says():
-    rng = np.random.default_rng(6)
-    for eccentricity in rng.uniform(0.05, 0.8, 4):
-        scene = EllipticGears(eccentricity=eccentricity, start_angle=rng.uniform(-3, 3), duration=6.0)
-        mechanism, t = scene.mechanism(), times(scene)
-        truth = scene.motion(t)
-        assert np.ptp(truth.pose[:, 0, 2]) > 2 * np.pi
-        # The search on the curves knows nothing of tan(theta / 2); it loses 1 / (1 - e) at the sharp ends.
-        np.testing.assert_allclose(joint_gap(mechanism, truth), 0, atol=2e-14 / (1 - eccentricity) ** 2)
-        np.testing.assert_allclose(slip(mechanism, truth), 0, atol=2e-13 / (1 - eccentricity) ** 2)
-        pose, twist, acceleration = scene.kinematics(t)
-        left = (mechanism.rows(pose) @ acceleration.reshape(len(t), -1, 1))[..., 0]
-        np.testing.assert_allclose(left, mechanism.bias(pose, twist), atol=1e-11 / (1 - eccentricity) ** 3)
-
-
-def test_the_check_catches_gears_pinned_a_thousandth_too_far():
-    scene = EllipticGears()
-    mechanism, truth = scene.mechanism(), scene.motion(np.linspace(0, 2, 50))
-    pose = truth.pose + np.array([[0, 0, 0], [1e-3, 0, 0]])
-    assert np.abs(joint_gap(mechanism, replace(truth, pose=pose))).max() > 9e-4
-
-
 def test_gears_leave_open_only_the_force_along_the_line_of_their_pins():
     scene = EllipticGears()
-    mechanism, truth = scene.mechanism(), scene.motion(times(scene))
+    mechanism, truth = scene.mechanism(), scene.motion(np.linspace(0, scene.duration, scene.samples + 1))
     open_rows = {name for name, r in zip(mechanism.row_names, truth.reaction.T, strict=True) if np.isnan(r).all()}
     assert open_rows == {"first pin x", "second pin x", "mesh tangent", "mesh normal"}
     known = [name not in open_rows for name in mechanism.row_names]
@@ -229,14 +159,7 @@ def test_gears_leave_open_only_the_force_along_the_line_of_their_pins():
 BAD = {
     "a cam that isn't convex": lambda: RollingCam(cosines=(0.0, 0.0, 0.1)).mechanism(),
     "a ring too small": lambda: RollingInRing(ring=0.5).mechanism(),
-    "no mass": lambda: RollingEllipse(mass=0.0).mechanism(),
-    "a rate not finite": lambda: RollingEllipse(start_rate=math.inf).mechanism(),
-    "an angle not finite": lambda: RollingDisc(start_angle=math.nan).motion([0.0]),
-    "a time before the start": lambda: RollingEllipse().motion([-1.0]),
-    "a time not finite": lambda: RollingEllipse().motion([math.nan]),
-    "friction of zero": lambda: RollingEllipse().motion_law.slip(0.0, 1.0),
     "gears that are parabolas": lambda: EllipticGears(eccentricity=1.0),
-    "gears of no size": lambda: EllipticGears(major=0.0),
 }
 
 
@@ -244,9 +167,6 @@ BAD = {
 def test_bad_numbers_are_refused(case):
     with pytest.raises(InvalidMechanism):
         BAD[case]()
-
-
-# ----------------------------------------------------------------------------------------------- the first instant
 
 
 def watched(scene, looks=4001):
@@ -280,7 +200,7 @@ def some_scene(seed):
     return RollingEllipse(**given, along_x=0.5 * length, along_y=rng.uniform(0.3, 0.7) * length)
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(12))
 def test_hops_and_slips_are_the_first_that_looking_finds(seed):
     scene = some_scene(seed)
     law = scene.motion_law
@@ -290,17 +210,6 @@ def test_hops_and_slips_are_the_first_that_looking_finds(seed):
             assert told is None
         else:
             assert seen[0] * (1 - 1e-12) <= present(told) <= seen[1]
-
-
-def test_a_disc_that_hardly_moves_on_a_hill_hops_where_one_from_rest_does():
-    scene = RollingOnCircle(eccentricity=0.0, start_rate=1e-3, duration=6.0)
-    law = scene.motion_law
-    x, y = law.rolling.position(law.states(present(scene.hop))[0])[0]
-    # Energy 3/4 m v^2 and m v^2 / (R + r) = m g cos(angle): 4/7, and the start's own 1e-9 of it.
-    assert y / math.hypot(x, y) == pytest.approx(4 / 7, abs=1e-8)
-    assert scene.comparable_until < present(scene.hop)
-    # It has hopped long before, and nobody has to follow it for an hour.
-    assert law.hop(3600.0) == pytest.approx(scene.hop, rel=1e-9)
 
 
 def test_a_contact_that_lets_go_for_a_thousandth_of_a_second_is_seen():

@@ -1,10 +1,12 @@
-"""Wheels: tows in closed form, cars with trailers, casters, and the coasting scenes, each checked by another method."""
+"""Wheels: tows, cars with trailers, casters: their limits, folds and settlings, and what their wheels stand on.
+
+Tows, casters and trailers in fifty digits are asked by `laws`, the coasting scenes by `test_scenes`.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -17,28 +19,9 @@ from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart, Casters
 from reference.scenes.wheels.tractrix import Tow
 from reference.scenes.wheels.trailers import CarWithTrailers
-from reference.trajectory import energy, joint_gap, slip
 from tests.present import present
-from tests.reference.multipliers import TIGHT, multipliers
 
-
-def towed_angle(length, curvature, angle, way):
-    """psi by integration of psi' = -sin(psi)/L - 1/R."""
-    rate = lambda _, psi: -np.sin(psi) / length - curvature  # noqa: E731
-    return solve_ivp(rate, (0, way), [angle], **TIGHT).y[0, -1]
-
-
-@pytest.mark.parametrize("ratio", [math.inf, 3.0, -1.2, 1 + 1e-9, 1.0, -1.0, 1 - 1e-9, 0.7, -0.2])
-def test_a_tow_agrees_with_its_integration(ratio):
-    rng = np.random.default_rng(13)
-    for _ in range(12):
-        length, angle = rng.uniform(0.2, 3), rng.uniform(-3.1, 3.1)
-        way = rng.uniform(-6, 6) * length
-        tow = Tow(length, angle, ratio * length)
-        # The integration's 1e-13, grown by exp(6) where the tow is unstable.
-        assert tow.relative_angle(way) == pytest.approx(
-            towed_angle(length, 1 / (ratio * length), angle, way), abs=3e-10
-        )
+TIGHT = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
 
 
 def test_the_straight_tow_is_the_tractrix():
@@ -56,17 +39,6 @@ def test_a_tow_keeps_its_digits_next_to_the_unstable_equilibrium():
             exact = 2 * mpmath.atan(mpmath.tan(mpmath.mpf(angle) / 2) * mpmath.exp(-30))
             # sin(pi - short) carries the rounding of the angle itself and no more.
             assert Tow(1.0, angle).relative_angle(30.0) == pytest.approx(float(exact), rel=1e-13)
-
-
-def test_the_towed_wheel_never_skids_and_its_drawbar_keeps_its_length():
-    for radius in (math.inf, 2.0, 1.0, -0.6):
-        tow, way, step = Tow(1.0, 1.1, radius, (0.3, -0.2, 0.7)), np.linspace(-3, 9, 25), 1e-3
-        weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
-        shifts = np.array([-3, -2, -1, 1, 2, 3]) * step
-        velocity = np.sum([w * tow.wheel(way + s) for w, s in zip(weights, shifts, strict=True)], axis=0)
-        heading = tow.heading(way)
-        assert np.abs(-np.sin(heading) * velocity[:, 0] + np.cos(heading) * velocity[:, 1]).max() < 1e-11
-        assert np.abs(np.hypot(*(tow.hitch(way) - tow.wheel(way)).T) - 1).max() < 1e-14
 
 
 def test_a_tow_on_a_circle_settles_or_goes_round_for_ever():
@@ -89,9 +61,6 @@ def test_a_tow_started_straight_behind_or_folded_over_stays_so():
 
 def test_bad_tows_are_refused():
     for length, angle, radius in (
-        (0.0, 0.0, 1.0),
-        (-1.0, 0.0, 1.0),
-        (1.0, math.nan, 1.0),
         (1.0, 0.0, 0.0),
         (1.0, 4.0, 1.0),
     ):
@@ -144,17 +113,11 @@ def test_a_reversing_trailer_jackknifes_when_its_exact_angle_says():
 
 
 def test_bad_trains_are_refused():
-    for wheelbase, lengths, hitches in (
-        (0.0, (1.0,), (0.0,)),
-        (1.0, (0.0,), (0.0,)),
-        (1.0, (1.0,), ()),
-        (1.0, (1.0,), (math.nan,)),
-    ):
-        with pytest.raises(InvalidMechanism):
-            CarWithTrailers(wheelbase, lengths, hitches)
+    with pytest.raises(InvalidMechanism):
+        CarWithTrailers(1.0, (1.0,), ())
+    with pytest.raises(InvalidMechanism):
+        CarAndTrailer(steering=math.pi / 2)
     car = CarWithTrailers(1.0, (1.0,), (0.0,))
-    with pytest.raises(InvalidMechanism, match="none below zero"):
-        car.drive(1.0, 0.0, (0, 0, 0), (0.0,), [-1.0])
     with pytest.raises(InvalidMechanism, match="joint angles"):
         car.drive(1.0, 0.0, (0, 0, 0), (), [1.0])
     with pytest.raises(InvalidMechanism, match="steering"):
@@ -178,44 +141,6 @@ def test_casters_swing_round_when_the_cart_is_reversed():
     # Halfway when tan(beta/2) = 1: s = c log(1/tan(0.0005)).
     way = -0.1 * math.log(math.tan(0.0005))
     assert casters.swing((1e-3, 0.0), -0.5, 0.0, [way / 0.5])[0][0, 0] == pytest.approx(math.pi / 2, abs=1e-8)
-    with pytest.raises(InvalidMechanism, match="trail"):
-        Casters(((1.0, 0.0),), 0.0)
-
-
-COASTING = [
-    CarAndTrailer(),
-    CarAndTrailer(steering=0.0),
-    CarAndTrailer(speed=-1.0, steering=-0.2, bend=0.1),
-    CarAndTrailer(hitch=-0.3, bend=-2.0, steering=-0.9, pose=(1.0, 2.0, 4.0)),
-    CarAndTrailer(redundant=True),
-    Cart(),
-    Cart(speed=-1.0, angles=(0.1, 0.2)),
-    Cart(redundant=True),
-]
-
-
-@pytest.mark.parametrize("scene", COASTING, ids=lambda s: f"{s.name} {s.speed:g} {'redundant' if s.redundant else ''}")
-def test_a_coasting_vehicle_agrees_with_multipliers(scene):
-    t, mechanism = np.linspace(0, scene.duration, 21), scene.mechanism()
-    motion = scene.motion(t)
-    # The multipliers' integration drifts off the rows as its tolerance times t^2.
-    assert np.abs(multipliers(mechanism, scene.duration) - motion.pose[-1]).max() < 1e-10
-    assert np.nanmax(np.abs(joint_gap(mechanism, motion))) < 1e-14
-    assert np.abs(slip(mechanism, motion)).max() < 1e-14
-    assert np.ptp(energy(mechanism, motion)) < 1e-12 * energy(mechanism, motion)[0]
-    assert mechanism.degrees_of_freedom() == ((4, 1) if isinstance(scene, CarAndTrailer) else (5, 2))
-
-
-@pytest.mark.parametrize("scene", [CarAndTrailer(), Cart()], ids=["car", "cart"])
-def test_the_reactions_are_what_newtons_law_needs(scene):
-    t, step = np.linspace(0.2, 2, 5), 5e-4
-    weights = np.array([-1, 9, -45, 45, -9, 1]) / 60 / step
-    shifts = np.array([-3, -2, -1, 1, 2, 3]) * step
-    motion, mechanism = scene.motion(t), scene.mechanism()
-    acceleration = sum(w * scene.motion(t + s).twist for w, s in zip(weights, shifts, strict=True))
-    moved = mechanism.inertias * acceleration
-    forced = (motion.reaction[:, None, :] @ mechanism.rows(motion.pose))[:, 0].reshape(moved.shape)
-    assert np.abs(moved - forced).max() < 1e-8  # the casters' rates of 10/s: (w h)^6, and 1e-12/h
 
 
 @pytest.mark.parametrize("scene", [CarAndTrailer(), Cart()], ids=["car", "cart"])
@@ -231,26 +156,6 @@ def test_the_second_wheel_of_an_axle_changes_nothing_but_the_count_of_rows(scene
     assert len(left) == len(right) == two.row_count - one.row_count
     reaction = both.motion(t).reaction
     assert np.abs(reaction[:, left] - reaction[:, right]).max() < 1e-12
-
-
-def test_the_carts_truth_knows_its_own_error():
-    cart, t = Cart(), np.linspace(0, 3, 7)
-    assert cart.truth_error(t).max() < 1e-11
-    assert cart.motion([4.0]).pose.shape == (1, 3, 3)  # beyond the duration
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        lambda car: replace(car, hitch=-car.hitch),
-        lambda car: replace(car, masses=(car.masses[0], car.masses[1] * 1.001)),
-        lambda car: replace(car, steering=car.steering * 1.001),
-    ],
-    ids=["hitch ahead", "mass", "steering"],
-)
-def test_a_wrong_car_is_caught(wrong):
-    car = CarAndTrailer()
-    assert np.abs(wrong(car).motion([5.0]).pose - car.motion([5.0]).pose).max() > 1e-5
 
 
 def test_a_cart_stands_on_its_wheels_where_its_drawing_says():
@@ -297,27 +202,6 @@ def test_a_joint_that_passes_the_limit_for_a_moment_is_dated():
     assert drive(largest - 1e-9).jackknifed == 1
 
 
-def test_bad_vehicles_are_refused():
-    bad: dict[str, Any]
-    for bad in (
-        {"length": 0.0},
-        {"steering": math.pi / 2},
-        {"masses": (0.0, 1.0)},
-        {"bend": math.nan},
-        {"wheelbase": -1.0},
-    ):
-        with pytest.raises(InvalidMechanism):
-            CarAndTrailer(**bad)
-    bad: dict[str, Any]
-    for bad in ({"trail": 0.0}, {"mass": -1.0}, {"angles": (math.nan, 0.0)}, {"caster_inertia": 0.0}):
-        with pytest.raises(InvalidMechanism):
-            Cart(**bad)
-    for scene in (CarAndTrailer(), Cart()):
-        for times in ([-0.1], [math.inf]):
-            with pytest.raises(InvalidMechanism):
-                scene.motion(times)
-
-
 def test_a_vehicle_at_rest_stays():
     for scene in (CarAndTrailer(speed=0.0), Cart(speed=0.0, turning_rate=0.0)):
         motion = scene.motion([0.0, 3.0])
@@ -325,8 +209,7 @@ def test_a_vehicle_at_rest_stays():
         assert np.abs(motion.reaction).max() == 0
 
 
-@pytest.mark.parametrize("off", [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("off", "side"), [(0.0, 1.0), (1e-12, -1.0), (-1e-9, 1.0), (1e-6, 1.0), (-1e-3, -1.0)])
 @pytest.mark.parametrize("angle", [0.4, -math.pi / 2, 2.9])
 def test_a_tow_on_a_circle_of_nearly_its_own_radius_is_the_integral_of_its_law(off, side, angle):
     tow = Tow(0.8, angle, side * 0.8 * (1 + off))

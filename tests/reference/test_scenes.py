@@ -1,0 +1,215 @@
+"""What holds of every scene's truth, asked by rules that know no scene: start, joints, Newton's law, energy, digits.
+
+Accelerations are differences of the truth's own twists, so that no formula of a scene is taken on trust.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engines.lagrange import TRUTH
+from reference.joints import Drive
+from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.n_four_bar import NFourBar
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reference.scenes.person import TwoFeet
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.skates.pinned_body import PinnedBody
+from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
+from reference.scenes.wheels.car_and_trailer import CarAndTrailer
+from reference.scenes.wheels.cart import Cart
+from reference.trajectory import Trajectory, energy, joint_gap, slip
+from tests.present import present
+from tests.samples import SCENES_OF_LIMITS
+
+# No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
+TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
+TURNED = FreeFourBar(
+    *(0.5, 0.9, 0.8, (-0.6, 0.7)), branch=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0, gravity=(3.0, -8.0)
+)
+# The numbers of the list are those of the chapter, where signs and zeros may hide a mistake.
+OTHERS: tuple[Scene, ...] = (
+    *(TRIPLE_ROCKER, TURNED, DrivenFourBar(rate=-7.0, branch=-1, revolutions=0.5)),
+    DrivenFourBar(1.0, 0.9, 1.1, (0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
+    *(DrivenSliderCrank(offset=-0.3, branch=-1, rate=-4.0), FreeSliderCrank(offset=0.2, rate=3.0, branch=-1)),
+    *(BarPendulum(angle=1.0, rate=-9.0, length=0.7, mass=3.0), LinkPendulum(links=3, tip=50.0, rate=1.0, duration=1.0)),
+    *(NFourBar(loops=1), NFourBar(loops=3, length=0.7, mass=2.0, speed=-2.5)),
+    *(ChaplyginSleigh(offset=-0.5), ChaplyginSleigh(speed=-1.0, turning_rate=-2.0), ChaplyginSleigh(speed=0.0)),
+    *(ChaplyginSleigh(speed=0.0, turning_rate=-3.0, offset=-0.2), ChaplyginSleigh(turning_rate=0.0)),
+    *(ChaplyginSleigh(offset=0.0), ChaplyginSleigh(offset=30.0, inertia=1e-3)),
+    *(ChaplyginSleigh(start=(1.0, -2.0, 5.0)), SleighBackwards(duration=5.0)),
+    *(PinnedBody(turning_rate=12.0), PinnedBody(turning_rate=-12.0, angle=7.0), PinnedBody(point=(0.0, 0.0))),
+    PinnedBody(point=(0.2, -0.3), pin=(1.0, 2.0), gravity=(3.0, 4.0), angle=-2.0),
+    PinnedBody(angle=-math.pi / 2, turning_rate=0.0),
+    *(CarAndTrailer(steering=0.0), CarAndTrailer(speed=-1.0, steering=-0.2, bend=0.1), CarAndTrailer(redundant=True)),
+    CarAndTrailer(hitch=-0.3, bend=-2.0, steering=-0.9, pose=(1.0, 2.0, 4.0)),
+    *(Cart(speed=-1.0, angles=(0.1, 0.2)), Cart(redundant=True)),
+    *(EllipticGears(eccentricity=0.2, start_angle=-2.0), EllipticGears(eccentricity=0.75, start_angle=1.0)),
+    TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
+)
+ALL = (*SCENES, *SCENES_OF_LIMITS, *OTHERS)
+# Of configurations and of velocities, by name; a chain has as many as links.
+FREEDOMS: dict[str, tuple[int, int]] = {
+    **dict.fromkeys(("driven_four_bar", "parallelogram", "overdriven_four_bar", "driven_slider_crank"), (0, 0)),
+    **dict.fromkeys(("sleigh", "sleigh_backwards", "skate_on_slope"), (3, 2)),
+    **dict.fromkeys(("rod_end_in_slot", "slotted_lever"), (0, 0)),
+    **{"car_and_trailer": (4, 1), "cart": (5, 2), "elliptic_gears": (0, 0), "held_by_skates": (3, 0)},
+    **{"person_swaying": (5, 5), "person_one_foot": (5, 5), "person_two_feet": (3, 3)},
+}
+NEWTON = 1e-8  # of the largest force: what differences of twists leave
+each_scene = pytest.mark.parametrize("each", ALL, ids=lambda each: each.name)
+
+
+def until(each: Scene) -> float:
+    """Up to when the truth is compared [s]: a second at most, and no longer than it says something of a body."""
+    stops = (getattr(each, "stopping_time", math.inf), getattr(each, "corner", math.inf))
+    return min(each.duration, each.horizon, each.comparable_until, 1.0, *(0.9 * stop for stop in stops))
+
+
+@cache
+def known(each: Scene) -> tuple[Mechanism, Trajectory, np.ndarray, np.ndarray]:
+    """Mechanism, motion at some instants, and the rates of its poses and of its twists, by differences of order 8."""
+    mechanism, middle = each.mechanism(), np.linspace(0.1, 0.8, 5) * until(each)
+    motion = each.motion(middle)
+    step = 0.005 / max(1 / min(mechanism.time_scale, until(each)), np.abs(motion.twist[..., 2]).max())
+    weights = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840 / step
+    near = each.motion((middle[:, None] + step * np.arange(-4, 5)).ravel())
+    rates = (np.einsum("j,tj...->t...", weights, values.reshape(5, 9, -1, 3)) for values in (near.pose, near.twist))
+    return mechanism, motion, *rates
+
+
+def truth_error(each: Scene) -> Callable[[np.ndarray], np.ndarray] | None:
+    """What tells how exact a truth by integration is; None where a closed form is the truth."""
+    return getattr(each, "truth_error", None) or getattr(getattr(each, "motion_law", None), "truth_error", None)
+
+
+def unit(mechanism: Mechanism) -> np.ndarray:
+    return np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+
+
+def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
+    """1/s, of turning or of a length; of a mechanism that rests what its own time scale says."""
+    return max(float(np.abs(motion.twist / unit(mechanism)).max()), 1 / mechanism.time_scale)
+
+
+def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
+    """The largest gap and slip, in lengths and speeds of the motion."""
+    place = 1 + np.abs(motion.pose / unit(mechanism)).max()
+    length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+    gap = np.nanmax(np.abs(joint_gap(mechanism, motion) / length), initial=0.0) / place
+    return max(gap, np.abs(slip(mechanism, motion) / length).max(initial=0.0) / fastest(mechanism, motion))
+
+
+def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> float:
+    """What M a = f + J^T r lacks, in the largest force; forces that rows leave undetermined are whatever fits best."""
+    inertias = mechanism.inertias / unit(mechanism)
+    free = mechanism.unconstrained(motion.pose, motion.twist)
+    columns = np.swapaxes(mechanism.rows(motion.pose), -1, -2)
+    pulls = np.einsum("tcr,tr->tc", columns, np.nan_to_num(motion.reaction))
+    lacks = inertias * (change - free) - pulls.reshape(change.shape) / unit(mechanism)
+    for now, column, reaction in zip(lacks, columns, motion.reaction, strict=True):
+        left_open = column[:, np.isnan(reaction)] / np.tile(unit(mechanism), len(now))[:, None]
+        now -= (left_open @ np.linalg.lstsq(left_open, now.ravel())[0]).reshape(now.shape)
+    usual = inertias * unit(mechanism) * fastest(mechanism, motion) ** 2
+    return float(np.abs(lacks).max() / max(np.abs(inertias * free).max(), usual.max()))
+
+
+@each_scene
+def test_the_motion_starts_as_the_mechanism_and_keeps_every_joint_and_the_freedoms(each: Scene) -> None:
+    mechanism, motion, rate, _ = known(each)
+    start = each.motion([0.0])
+    # Rounding of places and of turns; the truth may begin with one that it makes of its own coordinates.
+    for found, own in ((start.pose[0], mechanism.pose), (start.twist[0], mechanism.twist)):
+        assert np.abs(found - own).max() < 3e-14 * (1 + np.abs(own).max())
+    assert off_the_joints(mechanism, motion) < 1e-13
+    # (w h)^8 / 630 with w h = 0.005 of the fastest turning, or some times that in between, and rounding / h.
+    assert np.abs((rate - motion.twist) / unit(mechanism)).max() < 1e-10 * fastest(mechanism, motion)
+    freedoms = FREEDOMS.get(each.name, (getattr(each, "links", 1),) * 2)
+    assert mechanism.degrees_of_freedom() == freedoms
+    assert set(np.abs(each.branch_of(motion.pose))) <= {0, 1}
+
+
+@each_scene
+def test_the_reactions_are_what_newtons_law_needs(each: Scene) -> None:
+    mechanism, motion, _, change = known(each)
+    assert off_newton(mechanism, motion, change) < NEWTON
+
+
+@each_scene
+def test_the_energy_of_what_nothing_drives_stays(each: Scene) -> None:
+    mechanism, motion, *_ = known(each)
+    if any(isinstance(joint, Drive) and joint.turning_rate for joint in mechanism.joints):
+        pytest.skip("a drive does work")
+    total = energy(mechanism, motion)
+    span = np.sum(mechanism.inertias * motion.twist**2, axis=(1, 2)).max() / 2
+    assert np.ptp(total) <= 1e-12 * (span + np.abs(total).max())
+
+
+@pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=lambda each: each.name)
+def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -> None:
+    mechanism = each.mechanism()
+    run = TRUTH.build(mechanism, until(each) / 8)(4, 1)
+    exact = each.motion(run.t)
+    met = np.isfinite(run.pose).all(axis=(1, 2))  # they stop where a position is singular
+    assert met[1]
+    # Two integrations of a tolerance of 1e-13 a step, grown by what nearly straight knees make of a difference.
+    assert np.abs((run.pose - exact.pose) / unit(mechanism))[met].max() < 1e-10
+    reaction = np.nan_to_num(np.abs(run.reaction - exact.reaction))[met]
+    assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
+
+
+@pytest.mark.parametrize("each", [each for each in ALL if truth_error(each)], ids=lambda each: each.name)
+def test_the_truths_own_error_is_told_and_small(each: Scene) -> None:
+    # Tolerances of 1e-13 a step, over some hundreds; a standing knee makes a deviation e-fold in 0.03 s.
+    last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
+    stated = present(truth_error(each))(np.linspace(0.0, last, 9))
+    assert stated.max() < (1e-9 if each.name == "person_swaying" else 1e-10)
+
+
+@each_scene
+def test_a_motion_does_not_depend_on_the_other_instants_asked_for(each: Scene) -> None:
+    t = until(each) * np.array([0.0, 0.31, 0.62, 0.9])
+    whole, mixed = each.motion(t), each.motion([*t[[2, 0, 3]], 0.5 * until(each)])
+    for name, size in (("pose", 1e-13), ("twist", 1e-12)):
+        one, other = getattr(whole, name)[[2, 0, 3]], getattr(mixed, name)[:3]
+        assert np.abs(one - other).max() <= size * (1 + np.abs(one).max())
+
+
+WRONG: dict[str, Callable[[Mechanism, Trajectory, np.ndarray], tuple[Mechanism, Trajectory, np.ndarray]]] = {
+    "forces of the other sign": lambda own, motion, change: (own, replace(motion, reaction=-motion.reaction), change),
+    "masses heavier by a thousandth": lambda own, motion, change: (heavier(own), motion, change),
+    "accelerations of the other sign": lambda own, motion, change: (own, motion, -change),
+}
+
+
+def heavier(own: Mechanism) -> Mechanism:
+    return replace(own, bodies=tuple(replace(body, mass=1.001 * body.mass) for body in own.bodies))
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize(
+    "each", [each for each in SCENES if each.name != "pinned_body_free"], ids=lambda each: each.name
+)
+def test_forces_of_another_mechanism_are_no_forces_of_the_scene(each: Scene, wrong: str) -> None:
+    mechanism, motion, _, change = known(each)
+    assert off_newton(*WRONG[wrong](mechanism, motion, change)) > 10 * NEWTON
+
+
+@pytest.mark.parametrize("each", SCENES, ids=lambda each: each.name)
+def test_a_body_turned_or_sped_by_a_thousandth_is_seen_at_its_joints(each: Scene) -> None:
+    mechanism, motion, *_ = known(each)
+    turn = 1e-3 * np.array([0.0, 0.0, 1.0])
+    held = not np.isnan(joint_gap(mechanism, motion)).all()  # a skate has no gap
+    assert not held or off_the_joints(mechanism, replace(motion, pose=motion.pose + turn)) > 1e-5
+    assert off_the_joints(mechanism, replace(motion, twist=motion.twist + turn * fastest(mechanism, motion))) > 1e-5
