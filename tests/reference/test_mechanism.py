@@ -7,16 +7,20 @@ import math
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pytest
 
 from reference.checks import InvalidMechanism
-from reference.joints import Drive, Pin, Skate
+from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
+from reference.numerics.calculus import derivative
+from reference.plane import components, from_complex, perpendicular, rotated, rotation_acceleration, rotation_velocity
 from reference.rolling.traced import Traced
 from reference.scenes.catalogue import SCENES
 from reference.trajectory import Trajectory, energy, joint_gap, slip
+from tests.all_elements import ALL
 from tests.mechanisms import bar, four_bar, pendulum
 
 RANDOM = np.random.default_rng(20)
@@ -25,6 +29,58 @@ RANDOM = np.random.default_rng(20)
 @pytest.fixture(scope="module")
 def driven() -> Mechanism:
     return four_bar(crank_rate=10.0, drive=10.0)
+
+
+def jointed(name: str) -> tuple[Any, np.ndarray, np.ndarray]:
+    """A mechanism with these joints, and poses and twists (20, bodies, 3) at random, where its joints are open."""
+    own = {
+        "pins and a drive": four_bar(10.0, drive=10.0),
+        "rods, a gear, a weld": ALL,
+        "slot": SLIDING,
+        "skate": RIDING,
+    }
+    poses, twists = RANDOM.normal(size=(2, 20, len(own[name].bodies), 3))
+    return own[name], poses, twists
+
+
+PAIR = (Body("a", 1.0, 1.0, (0.0, 0.0, 0.0)), Body("b", 1.0, 1.0, (0.0, 0.0, 0.0)))
+SLIDING = Mechanism(PAIR, (Slot("slot", "a", "b", (0.3, -0.2), 0.0, (0.5, -0.2)),))
+RIDING = Mechanism(PAIR, (Skate("skate", "a", "b", (0.3, -0.4), 0.9),))
+
+
+@pytest.mark.parametrize("name", ["pins and a drive", "rods, a gear, a weld", "slot"])
+def test_rows_are_the_derivative_of_the_gap(name):
+    own, poses, _ = jointed(name)
+    rows, step = own.rows(poses), 1e-30  # a complex step has no subtraction, so the comparison is at rounding level
+    for column in range(rows.shape[-1]):
+        moved = poses.astype(complex).reshape(20, -1)
+        moved[:, column] += 1j * step
+        derivative = own.gap(moved.reshape(poses.shape), 0.0).imag / step
+        np.testing.assert_allclose(rows[..., column], derivative, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["pins and a drive", "rods, a gear, a weld", "slot", "skate"])
+def test_the_bias_is_minus_the_rate_of_the_rows_times_the_velocity(name):
+    own, poses, twists = jointed(name)
+    h = 1e-5  # central differences of J v along q + t v: an error of about 1e-10 by a formula that shares nothing
+    ahead, behind = (np.einsum("trc,tc->tr", own.rows(poses + s * twists), twists.reshape(20, -1)) for s in (h, -h))
+    bias = own.bias(poses, twists)
+    np.testing.assert_allclose(bias, -(ahead - behind) / (2 * h), rtol=0, atol=1e-6 * np.abs(bias).max())
+
+
+def test_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
+    angle, rate, alpha, vector = 0.7, -1.3, 0.4, np.array([1.1, -0.6])
+
+    def place(t):
+        return np.moveaxis(rotated(angle + rate * t + alpha * t * t / 2, vector), -1, 0)
+
+    arm = rotated(angle, vector)
+    turned = from_complex(np.exp(1j * angle) * complex(*vector))
+    for found in (arm, np.stack(components(angle, *vector))):
+        np.testing.assert_allclose(found, turned, atol=1e-15)
+    np.testing.assert_allclose(rotated(np.pi / 2, vector), perpendicular(vector), atol=1e-15)
+    np.testing.assert_allclose(rotation_velocity(rate, arm), derivative(place, 0.0), atol=1e-12)
+    np.testing.assert_allclose(rotation_acceleration(rate, alpha, arm), derivative(place, 0.0, order=2), atol=1e-11)
 
 
 def test_everything_broadcasts_over_times(driven):
@@ -107,11 +163,6 @@ def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: Body("b", 0.0, 1, (0, 0, 0)), "mass is 0.0; it must be a finite number greater than zero"),
-        (lambda: Body("b", 1, -1.0, (0, 0, 0)), "inertia is -1.0"),
-        (lambda: Body("b", 1, 1, (0, float("nan"), 0)), "pose"),
-        (lambda: Body("b", 1, 1, (0, 0, 0), (0, 0, float("inf"))), "twist"),
-        (lambda: Body("b", 1, 1, (0, 0)), "it must be a tuple of 3 values"),  # pyright: ignore[reportArgumentType]
         (lambda: Mechanism((), ()), "no bodies"),
         (lambda: Mechanism((bar("b", (0, 0), (1, 0)),) * 2, ()), "two bodies are called 'b'"),
         (
@@ -124,8 +175,6 @@ def test_a_start_off_a_joint_by_more_than_rounding_is_refused(miss, taken):
             "'A x' is open by 0.1",
         ),
         (lambda: four_bar(crank_rate=10.0, drive=9.0), "'drive torque' is moving apart at 1"),
-        (lambda: Drive("d", None, "b", float("nan"), 0.0), "turning_rate"),
-        (lambda: replace(four_bar(), gravity=(0.0, float("inf"))), "gravity"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(make, says):
@@ -134,7 +183,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(make, says):
     assert says in str(refusal.value)
 
 
-@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e6, 1e9])
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size(scale):
     def hung(open_by):
         body = Body("bar", 1.0, scale**2, (scale, 0.0, 0.0))
@@ -146,7 +195,7 @@ def test_a_start_off_a_joint_is_judged_by_the_mechanisms_own_size(scale):
     assert hung(1e-11).row_count == 2
 
 
-@pytest.mark.parametrize("speed", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("speed", [1e-9, 1e9])
 def test_a_start_that_slips_is_judged_by_its_own_speed(speed):
     def turning(slip):
         body = Body("bar", 1.0, 1.0, (1.0, 0.0, 0.0), (slip * speed, speed, speed))

@@ -93,8 +93,6 @@ def difference(scene: Scene, kind: str, scale: float) -> float:
 
 # All but the crank that can't turn as far as it is driven: it has no motion to compare.
 ALL = tuple(scene for scene in (*SCENES, *SCENES_OF_LIMITS) if scene.name != "overdriven_four_bar")
-
-
 # Whose truth takes a second and more, or a fifth of it in each of eight units.
 COSTLY = (
     *("free_four_bar", "spinning_four_bar", "cart", "free_slider_crank", "slider_at_dead_centre", "pendulum_2"),

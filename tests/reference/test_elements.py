@@ -1,4 +1,7 @@
-"""Force elements: each against its potential, closed forms, the energy that it takes, and every engine."""
+"""Rods, gears, welds and force elements: each against its potential, closed forms, and what it is another word for.
+
+What engines make of them is asked by `tests/engines/test_matrix.py`.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines import EXACT, Promise, registry
 from engines.lagrange import TRUTH, Lagrange
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Pin
+from reference.joints import Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism
+from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import energy
-from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, PUSHES, SPRINGS
+from tests.all_elements import ALL, ALONE, DAMPED, DAMPERS, GRAVITY, PUSHES, SPRINGS, WELD
 
 TINY = 1e-100  # a complex step: no difference is taken, so no digit is lost
 RANDOM = np.random.default_rng(5)
@@ -140,47 +143,12 @@ def test_the_energy_stays_without_dampers_and_falls_by_what_they_take():
 
 
 @pytest.mark.parametrize("mechanism", [ALL, DAMPED], ids=("kept", "damped"))
-@pytest.mark.parametrize("method", [Lagrange("rk4"), Lagrange("rk4", "none"), TRUTH], ids=lambda method: method.variant)
+@pytest.mark.parametrize("method", [Lagrange("rk4", "none"), TRUTH], ids=lambda method: method.variant)
 def test_compiled_code_gives_the_numbers_of_numpy(mechanism, method):
     one, other = (replace(method, compiled=compiled).build(mechanism, 0.02)(5, 2) for compiled in (True, False))
     allowed = 1e-11 if method is TRUTH else 1e-13  # a tolerance is held, and its steps differ by rounding
     for what, size in (("pose", 1.0), ("twist", 1.0), ("reaction", np.abs(other.reaction).max())):
         np.testing.assert_allclose(getattr(one, what), getattr(other, what), atol=30 * allowed * size)
-
-
-@pytest.mark.parametrize("name", [*ALONE, "all", "all damped"])
-@pytest.mark.parametrize("engine", registry.ENGINES, ids=lambda engine: f"{engine.name}-{engine.variant}")
-def test_every_engine_moves_by_forces_and_joints_with_the_order_it_promises(engine, name):
-    mechanism = {**ALONE, "all": ALL, "all damped": DAMPED}[name]
-    samples, spacing = 6, 0.05
-    exact = truth(mechanism, spacing, samples)
-    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
-    # Steps at which the first order is far above what the second leaves, and the fourth far above rounding.
-    promised = engine.order(mechanism)
-    assert isinstance(promised, Promise)
-    errors = []
-    for every in (40, 80):
-        motion = engine.build(mechanism, spacing / every)(samples, every)
-        errors.append(float((np.abs(motion.pose - exact.pose) / unit).max()))
-        assert motion.reset_at is None
-    softness = engine.softness(mechanism, spacing / 40)
-    tied = engine.softness(mechanism, spacing / 80)
-    if softness is not None and softness == tied and softness.compliance > 1e-6:
-        assert errors[1] < 0.05  # a joint that gives way whatever the step: the error that its spring opens stays
-        return
-    order = promised.of("angle")
-    floor = 1e-11  # of rounding, and of a compliance of 1e-8 that rows are given on purpose
-    assert errors[1] < max(floor, 1.3 * errors[0] / 2 ** min(order, 4)) or order == EXACT
-    assert errors[1] < 0.1
-
-
-@pytest.mark.parametrize("engine", registry.ENGINES, ids=lambda engine: f"{engine.name}-{engine.variant}")
-def test_a_stiffer_spring_would_be_noticed_in_every_engine(engine):
-    mechanism = ALONE["spring"]
-    stiffer = replace(mechanism, forces=(replace(mechanism.forces[0], stiffness=33.0),))
-    exact = truth(mechanism, 0.05, 6).pose
-    right, wrong = (np.abs(engine.build(each, 2.5e-4)(6, 200).pose - exact).max() for each in (mechanism, stiffer))
-    assert wrong > 10 * right
 
 
 def test_reactions_are_told_with_the_forces_that_act_beside_them():
@@ -215,3 +183,101 @@ def test_a_spring_without_rest_length_may_start_with_its_points_together():
     mechanism = one_body(Spring("s", None, "b", (0.0, 0.0), (0.0, 0.0), 8.0), twist=(1.0, 0.0, 0.0))
     motion = truth(mechanism, 0.1)
     np.testing.assert_allclose(motion.pose[:, 0, 0], np.sin(2.0 * motion.t) / 2, atol=1e-12)
+
+
+def test_a_body_on_a_rod_is_a_point_pendulum():
+    # The rod holds its centre of mass, so that nothing turns it.
+    length, angle = 0.8, 1.1
+    place = (length * np.sin(angle), -length * np.cos(angle))
+    body = Body("b", 2.0, 0.3, (*place, 0.0))
+    mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), length),), GRAVITY)
+    motion = TRUTH.build(mechanism, 0.1)(20, 1)
+    exact, _ = Pendulum(np.sqrt(9.81 / length), angle).motion(motion.t)[:2]
+    np.testing.assert_allclose(motion.pose[:, 0, 0], length * np.sin(exact), atol=1e-11)
+    np.testing.assert_allclose(motion.pose[:, 0, 1], -length * np.cos(exact), atol=1e-11)
+    np.testing.assert_allclose(motion.pose[:, 0, 2], 0.0, atol=1e-14)
+    # It pulls, which is negative, by weight and centripetal force.
+    rate = motion.twist[:, 0, :2]
+    pull = 2.0 * (9.81 * np.cos(exact) + np.sum(rate**2, axis=1) / length)
+    np.testing.assert_allclose(motion.reaction[:, 0], -pull, rtol=1e-9)
+
+
+def test_a_rod_is_a_light_bar_with_pins_at_both_ends():
+    whole = ALONE["rod"]
+    rod = next(joint for joint in whole.joints if isinstance(joint, Rod))
+    (x1, y1), (x2, y2) = ((1.0 + 0.1 * np.cos(0.3), 0.1 * np.sin(0.3)), (2.0 - 0.2 * np.sin(0.5), 0.2 * np.cos(0.5)))
+    angle, half = float(np.arctan2(y2 - y1, x2 - x1)), rod.length / 2
+    errors = []
+    for mass in (1e-3, 1e-5):
+        bar = Body("bar", mass, mass * rod.length**2 / 12, ((x1 + x2) / 2, (y1 + y2) / 2, angle))
+        pins = (
+            Pin("one", "a", "bar", rod.first_point, (-half, 0.0)),
+            Pin("two", "bar", "b", (half, 0.0), rod.second_point),
+        )
+        barred = Mechanism((*whole.bodies, bar), (whole.joints[0], *pins), GRAVITY)
+        one, other = (TRUTH.build(each, 0.1)(6, 1) for each in (whole, barred))
+        errors.append(np.abs(one.pose - other.pose[:, :2]).max())
+    assert errors[0] / errors[1] == pytest.approx(100, rel=0.1)  # by as much as the bar weighs
+    assert errors[1] < 1e-5
+
+
+def test_a_gear_pair_has_one_freedom_and_the_inertia_of_both():
+    inertias, ratio, torque = (0.3, 0.2), -2.5, 1.7
+    bodies = tuple(Body(n, 1.0, i, (x, 0.0, 0.0)) for n, i, x in (("a", inertias[0], 0.0), ("b", inertias[1], 1.0)))
+    pins = tuple(Pin(n.upper(), None, n, (x, 0.0), (0.0, 0.0)) for n, x in (("a", 0.0), ("b", 1.0)))
+    mechanism = Mechanism(bodies, (*pins, Gear("g", "a", "b", ratio)), (0.0, 0.0), (Torque("t", None, "a", torque),))
+    assert mechanism.degrees_of_freedom() == (1, 1)
+    motion = TRUTH.build(mechanism, 0.1)(10, 1)
+    gain = torque / (inertias[0] + ratio**2 * inertias[1])
+    np.testing.assert_allclose(motion.pose[:, 0, 2], gain * motion.t**2 / 2, atol=1e-12)
+    np.testing.assert_allclose(motion.pose[:, 1, 2], ratio * gain * motion.t**2 / 2, atol=1e-12)
+    # The torque on the second body; the first feels -ratio times as much.
+    np.testing.assert_allclose(motion.reaction[:, -1], inertias[1] * ratio * gain, rtol=1e-11)
+
+
+def test_a_welded_pair_is_one_body():
+    pair = ALONE["weld"]
+    a, b, c = pair.bodies
+    mass = b.mass + c.mass
+    centre = (b.mass * np.array(b.pose[:2]) + c.mass * np.array(c.pose[:2])) / mass
+    inertia = sum(body.inertia + body.mass * float(np.sum((centre - body.pose[:2]) ** 2)) for body in (b, c))
+    shift = centre - np.array(b.pose[:2])
+    cosine, sine = np.cos(b.pose[2]), np.sin(b.pose[2])
+    own = np.array([cosine * shift[0] + sine * shift[1], -sine * shift[0] + cosine * shift[1]])
+    merged = Body("b", mass, inertia, (float(centre[0]), float(centre[1]), b.pose[2]))
+    hung = pair.joints[1]
+    assert isinstance(hung, Pin)
+    moved = replace(hung, second_point=tuple((np.array(hung.second_point) - own).tolist()))
+    single = Mechanism((a, merged), (pair.joints[0], moved), GRAVITY)
+    one, other = (TRUTH.build(each, 0.05)(12, 1) for each in (pair, single))
+    np.testing.assert_allclose(one.pose[:, 0], other.pose[:, 0], atol=1e-11)
+    np.testing.assert_allclose(one.pose[:, 1, 2], other.pose[:, 1, 2], atol=1e-11)
+    np.testing.assert_allclose(one.reaction[:, :4], other.reaction, atol=1e-9 * np.abs(other.reaction).max())
+
+
+@pytest.mark.parametrize(
+    ("name", "freedoms"),
+    [("rod to the ground", 2), ("rod", 3), ("gear", 4), ("weld", 2), ("weld to the ground", 1), ("weld in a loop", 1)],
+)
+def test_freedoms_are_counted_by_rank(name, freedoms):
+    assert ALONE[name].degrees_of_freedom() == (freedoms, freedoms)
+
+
+def test_rows_that_repeat_share_their_reactions():
+    twice = ALONE["weld in a loop"]
+    assert twice.row_count - (12 - twice.degrees_of_freedom()[0]) == 3
+    motion = TRUTH.build(twice, 0.05)(4, 1)
+    names = twice.row_names
+    for label in ("x", "y", "torque"):
+        one, other = names.index(f"weld {label}"), names.index(f"closing {label}")
+        np.testing.assert_allclose(motion.reaction[:, one], motion.reaction[:, other], rtol=1e-6, atol=1e-7)
+
+
+def test_a_gear_without_a_ratio_is_refused():
+    with pytest.raises(InvalidMechanism, match=r"ratio is 0\.0; it must be a finite number other than zero"):
+        Gear("g", "a", "b", 0.0)
+
+
+def test_a_start_off_a_weld_is_refused():
+    with pytest.raises(InvalidMechanism, match=r"row 'weld torque' is open by 0\.1 rad"):
+        replace(ALL, joints=(*ALL.joints[:3], replace(WELD, angle=WELD.angle + 0.1)))
