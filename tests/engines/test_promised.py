@@ -1,0 +1,276 @@
+"""Every engine against the judge: each element, joint and configuration moves with the promised order or is refused.
+
+What is not installed is skipped with the sentence that says which extra installs it. A model of MJX takes tens of
+seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engines import EXACT, Engine, Promise, Unsupported, mujoco, pymunk, registry
+from engines.lagrange import TRUTH
+from engines.mujoco import Shipped
+from reference.forces import Force, Torque, TorsionSpring
+from reference.joints import Drive, Gear, Pin, Slot
+from reference.mechanism import Body, Mechanism
+from reference.scenes.andrews import Andrews
+from reference.scenes.catalogue import SCENES, scene
+from reports.model.cells import SLOW_TO_BUILD
+from tests.all_elements import ALL, ALONE, DAMPED, GEAR, GRAVITY
+from tests.reference.test_units import in_other_units
+
+QUICKLY = tuple(engine for engine in registry.OTHERS if engine.building < SLOW_TO_BUILD)
+ENGINES = (*registry.ENGINES, *QUICKLY)
+each_extra = pytest.mark.parametrize("engine", QUICKLY, ids=registry.method)
+
+
+def installed(engine: Engine) -> Engine:
+    """The engine, or a skip that names its package."""
+    if engine.missing:
+        pytest.skip(engine.missing)
+    return engine
+
+
+def shipped(name: str) -> Engine:
+    return installed(next(engine for engine in QUICKLY if engine.name == name))
+
+
+def block(name: str, pose: tuple[float, float, float], twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Body:
+    return Body(name, 1.0, 0.1, pose, twist)
+
+
+HUNG = (Pin("hinge", None, "first", (0.0, 0.0), (-0.5, 0.0)), Pin("joint", "first", "second", (0.5, 0.0), (-0.5, 0.0)))
+TWO = (block("first", (0.5, 0.0, 0.0)), block("second", (1.5, 0.0, 0.0), (0.0, -1.0, -2.0)))
+WHEELS = (Body("a", 1.0, 0.3, (0.2, 0.0, 0.3)), Body("b", 1.0, 0.2, (1.1, 0.0, 0.5)))
+AXLES = tuple(
+    Pin(wheel.name.upper(), None, wheel.name, (x, 0.0), (away * np.cos(turned), -away * np.sin(turned)))
+    for wheel, x, away, turned in zip(WHEELS, (0.0, 1.0), (-0.2, -0.1), (0.3, 0.5), strict=True)
+)
+
+
+def meshed(ratio: float, first: str = "a", second: str = "b") -> Mechanism:
+    """Two wheels on the ground, out of centre, in mesh; a torque turns one of them."""
+    angle = {"a": 0.3, "b": 0.5}
+    gear = Gear("mesh", first, second, ratio, angle[second] - ratio * angle[first])
+    return Mechanism(WHEELS, (*AXLES, gear), GRAVITY, (Torque("motor", None, "a", 1.7),))
+
+
+# What a second configuration shows: a drive or a slot named from the other body than the joint beside it, an angle
+# beyond a turn, two forces on one body, a speed that an engine's own limits stop or put to sleep.
+CONFIGURATIONS = {
+    "a drive against its pin": Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), GRAVITY),
+    "a held angle against its slot": Mechanism(
+        (TWO[0], block("second", (0.8, 0.0, 0.4))),
+        (
+            HUNG[0],
+            Slot("guide", "first", "second", (0.3, 0.0), 0.0, (0.0, 0.0)),
+            Drive("held", "second", "first", 0.0, -0.4),
+        ),
+        GRAVITY,
+    ),
+    "a spring wound up by more than a turn": Mechanism(
+        (block("wheel", (0.0, 0.0, 0.0), (0.0, 0.0, 30.0)),),
+        (Pin("hub", None, "wheel", (0.0, 0.0), (0.0, 0.0)),),
+        (0.0, 0.0),
+        (TorsionSpring("spring", None, "wheel", 0.1),),
+    ),
+    "gears on the ground": meshed(-2.5),
+    "gears on the ground, named the other way": meshed(-0.4, "b", "a"),
+    "a torque between two bodies": Mechanism(TWO, HUNG, (0.0, 0.0), (Torque("torque", "first", "second", 1.0),)),
+    "two forces on a body": Mechanism(
+        (TWO[0],),
+        HUNG[:1],
+        (0.0, 0.0),
+        (Force("one", "first", (0.5, 0.0), (0.0, 2.0)), Force("other", "first", (0.2, 0.1), (1.0, -1.0))),
+    ),
+    "faster than any usual limit": Mechanism((block("shot", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),), ()),
+    "too slow to stay awake": Mechanism((block("drifting", (0.0, 0.0, 0.0), (1e-3, 2e-3, 1e-3)),), ()),
+    # Free, driven, with a slider, and chains.
+    **{name: scene(name).mechanism() for name in ("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10")},
+    "weld that closes a loop": replace(
+        ALONE["weld in a loop"], joints=tuple(each for each in ALONE["weld in a loop"].joints if each.name != "weld")
+    ),
+}
+MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
+# What extras build.
+PINNED = {
+    *("torsion spring", "torsion damper", "torque", "force", "weld", "weld to the ground", "two forces on a body")
+}
+PINNED |= {"pendulum_2", "pendulum_10", "a spring wound up by more than a turn", "a torque between two bodies"}
+LOOPS = {"free_four_bar", "weld that closes a loop"}
+FLYING = {"faster than any usual limit", "too slow to stay awake"}
+GROUNDED_GEARS = {"gears on the ground", "gears on the ground, named the other way"}
+DRIVEN = {"a drive against its pin", "a held angle against its slot", "driven_slider_crank"}
+BUILDS = {
+    "exudyn": {*MECHANISMS},
+    "box2d": PINNED | FLYING | LOOPS | DRIVEN | {"spring", "damper", "rod", "rod to the ground"},
+    "pinocchio": PINNED | LOOPS | FLYING | DRIVEN | {"spring", "damper"},
+    "bullet": PINNED | LOOPS | DRIVEN | GROUNDED_GEARS,
+}
+SAMPLES, SPACING = 6, 0.05
+# Newton's tolerance as shipped; a drive held by an inertia of 1e8 times the mechanism's; single precision; rounding.
+SMALL = {
+    "exudyn": 1e-8,
+    "box2d": 1e-4,
+    "pinocchio": 1e-8,
+    "bullet": 1e-8,
+    "mujoco": 1e-9,
+    "pymunk": 1e-11,
+    "lagrange": 1e-11,
+}
+
+
+def span(name: str) -> float:
+    """Of a scene a tenth: an error grows no faster than linearly there. Others move for 0.3 s."""
+    return 0.1 * scene(name).duration if name in {each.name for each in SCENES} else SAMPLES * SPACING
+
+
+@cache
+def exact(name: str) -> np.ndarray:
+    return TRUTH.build(MECHANISMS[name], span(name) / SAMPLES)(SAMPLES, 1).pose
+
+
+def missed(engine: Engine, own: Mechanism, name: str, every: int) -> float:
+    """In lengths of the mechanism, and rad."""
+    run = engine.build(own, span(name) / SAMPLES / every)(SAMPLES, every)
+    assert run.reset_at is None
+    return float((np.abs(run.pose - exact(name)) / [own.length_scale, own.length_scale, 1.0]).max())
+
+
+def moves_as_promised(engine: Engine, name: str) -> None:
+    own = MECHANISMS[name]
+    if name not in BUILDS.get(engine.name, MECHANISMS):
+        named = [repr(part.name) for part in (*own.joints, *own.bodies, *own.forces)]
+        with pytest.raises(Unsupported) as refused:
+            engine.build(own, 1e-3)
+        assert any(word in str(refused.value) for word in named), str(refused.value)
+        return
+    # Steps at which the first order is far above what the second leaves, and the fourth far above rounding.
+    coarse, fine = (missed(engine, own, name, every) for every in (40, 80))
+    way = np.abs(exact(name) - exact(name)[0]).max() / own.length_scale
+    promise = engine.order(own)
+    soft = [engine.softness(own, span(name) / SAMPLES / every) for every in (40, 80)]
+    if not isinstance(promise, Promise) or (soft[0] is not None and soft[0] == soft[1] and soft[0].compliance > 1e-6):
+        assert fine < max(0.05, 0.1 * way)  # a joint that gives way whatever the step: its spring's error stays
+        return
+    order = promise.of("angle")
+    assert fine < max(SMALL[engine.name] * max(1.0, way), 1.3 * coarse / 2 ** min(order, 4)) or order == EXACT
+    assert fine < 0.1 * max(1.0, way)
+
+
+# A loop of rows that repeat is no matter of the vocabulary: extras need not solve it.
+CELLS = [
+    (engine, name) for engine in ENGINES for name in MECHANISMS if name != "weld in a loop" or engine not in QUICKLY
+]
+# A third of them for every day: each engine in a third of the mechanisms, each mechanism in a third of the engines.
+DAILY = [cell for cell in CELLS if (ENGINES.index(cell[0]) + [*MECHANISMS].index(cell[1])) % 3 == 0]
+
+
+def label(value: Engine | str) -> str:
+    return value if isinstance(value, str) else registry.method(value)
+
+
+@pytest.mark.parametrize(("engine", "name"), DAILY, ids=label)
+def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: Engine, name: str) -> None:
+    moves_as_promised(installed(engine), name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("engine", "name"), [cell for cell in CELLS if cell not in DAILY], ids=label)
+def test_so_does_every_other_engine_in_every_other_mechanism(engine: Engine, name: str) -> None:
+    moves_as_promised(installed(engine), name)
+
+
+@pytest.mark.parametrize("engine", ENGINES[::2], ids=label)
+def test_a_stiffer_spring_and_another_ratio_would_be_noticed(engine: Engine) -> None:
+    installed(engine)
+    wrong = {
+        "torsion spring": replace(MECHANISMS["torsion spring"], forces=(TorsionSpring("s", "a", "b", 6.0, 0.4),)),
+        "gear": replace(
+            ALONE["gear"], joints=(replace(GEAR, ratio=-1.8, phase=0.5 + 1.8 * 0.3), *ALONE["gear"].joints[1:])
+        ),
+    }
+    for name, other in wrong.items():
+        if name in BUILDS.get(engine.name, MECHANISMS):
+            right, off = (missed(engine, own, name, 200) for own in (MECHANISMS[name], other))
+            assert off > 5 * right
+
+
+@each_extra
+def test_andrews_mechanism_is_built_and_followed(engine: Engine) -> None:
+    """Its crank makes nine turns in 0.03 s: over the first fifth of them, where no engine has lost it yet."""
+    installed(engine)
+    own = Andrews()
+    samples = own.samples // 5
+    run = engine.build(own.mechanism(), own.spacing / 20)(samples, 20)
+    miss = np.abs(run.pose - own.motion(run.t).pose)[..., 2].max()
+    turned = np.abs(run.pose[-1, 0, 2] - run.pose[0, 0, 2])
+    assert miss < (0.1 if isinstance(engine.order(own.mechanism()), Promise) else 0.5) * turned
+
+
+@pytest.mark.parametrize("name", BUILDS)
+def test_what_an_engine_lacks_is_refused_in_a_sentence_that_names_the_joint(name: str) -> None:
+    engine = shipped(name)
+    refused: list[bool] = []
+    for each in SCENES:
+        described = each.mechanism()
+        named = [repr(part.name) for part in (*described.joints, *described.bodies, *described.forces)]
+        try:
+            engine.build(described, each.spacing)
+        except Unsupported as reason:
+            refused.append(any(word in str(reason) for word in named))
+    assert refused
+    assert all(refused)
+
+
+# ------------------------------------------------------------------------------------------------------- other units
+
+
+@dataclass(frozen=True)
+class WideAsTheMechanism(Shipped):
+    """The shipped impedance, but the gap over which it grows is a millimetre to a mechanism of a metre only."""
+
+    length: float = 1.0
+
+    @property
+    def impedance(self) -> tuple[float, float, float, float, float]:
+        low, high, width, middle, power = super().impedance
+        return low, high, width * self.length, middle, power
+
+
+def in_units(engine: Engine, name: str, length: float = 1.0, mass: float = 1.0) -> list[np.ndarray]:
+    """Poses, twists and reactions of the scene in other units, told in metres and kilograms."""
+    own = in_other_units(scene(name), (length, 1.0, mass)).mechanism()
+    run = engine.build(own, 1e-3)(5, 10)
+    unit, arm = np.array([length, length, 1.0]), np.where(own.turning, length**2, length)
+    return [run.pose / unit, run.twist / unit, run.reaction / (mass * arm)]
+
+
+# As shipped MuJoCo's impedance grows over a millimetre, and its solver stops by metres per second squared.
+OWN = (*pymunk.METHODS, *(engine for engine in mujoco.METHODS if not isinstance(engine.stiffness, Shipped)))
+UNITS = [(2.0**-10, 1.0), (1e3, 1.0), (1.0, 1e6)]
+
+
+@pytest.mark.parametrize("name", ["free_four_bar", "driven_slider_crank", "sleigh", "car_and_trailer"])
+@pytest.mark.parametrize("engine", OWN, ids=label)
+def test_units_of_length_and_mass_change_no_method(engine: Engine, name: str) -> None:
+    own = in_units(engine, name)
+    for length, mass in UNITS:
+        # Other numbers round, a stiff spring amplifies that, and a reaction is a difference of velocities over 1e-4 s.
+        for found, right, allowed in zip(in_units(engine, name, length, mass), own, (1e-9, 1e-9, 1e-6), strict=True):
+            assert np.abs(found - right).max() < allowed * max(1.0, np.abs(right).max())
+
+
+def test_as_shipped_a_millimetre_of_the_impedance_is_all_that_has_a_unit() -> None:
+    tight = replace(mujoco.DEFAULT, tolerance=1e-15)
+    own = in_units(tight, "free_four_bar")
+    for length, mass in UNITS:
+        wide = replace(tight, stiffness=WideAsTheMechanism(length))
+        for found, right in zip(in_units(wide, "free_four_bar", length, mass), own, strict=True):
+            assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
+    assert np.abs(in_units(mujoco.DEFAULT, "free_four_bar", 1e-3)[0] - own[0]).max() > 1e-7
