@@ -26,6 +26,7 @@ from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.trajectory import energy
+from tests.engines.test_matrix import blade_on_a_board
 from tests.mechanisms import bar, four_bar
 
 SLEIGH = ChaplyginSleigh()
@@ -210,20 +211,10 @@ def test_rows_work_beside_loops_and_drives() -> None:
     assert np.abs(plain.pose - skated.pose).max() < 1e-10
 
 
-def ridden() -> Mechanism:
-    """A body that turns about a blade on another body, which moves too."""
-    floor = Body("floor", 3.0, 1.0, (0.0, 0.0, 0.2), (0.3, 0.0, 0.5))
-    arm, at = 0.2 * np.array([np.cos(0.7), np.sin(0.7)]), np.array([0.4, 0.1])
-    point = at - arm
-    velocity = np.array([0.3, 0.0]) + 0.5 * np.array([-point[1], point[0]]) - np.array([-arm[1], arm[0]])
-    rider = Body("rider", 1.0, 0.1, (0.4, 0.1, 0.7), (*velocity.tolist(), -1.0))
-    return Mechanism((floor, rider), (Skate("blade", "floor", "rider", (-0.2, 0.0)),))
-
-
 def test_a_row_between_two_bodies_that_move_does_no_work() -> None:
-    mechanism = ridden()
+    mechanism = blade_on_a_board()
     motion = EXTENDED.build(mechanism, 1e-3)(10, 50)
     total = energy(mechanism, motion)
-    # RK4 over half a second of about a radian a second in steps of 1e-3 s: rounding, and 1e-12 of a soft row.
-    assert np.abs(mechanism.slip(motion.pose, motion.twist)).max() < 1e-11
-    assert np.abs(total - total[0]).max() < 1e-11 * total[0]
+    # RK4 over half a second of about two radians a second in steps of 1e-3 s: rounding, and 1e-12 of a soft row.
+    assert np.abs(mechanism.slip(motion.pose, motion.twist)).max() < 1e-10
+    assert np.abs(total - total[0]).max() < 1e-10 * total[0]
