@@ -69,8 +69,6 @@ FOUND_BY = {
     "reactions of pins are told first": "same_if_joints_are_reordered",
     "reactions are always of the body": "same_if_bodies_of_joints_are_swapped",
 }
-
-
 METHODS = (*pymunk.METHODS, *mujoco.METHODS, *lagrange.METHODS, *registry.OTHERS)
 SPECIAL = (
     *(*of_pymunk.SKATES, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
@@ -112,9 +110,6 @@ def test_every_construction_of_ours_passes_every_check(engine):
     test_our_engines_pass_every_check(engine)
 
 
-# ------------------------------------------------------------------------------------------------- what is held against
-
-
 @pytest.mark.parametrize("world", [*WORLDS, SPINNING], ids=lambda world: world.name)
 def test_the_exact_motions_are_those_of_exact_multipliers(world):
     run = lagrange.TRUTH.build(world.mechanism, 0.05)(6, 1)
@@ -125,13 +120,6 @@ def test_the_exact_motions_are_those_of_exact_multipliers(world):
 
 
 @pytest.mark.parametrize("world", MOVING, ids=lambda world: world.name)
-def test_the_exact_accelerations_are_the_derivatives_of_the_twists(world):
-    middle, h = np.linspace(0.1, 0.2, 3), 1e-4
-    differences = (world.exact(middle + h).twist - world.exact(middle - h).twist) / (2 * h)
-    assert np.abs(differences - world.exact(middle).acceleration).max() < 1e-5  # h^2 times a third derivative
-
-
-@pytest.mark.parametrize("world", MOVING, ids=lambda world: world.name)
 @pytest.mark.parametrize("change", DESCRIPTIONS, ids=["moved", "mirrored", "names", "bodies", "joints", "swapped"])
 def test_another_description_is_of_the_same_motion(world, change):
     described, back = change(world.mechanism)
@@ -139,9 +127,6 @@ def test_another_description_is_of_the_same_motion(world, change):
     exact = world.exact(run.t)
     for found, right in zip(back(run), (exact.pose, exact.twist, exact.reaction), strict=True):
         assert np.abs(found - right).max() <= 1e-11 * (1 + np.abs(right).max())
-
-
-# ---------------------------------------------------------------------------------------------------- wrong adapters
 
 
 def wrong(mistake: str) -> Any:
@@ -196,8 +181,6 @@ def test_what_is_not_supported_is_no_pass():
     assert result.status == "not supported"
     assert "hollow" in result.sentence
 
-
-# ------------------------------------------------------------------------------------------------------ what users call
 
 THEIRS = """
 import pytest

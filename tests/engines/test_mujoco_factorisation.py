@@ -44,8 +44,11 @@ def branching_tree() -> str:
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
 def test_every_model_has_the_same_accelerations_dense_and_sparse(scene) -> None:
     mechanism = scene.mechanism()
+    # Of nine methods three each, by the scene's place; and what free bodies make of a chain of a hundred takes long.
     few = len(mechanism.bodies) < 30
-    for engine in (*adapter.METHODS, *SKATES) if few else (adapter.DEFAULT, adapter.TUNED, adapter.EXTENDED):
+    for engine in (
+        (*adapter.METHODS, *SKATES)[SCENES.index(scene) % 3 :: 3] if few else (adapter.TUNED, adapter.EXTENDED)
+    ):
         try:
             model = engine.model(mechanism, 1e-3)
         except Unsupported:

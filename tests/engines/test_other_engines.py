@@ -1,80 +1,40 @@
-"""Engines that are extras: each is held to the contract, to its order, to the judge, and to leaving nothing behind.
+"""Engines that are extras: what is particular to one of them, what they leave behind, what says that one is missing.
 
-What is not installed is skipped with the sentence that says which extra installs it. A model of MJX takes tens of
-seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
+Orders, elements and configurations of all are asked by `test_promised`, random mechanisms by `test_random`. A model of
+MJX takes tens of seconds to compile, so its tests are slow ones, in tests/engines/test_mjx.py.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from itertools import pairwise
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from engines import Engine, Promise, Size, Unpromised, Unsupported, mjx, registry, single_run
+from engines import Promise, Size, Unsupported, mjx, registry, single_run
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio import Model
-from reference.forces import Force, Torque, TorsionSpring
-from reference.joints import Drive, Gear, Pin, Rod, Slot
+from reference.joints import Drive, Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
+from reference.scenes.catalogue import scene
 from reports.cli.selection import choose_cells, choose_engines
-from reports.model.catalogue import PAGES, SCENES
-from reports.model.cells import QUICK, SLOW_TO_BUILD, beside_cells
+from reports.model.catalogue import PAGES
+from reports.model.cells import QUICK, beside_cells
 from reports.model.ending import BadInput
 from reports.search.mechanisms import mechanism
-from reports.search.parts import FORCES, LINKS
 from tests import mechanisms
+from tests.all_elements import ALONE
+from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
 from tests.present import present
 
-QUICKLY = tuple(engine for engine in registry.OTHERS if engine.building < SLOW_TO_BUILD)
 NAMES = tuple(dict.fromkeys(engine.name for engine in QUICKLY))
-BY_NAME = {scene.name: scene for scene in SCENES}
 HANGING = present(next((world for world in WORLDS if world.name == "hanging bar"), None))
-
 each = pytest.mark.parametrize("engine", QUICKLY, ids=registry.method)
-
-
-def installed(engine: Engine) -> Engine:
-    """The engine, or a skip that names its package."""
-    if engine.missing:
-        pytest.skip(engine.missing)
-    return engine
-
-
-def shipped(name: str) -> Engine:
-    return installed(next(engine for engine in QUICKLY if engine.name == name))
-
-
-# Free, driven, with a slider, and chains; a span in which an error grows no faster than linearly.
-ORDERED = ("free_four_bar", "driven_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10")
-SPAN = 0.1  # of a scene's duration
-# Of the rates of bodies over the span: what is this small is rounding, or Newton's tolerance as shipped.
-SMALL = 1e-8
-ROOM = 0.35  # below the promised power: the next power of the step still counts at these steps
-
-
-@each
-@pytest.mark.parametrize("name", ORDERED)
-def test_errors_of_poses_fall_with_the_promised_power(engine, name):
-    installed(engine)
-    scene = BY_NAME[name]
-    described = scene.mechanism()
-    promise = engine.order(described)
-    if isinstance(promise, Unpromised):
-        assert promise.reason
-        return
-    errors = []
-    for every in (6, 12, 24):
-        samples = max(2, round(SPAN * scene.samples))
-        run = engine.build(described, scene.spacing / every)(samples, every)
-        errors.append(float(np.abs(run.pose - scene.motion(run.t).pose).max()))
-    for coarse, fine in pairwise(errors):
-        assert fine < SMALL or np.log2(coarse / fine) > min(promise.order, 4) - ROOM, errors
 
 
 @each
@@ -89,72 +49,12 @@ def test_reactions_carry_a_body_that_hangs(engine):
     assert np.abs(told - weight)[-1].max() < (1e-6 if exact else 2e-2) * np.abs(weight).max()
 
 
-# What each engine takes of random mechanisms: most draws of all kinds are refused by those with few joints.
-DRAWN = {
-    "exudyn": ("pin", "slot", "skate", "drive", *LINKS, *FORCES),
-    "box2d": ("pin", "rod", "weld", *FORCES),
-    "pinocchio": ("pin", "drive", "weld", *FORCES),
-    "bullet": ("pin", "weld", *FORCES),
-}
-
-
-def drawn(engine: Engine, count: int) -> list[Mechanism]:
-    """The first mechanisms of a seed that the engine builds."""
-    found: list[Mechanism] = []
-    for number in range(40):
-        one = mechanism(12, number, kinds=DRAWN[engine.name])
-        try:
-            engine.build(one, 1e-3)
-        except Unsupported:
-            continue
-        found.append(one)
-        if len(found) == count:
-            break
-    return found
-
-
-# Of the way that bodies go in a fifth of the mechanism's time, in 180 steps: about the order's constant for order 1 and
-# 2; of Box2D's soft joints what was met over thirty draws, where a wrong lever or sign is off by the whole way.
-JUDGED = {1: 2e-2, 2: 1e-5, 4: 1e-9}
-SOFT = 0.3
-
-
-@each
-def test_random_mechanisms_move_as_the_judge_moves_them(engine):
-    installed(engine)
-    found = drawn(engine, 3)
-    assert len(found) == 3
-    for one in found:
-        spacing = 0.01 * one.time_scale
-        truth = TRUTH.build(one, spacing)(20, 1)
-        run = engine.build(one, spacing / 9)(20, 9)
-        way = np.abs(truth.pose - truth.pose[0]).max()
-        promise = engine.order(one)
-        bound = SOFT if isinstance(promise, Unpromised) else JUDGED.get(int(min(promise.order, 4)), 1e-9)
-        assert np.abs(run.pose - truth.pose).max() < bound * way, (engine, one)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_what_an_engine_lacks_is_refused_in_a_sentence_that_names_the_joint(name):
-    engine = shipped(name)
-    refused: list[bool] = []
-    for scene in SCENES:
-        described = scene.mechanism()
-        named = [repr(part.name) for part in (*described.joints, *described.bodies, *described.forces)]
-        try:
-            engine.build(described, scene.spacing)
-        except Unsupported as reason:
-            refused.append(any(word in str(reason) for word in named))
-    assert refused
-    assert all(refused)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_printed_and_no_file_is_left(name, capfd, tmp_path, monkeypatch):
     engine = shipped(name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
-    engine.build(BY_NAME["free_four_bar"].mechanism(), 1e-2)(5, 1)
+    engine.build(scene("free_four_bar").mechanism(), 1e-2)(5, 1)
     assert os.listdir(tmp_path) == []
     assert capfd.readouterr() == ("", "")
 
@@ -162,7 +62,7 @@ def test_nothing_is_printed_and_no_file_is_left(name, capfd, tmp_path, monkeypat
 def test_single_precision_rounds_the_start_and_nothing_worse():
     """Box2D's own functions between angles and rotations are off by 1.6e-3; what it is given and told is not."""
     engine = shipped("box2d")
-    described = BY_NAME["pendulum_10"].mechanism()
+    described = scene("pendulum_10").mechanism()
     run = engine.build(described, 1e-6)(2, 1)
     assert np.abs(run.pose[1] - described.pose).max() < 1e-5
 
@@ -192,18 +92,16 @@ def test_an_engine_that_loses_its_numbers_says_when():
 
 def test_accelerations_given_at_the_start_are_what_exudyns_reactions_need():
     """As shipped the trapezoidal rule keeps a wrong acceleration of the start for good; see engines/exudyn."""
-    from dataclasses import replace
-
     from engines.exudyn import TUNED, Exudyn
 
     shipped("exudyn")
-    scene = BY_NAME["sleigh"]
-    truth = scene.motion(np.arange(101) * scene.spacing)
+    own = scene("sleigh")
+    truth = own.motion(np.arange(101) * own.spacing)
     errors = {}
     for consistent in (True, False):
         engine = replace(TUNED, consistent=consistent)
         assert isinstance(engine, Exudyn)
-        run = engine.build(scene.mechanism(), scene.spacing)(100, 1)
+        run = engine.build(own.mechanism(), own.spacing)(100, 1)
         errors[consistent] = run
     largest = np.abs(truth.reaction).max()
     assert np.abs(errors[True].reaction - truth.reaction).max() < 1e-3 * largest
@@ -241,7 +139,7 @@ def test_an_engine_whose_package_is_missing_names_the_extra(monkeypatch):
         assert f"pip install -e '.[{engine.name}]'" in told
         assert "\n" not in told
         inner = getattr(engine, "engine", engine)
-        pins = BY_NAME["pendulum_1"].mechanism()
+        pins = scene("pendulum_1").mechanism()
         with pytest.raises(Unsupported, match="needs the package"):
             inner.build(pins, 1e-2)
 
@@ -256,19 +154,23 @@ def test_an_engine_whose_shared_library_is_missing_names_it(monkeypatch):
     lacking = next(each for each in registry.OTHERS if each.name == "exudyn")
     assert lacking.missing.startswith("exudyn needs the shared library libGL.so.1")
     with pytest.raises(Unsupported, match=r"apt-get install libgl1"):
-        lacking.build(BY_NAME["pendulum_1"].mechanism(), 1e-2)
+        lacking.build(scene("pendulum_1").mechanism(), 1e-2)
 
 
 def test_a_missing_engine_is_refused_by_name_in_one_line(monkeypatch):
     monkeypatch.setattr(registry, "ABSENT", {"exudyn": "exudyn needs the package exudyn: pip install -e '.[exudyn]'"})
     with pytest.raises(BadInput, match=r"pip install -e '\.\[exudyn\]'"):
         choose_engines("exudyn", None, registry.ENGINES)
-    with pytest.raises(BadInput, match="unknown engine 'exodyn'"):
+    with pytest.raises(BadInput) as refused:
         choose_engines("exodyn", None, registry.ENGINES)
+    told = registry.ABSENT["exudyn"]
+    assert str(refused.value) == f"unknown engine 'exodyn': did you mean 'exudyn'? {told}"
+    with pytest.raises(BadInput, match=r"did you mean 'pymunk'\?$"):
+        choose_engines("pymunkk", None, registry.ENGINES)
 
 
 def test_extras_stand_beside_the_grid_at_its_quick_steps_and_never_in_it():
-    scenes = (BY_NAME["free_four_bar"],)
+    scenes = (scene("free_four_bar"),)
     cells = choose_cells(scenes, (*registry.ENGINES, *registry.INSTALLED), PAGES, full=True)
     # What takes long to build is there only where a page asks for it.
     own = [cell for cell in cells if cell.engine in QUICKLY and cell.scene in scenes]
@@ -294,99 +196,9 @@ def test_exudyns_explicit_integrators_take_no_joint():
     for name in ("RK44", "VelocityVerlet"):
         explicit = Exudyn("explicit")
         object.__setattr__(explicit, "integrator", name)  # no value of the field: see `Integrator`
-        run = explicit.build(BY_NAME["pendulum_1"].mechanism(), 1e-3)(3, 1)
+        run = explicit.build(scene("pendulum_1").mechanism(), 1e-3)(3, 1)
         assert np.isnan(run.pose[1:]).all()
         assert any("gave up" in each for each in run.warnings)
-
-
-def test_a_name_like_that_of_a_missing_engine_is_answered_with_its_extra(monkeypatch):
-    told = "bullet needs the package pybullet: pip install -e '.[bullet]'"
-    monkeypatch.setattr(registry, "ABSENT", {"bullet": told})
-    with pytest.raises(BadInput) as refused:
-        choose_engines("bullett", None, registry.ENGINES)
-    assert str(refused.value) == f"unknown engine 'bullett': did you mean 'bullet'? {told}"
-    with pytest.raises(BadInput, match=r"did you mean 'pymunk'\?$"):
-        choose_engines("pymunkk", None, registry.ENGINES)
-
-
-def bar(name: str, pose: tuple[float, float, float], twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Body:
-    return Body(name, 1.0, 0.1, pose, twist)
-
-
-# What a second configuration shows: a drive or a slot named from the other body than the joint beside it, an angle
-# beyond a turn, two forces on one body, a speed that an engine's own limits stop or put to sleep. Durations [s].
-HUNG = (Pin("hinge", None, "first", (0.0, 0.0), (-0.5, 0.0)), Pin("joint", "first", "second", (0.5, 0.0), (-0.5, 0.0)))
-TWO = (bar("first", (0.5, 0.0, 0.0)), bar("second", (1.5, 0.0, 0.0), (0.0, -1.0, -2.0)))
-CONFIGURATIONS = {
-    "a drive against its pin": (
-        Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), (0.0, -9.81)),
-        0.3,
-    ),
-    "a held angle against its slot": (
-        Mechanism(
-            (TWO[0], bar("second", (0.8, 0.0, 0.4))),
-            (
-                HUNG[0],
-                Slot("guide", "first", "second", (0.3, 0.0), 0.0, (0.0, 0.0)),
-                Drive("held", "second", "first", 0.0, -0.4),
-            ),
-            (0.0, -9.81),
-        ),
-        0.3,
-    ),
-    "a spring wound up by more than a turn": (
-        Mechanism(
-            (bar("wheel", (0.0, 0.0, 0.0), (0.0, 0.0, 10.0)),),
-            (Pin("hub", None, "wheel", (0.0, 0.0), (0.0, 0.0)),),
-            (0.0, 0.0),
-            (TorsionSpring("spring", None, "wheel", 0.1),),
-        ),
-        1.5,
-    ),
-    "a gear that turns half as fast, the other way": (
-        Mechanism(
-            (bar("first", (0.5, 0.0, 0.0)), bar("second", (2.5, 0.0, 0.0))),
-            (
-                HUNG[0],
-                Pin("other hinge", None, "second", (2.0, 0.0), (-0.5, 0.0)),
-                Gear("gear", "first", "second", -0.5, 0.0),
-            ),
-            (0.0, -9.81),
-        ),
-        0.3,
-    ),
-    "a torque between two bodies": (
-        Mechanism(TWO, HUNG, (0.0, 0.0), (Torque("torque", "first", "second", 1.0),)),
-        0.3,
-    ),
-    "two forces on a body": (
-        Mechanism(
-            (TWO[0],),
-            HUNG[:1],
-            (0.0, 0.0),
-            (Force("one", "first", (0.5, 0.0), (0.0, 2.0)), Force("other", "first", (0.2, 0.1), (1.0, -1.0))),
-        ),
-        0.3,
-    ),
-    "faster than any usual limit": (Mechanism((bar("shot", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),), ()), 0.1),
-    "too slow to stay awake": (Mechanism((bar("drifting", (0.0, 0.0, 0.0), (1e-3, 2e-3, 1e-3)),), ()), 1.5),
-}
-
-
-@each
-@pytest.mark.parametrize("name", CONFIGURATIONS)
-def test_a_second_configuration_moves_as_the_judge_moves_it(engine, name):
-    installed(engine)
-    own, duration = CONFIGURATIONS[name]
-    truth = TRUTH.build(own, duration / 10)(10, 1)
-    try:
-        run = engine.build(own, duration / 300)(10, 30)
-    except Unsupported:
-        pytest.skip(f"{engine.name} has no such joint")
-    way = np.abs(truth.pose - truth.pose[0]).max()
-    promise = engine.order(own)
-    bound = SOFT if isinstance(promise, Unpromised) else 2 * JUDGED.get(int(min(promise.order, 4)), 1e-6)
-    assert np.abs(run.pose - truth.pose).max() < bound * way
 
 
 def test_where_exudyn_gives_up_its_last_samples_are_no_numbers():
@@ -450,3 +262,17 @@ class Ready(np.ndarray):
 
     def block_until_ready(self) -> Ready:
         return self
+
+
+@pytest.mark.parametrize(("first", "second"), [("a", "b"), ("b", "a")])
+@pytest.mark.parametrize("name", ["exudyn", "bullet"])
+def test_gears_on_the_ground_tell_their_reactions(name, first, second):
+    engine, own = shipped(name), meshed(-2.5, first, second)
+    exact = TRUTH.build(own, 0.05)(6, 1).reaction
+    told = engine.build(own, 0.05 / 40)(6, 40).reaction
+    assert np.abs(told - exact)[2:].max() < 1e-2 * np.abs(exact).max()
+    if name == "bullet":
+        hung = ALONE["weld"].bodies[1].name
+        chained = replace(ALONE["torque"], joints=(*ALONE["torque"].joints, Gear("mesh", "a", hung, 2.0, 0.5 - 0.6)))
+        with pytest.raises(Unsupported, match="joint 'mesh': a gear of bullet is between two of its joints"):
+            engine.build(chained, 1e-3)

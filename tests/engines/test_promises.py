@@ -1,27 +1,33 @@
-"""What an engine promises follows from its settings and the mechanism: no scene and no page is asked."""
+"""What an engine promises, and who holds a joint, follows from its settings and the mechanism: no scene is asked."""
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 
 import pytest
 
-from engines import EXACT, Promise, Unpromised, mujoco, pymunk
+from engines import EXACT, Holder, Promise, Unpromised, mujoco, pymunk
 from engines.extrapolated import Extrapolated
 from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
+from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.methods import DRIVES, ROLLS, SKATES
+from engines.pymunk import methods as pymunk_methods
 from engines.pymunk.methods import SKATE_PROJECTED
 from reference.forces import Torque
-from reference.joints import Pin
+from reference.joints import Drive, Joint, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reports.gate.change import Altered
+from reports.write.holders import held_by
+from tests.all_elements import ALL, ALONE, WELD
 from tests.mechanisms import four_bar
+from tests.toys import Toy
 
 FREE, MOVING, DRIVEN = four_bar(), four_bar(crank_rate=2.0), four_bar(crank_rate=2.0, drive=2.0)
 HANGING = BarPendulum().mechanism()
@@ -31,6 +37,7 @@ SPINNING = Mechanism(
     (Body("disc", 1.0, 0.5, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0)),), (Pin("axle", None, "disc", (0.0, 0.0), (0.0, 0.0)),)
 )
 EULER, RK4 = Lagrange("euler", "projection"), Lagrange("rk4", "projection")
+SLIDER, SHARED = DrivenSliderCrank().mechanism(), "engine, our rows"
 
 
 def told(engine, mechanism) -> dict[str, float]:
@@ -76,18 +83,10 @@ def test_pymunk_tuned_promises_by_how_a_motion_starts_and_what_drives_it(mechani
     assert told(pymunk.TUNED, mechanism) == expected
 
 
-@pytest.mark.parametrize("mechanism", [FREE, MOVING, DRIVEN, SPINNING, ROLL])
-def test_pymunk_as_shipped_promises_first_order_whatever_the_motion(mechanism):
-    # A tenth of a gap is closed in a sixtieth of a second.
-    assert told(pymunk.DEFAULT, mechanism) == {"order": 1, "differences": 1}
-
-
-@pytest.mark.parametrize("mechanism", [SKATE, CAR])
-def test_a_naive_skate_off_the_centre_of_mass_promises_nothing(mechanism):
-    assert isinstance(pymunk.DEFAULT.order(mechanism), Unpromised)
-
-
 def test_pymunks_other_constructions_promise_their_own():
+    # As shipped a tenth of a gap is closed in a sixtieth of a second; a naive skate off the centre promises nothing.
+    assert all(told(pymunk.DEFAULT, each) == {"order": 1, "differences": 1} for each in (FREE, DRIVEN, SPINNING, ROLL))
+    assert all(isinstance(pymunk.DEFAULT.order(each), Unpromised) for each in (SKATE, CAR))
     assert told(pymunk.LEAPFROG, MOVING) == {"order": 2, "differences": 1}
     assert told(pymunk.LEAPFROG, SKATE)["order"] == 1
     assert told(SKATE_PROJECTED, SKATE)["slip"] == EXACT
@@ -152,3 +151,80 @@ def test_exact_multipliers_promise_their_integrators_order_less_what_a_spring_co
     assert told(Lagrange("rk4", "baumgarte"), MOVING)["order"] == 2
     assert told(Lagrange("dop853", "baumgarte"), MOVING) == {"order": 6}
     assert isinstance(TRUTH.order(MOVING), Unpromised)
+
+
+@pytest.mark.parametrize(
+    ("engine", "skate", "car", "roll", "gears", "slider"),
+    [
+        (pymunk.DEFAULT, "ours", "engine; skate: ours", "engine", "engine", "engine"),
+        (pymunk.TUNED, SHARED, f"engine; skate: {SHARED}", "engine", "engine", "engine"),
+        (pymunk.EXTENDED, SHARED, f"engine; skate: {SHARED}", SHARED, f"engine; roll: {SHARED}", "engine"),
+        (mujoco.DEFAULT, "engine", "engine", "engine", "engine", "engine"),
+        (mujoco.TUNED, SHARED, f"engine; skate: {SHARED}", "engine", "engine", "engine"),
+        (mujoco.EXTENDED, SHARED, f"engine; skate: {SHARED}", SHARED, f"engine; roll: {SHARED}", "engine"),
+        (Lagrange("rk4"), "engine", "engine", "engine", "engine", "engine"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else f"{value.name} {value.variant}",
+)
+def test_every_variant_says_who_holds_skates_contacts_and_slots(engine, skate, car, roll, gears, slider):
+    found = [held_by(engine, mechanism) for mechanism in (SKATE, CAR, ROLL, GEARS, SLIDER)]
+    assert found == [skate, car, roll, gears, slider]
+    assert held_by(engine, DRIVEN) == "engine"
+
+
+def test_every_construction_of_a_skate_says_who_holds_it():
+    ours = {"skate: centre's velocity zeroed", "skate: point's velocity zeroed", "skate: impulse at the blade"}
+    engines = {"friction blade"}
+    for engine in (*pymunk_methods.SKATES, *mujoco_methods.SKATES):
+        expected = "ours" if engine.variant in ours else "engine" if engine.variant in engines else SHARED
+        assert held_by(engine, SKATE) == expected, engine.variant
+
+
+def test_every_construction_of_a_rolling_contact_says_who_holds_it():
+    assert {held_by(engine, ROLL) for engine in (pymunk.DEFAULT, *pymunk_methods.ROLL_FACETED)} == {"engine"}
+    assert {held_by(engine, ROLL) for engine in (pymunk.EXTENDED, pymunk_methods.ROLL_PIVOT)} == {SHARED}
+    assert [held_by(engine, ROLL) for engine in mujoco_methods.ROLLS] == ["engine"]
+
+
+def test_a_slot_that_no_groove_holds_exactly_is_aimed_by_our_rows():
+    # The slotted point off the centre of mass of a slider that may turn: a push across the slot turns it.
+    slot = next(joint for joint in SLIDER.joints if isinstance(joint, Slot))
+    moved = replace(slot, second_point=(0.1, 0.0))
+    turning = [joint for joint in SLIDER.joints if not (isinstance(joint, Drive) and joint.turning_rate == 0)]
+    joints = tuple(moved if joint == slot else joint for joint in turning)
+    mechanism = replace(SLIDER, joints=joints)
+    assert held_by(pymunk.TUNED, mechanism) == f"engine; slot: {SHARED}"
+    naive = replace(pymunk.DEFAULT, slot="groove")
+    assert held_by(naive, mechanism) == "engine"
+    assert isinstance(naive.order(mechanism), Unpromised)
+
+
+def test_an_overwritten_crank_is_ours():
+    servo, overwritten = mujoco_methods.DRIVES
+    assert held_by(servo, DRIVEN) == "engine"
+    assert held_by(overwritten, DRIVEN) == "engine; drive: ours"
+
+
+@dataclass(frozen=True)
+class Divided(Toy):
+    """Holds the first joint by itself, the others by our rows."""
+
+    def holder(self, joint: Joint, mechanism: Mechanism) -> Holder:
+        return "engine" if joint == mechanism.joints[0] else "engine, our rows"
+
+
+def test_joints_of_one_kind_that_differ_are_told_by_name():
+    mechanism = four_bar()
+    others = " and ".join(joint.name for joint in mechanism.joints[1:])
+    assert held_by(Divided(), mechanism) == f"engine; {others}: engine, our rows"
+
+
+def test_free_bodies_have_no_joints_to_hold():
+    assert held_by(pymunk.DEFAULT, Mechanism(SKATE.bodies, ())) == "no joints"
+
+
+def test_who_holds_a_rod_and_a_weld_is_told():
+    rod = ALONE["rod"].joints[1]
+    assert mujoco.DEFAULT.holder(rod, ALONE["rod"]) == "engine"
+    assert mujoco.EXTENDED.holder(rod, ALONE["rod"]) == SHARED
+    assert mujoco.EXTENDED.holder(WELD, ALL) == "engine"

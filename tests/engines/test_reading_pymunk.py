@@ -133,9 +133,9 @@ MAKERS = {
 
 
 @pytest.mark.parametrize("name", MAKERS)
-@pytest.mark.parametrize("spin", [0.0, 0.7])
-def test_a_constraint_gives_the_same_accelerations(name, spin):
-    reading = read(space_of(MAKERS[name], spin=spin), 0.01)
+def test_a_constraint_gives_the_same_accelerations(name):
+    assert refuse_disagreement(read(space_of(MAKERS[name], spin=0.0), 0.01)) < STEPPED
+    reading = read(space_of(MAKERS[name]), 0.01)
     assert refuse_disagreement(reading) < STEPPED
     wrong = replace(reading, mechanism=replace(reading.mechanism, gravity=(0.3, -5.0), forces=()))
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
