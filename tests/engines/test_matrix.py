@@ -185,7 +185,6 @@ def on(engine: Engine, subjects: Iterable[Scene | Mechanism], every: int = 10, *
 
 
 MOVING = four_bar(10.0)
-FAST = FreeFourBar(rate=10.0)
 FREE, DRIVEN, SLIDER, SLEIGH = FreeFourBar(), DrivenFourBar(), DrivenSliderCrank(), ChaplyginSleigh()
 ROLLS = (RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle(), RollingCam(), RollingDownhill())
 SLEIGHS = (*(ChaplyginSleigh(offset=offset) for offset in (0.5, -0.2, 0.0)), ChaplyginSleigh(turning_rate=-1.0))

@@ -23,7 +23,7 @@ from reference.chapter.centrodes import (
 from reference.chapter.shapes import as_csv, as_dxf, as_svg, placed_body, poses_from_csv, shapes_of
 from reference.checks import InvalidMechanism
 from reference.scenes.four_bar.linkage import FourBar
-from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
+from reference.scenes.rolling.scenes import RollingDisc
 from reference.trajectory import Trajectory
 from tests.present import present
 
@@ -72,21 +72,6 @@ def test_a_ladders_centrodes_are_cardans_circles():
     # Two derivatives of points that come from a derivative: rounding over the spacing cubed, 0.0055 rad.
     np.testing.assert_allclose(motion.space_curvature[inner], -1.0, atol=1e-7)
     np.testing.assert_allclose(motion.body_curvature[inner], 2.0, atol=1e-7)
-
-
-def test_a_rolling_ellipses_centrodes_are_the_ellipse_and_the_ground():
-    scene = RollingEllipse(start_rate=9.0, duration=1.0)  # fast enough to go over its tips
-    truth = scene.motion(np.linspace(0, 1, 801))
-    motion = centrodes(truth.t, truth.pose[:, 0], truth.twist[:, 0])
-    theta = motion.theta[10:-10]
-    contact = scene.motion_law.rolling.contact(theta)
-    np.testing.assert_allclose(motion.space[:, 1], 0, atol=1e-14)
-    shape = (motion.body[:, 0] / 0.5) ** 2 + (motion.body[:, 1] / 0.3) ** 2
-    np.testing.assert_allclose(shape, 1, atol=1e-13)
-    # Second derivatives by a spline of points 8 mm apart.
-    np.testing.assert_allclose(motion.space_curvature[10:-10], 0, atol=1e-6)
-    np.testing.assert_allclose(motion.body_curvature[10:-10], contact.body_curvature, rtol=1e-6)
-    np.testing.assert_allclose(motion.rate[10:-10], contact.rate, rtol=1e-8)
 
 
 @pytest.mark.parametrize("arc", ARCS)
@@ -204,16 +189,6 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     lines = {line.dxf.layer: np.array([point[:2] for point in line.get_points()]) for line in document.modelspace()}
     np.testing.assert_allclose(lines["SPACE"], shapes.space, atol=1e-12)
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)
-
-
-def test_what_is_higher_in_the_world_is_higher_in_the_drawing():
-    shapes = shapes_of(from_poses(*cardan()), points=60)
-    root = ElementTree.fromstring(as_svg(shapes, width=150.0))
-    text = next(present(path.get("d")) for path in root.iter() if path.get("id") == "space")
-    drawn = np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
-    # SVG counts y downwards. One scale for both directions, to the four decimals written.
-    scale = np.ptp(drawn[:, 0]) / np.ptp(shapes.space[:, 0])
-    np.testing.assert_allclose(drawn[1:] - drawn[0], (shapes.space[1:] - shapes.space[0]) * [scale, -scale], atol=2e-4)
 
 
 def test_a_table_of_poses_is_read_in_any_order_of_columns():

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.reference.laws.balanced import BALANCED
 from tests.reference.laws.bent import CURVES
 from tests.reference.laws.law import Law, misses, searched
 from tests.reference.laws.linkages import LINKAGES
@@ -16,7 +15,7 @@ from tests.reference.laws.pendulums import PENDULUMS
 from tests.reference.laws.rolled import ROLLS
 from tests.reference.laws.wheeled import WHEELED
 
-LAWS = {law.name: law for law in (*LINKAGES, *PENDULUMS, *CURVES, *ROLLS, *WHEELED, *BALANCED)}
+LAWS = {law.name: law for law in (*LINKAGES, *PENDULUMS, *CURVES, *ROLLS, *WHEELED)}
 # A formula of twenty operations makes that many roundings of its own, some of them along with the worst argument.
 # Beside it a lost digit is a factor of ten, and most of what was found had lost four.
 ROUNDINGS = 20

@@ -171,13 +171,3 @@ def test_a_chain_moves_from_unequal_angles_as_by_lagranges_equations() -> None:
     assert np.abs(equal - angles).max() > 0.1
     with pytest.raises(InvalidMechanism, match="a number a link"):
         chain.motion([0.4, 0.1], [0.0, 0.0], t)
-
-
-def test_a_chain_takes_lists_and_tuples_as_it_takes_arrays() -> None:
-    chain, angle, rate = Chain((1.0, 2.0), (1.0, 3.0)), [0.3, 1], (0, -2.0)
-    arrays = np.array(angle), np.array(rate)
-    for method in (chain.forces, chain.accelerations, chain.energy):
-        assert np.array_equal(method(angle, rate), method(*arrays))
-    for ours, theirs in zip(chain.placement(angle, rate, rate), chain.placement(*arrays, arrays[1]), strict=True):
-        assert np.array_equal(ours, theirs)
-    assert np.array_equal(chain.divergence(angle, rate, [0.1]), chain.divergence(*arrays, [0.1]))

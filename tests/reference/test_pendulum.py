@@ -52,25 +52,6 @@ def test_a_release_from_rest_near_the_top_keeps_its_digits(angle: float) -> None
         assert abs(Pendulum(FREQUENCY, angle).period / exact - 1) < 1e-15
 
 
-def test_next_to_the_separatrix_the_error_is_the_rounding_of_the_start() -> None:
-    """Moving the rate by one unit in its last place moves the answer as much as the stated loss, and as our error."""
-    rate = 2 * FREQUENCY * (1 + 1e-9)
-    pendulum = Pendulum(FREQUENCY, 0.0, rate)
-    t = pendulum.period  # at the bottom, at full speed, just after passing the top
-    moved, _, _ = Pendulum(FREQUENCY, 0.0, math.nextafter(rate, 10)).motion(t)
-    found, _, _ = pendulum.motion(t)
-    with mpmath.workdps(40):
-        k = mpmath.mpf(rate) / (2 * FREQUENCY)
-        u = k * FREQUENCY * mpmath.mpf(t)
-        quarter = mpmath.ellipk(1 / k**2)
-        rest = u - 2 * quarter * mpmath.nint(u / (2 * quarter))
-        sn = mpmath.ellipfun("sn", rest, m=1 / k**2)
-        exact = float(2 * (mpmath.asin(sn) + mpmath.pi * mpmath.nint(u / (2 * quarter))))
-    loss = 1e-16 / abs(pendulum.excess)
-    assert abs(found - exact) < 10 * loss
-    assert abs(moved - found) > 0.1 * loss
-
-
 @pytest.mark.parametrize("angle", [0.0, 1.0, -2.0])
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_separatrix_itself_is_the_gudermannian(angle: float, direction: int) -> None:

@@ -1,4 +1,4 @@
-"""The fast contact that all adapters share: the reference's own, to rounding, for every pair that rolls."""
+"""What adapters share: the fast contact of every pair that rolls, and the motions of a spanning tree."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ import pytest
 
 from engines import rolling_table
 from engines.rolling_table import RoundOnLine, RoundOnRound, Table, rolled
+from engines.tree import pushes, spanning_tree
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import Scene
+from reference.scenes.andrews import Andrews
+from reference.scenes.catalogue import SCENES
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import (
     DiscInHole,
@@ -26,6 +29,8 @@ from reference.scenes.rolling.scenes import (
     RollingInRing,
     RollingOnCircle,
 )
+from reports.search.mechanisms import EVERY
+from reports.search.mechanisms import mechanism as random_mechanism
 
 
 def rolling_of(scene: Scene) -> Rolling:
@@ -141,3 +146,49 @@ def test_models_of_one_mechanism_share_a_table_and_the_oldest_tables_are_forgott
     for number in range(20):
         rolled(Rolling.at_angle(Circle(0.1 + number / 100), Line()))
     assert rolled(first) is not fast
+
+
+# Random ones with every joint, and those of the scenes, where a slot's drive of rate zero keeps its block from turning.
+MECHANISMS = (
+    *(random_mechanism(21, number, EVERY) for number in range(6)),
+    *(scene.mechanism() for scene in SCENES if len(scene.mechanism().bodies) < 20),
+)
+
+
+def test_the_mechanisms_have_every_kind_of_link():
+    links = [link for mechanism in MECHANISMS for link in spanning_tree(mechanism).links]
+    assert {(link.kind, link.turns) for link in links} == {
+        ("free", True),
+        ("hinge", True),
+        ("hinge", False),
+        ("slot", True),
+        ("slot", False),
+    }
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=range(len(MECHANISMS)))
+def test_twists_and_accelerations_are_the_derivatives_of_the_poses(mechanism):
+    tree = spanning_tree(mechanism)
+    way, rate, gain = np.random.default_rng(5).normal(size=(3, tree.coordinates))
+    h = 1e-4
+    t = np.array([-h, 0.0, h])[:, None]
+    pose, twist, change = tree.motion(way + rate * t + gain * t**2 / 2, rate + gain * t, np.tile(gain, (3, 1)))
+    for values, derivative in ((pose, twist), (twist, change)):
+        differences = (values[2] - values[0]) / (2 * h)
+        # What the difference misses is h^2 times a third derivative: cubes of rates, which are sums over many links.
+        np.testing.assert_allclose(differences, derivative[1], rtol=0, atol=1e-4 * np.abs(derivative).max())
+    for found, expected in zip(tree.instant(way, rate), (pose[1], twist[1]), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+
+
+def test_what_is_pushed_is_what_the_force_elements_do_there_and_nothing_where_a_coordinate_is_none():
+    mechanism = Andrews().mechanism()
+    tree = spanning_tree(mechanism)
+    way, rate = np.zeros(tree.coordinates), tree.start_rates()
+    pose, pushed = pushes(tree, way, rate)
+    np.testing.assert_allclose(pose, mechanism.pose, rtol=0, atol=1e-15 * mechanism.length_scale)
+    expected = mechanism.applied.on(mechanism.pose, mechanism.twist)
+    np.testing.assert_allclose(pushed, expected, rtol=1e-14, atol=1e-14 * np.abs(expected).max())
+    assert np.abs(pushed).max() > 0
+    way[0] = np.inf
+    assert np.isnan(pushes(tree, way, rate)[0]).all()
