@@ -17,7 +17,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # The longest, each of which would keep one worker busy after the others have ended.
 FIRST = (
     *("third_party", "site_in_browser", "cluster", "wrong_models", "any_rows", "wheel", "lagrange_compiled"),
-    *("other_elements", "other_engines", "conformance", "without_engines"),
+    *("promised", "matrix", "random", "scenes", "conformance", "without_engines"),
 )
 
 # The one file whose tests are marked `crosscheck`, which a test there holds.

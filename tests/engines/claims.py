@@ -2,7 +2,7 @@
 
 cases, _ = judged(seed=31, numbers=range(40))
 found = rows(EXTENDED, cases, steps=(1e-3, 1e-2), everies=(1, 10))
-print(as_text(table(found)))
+print([one for one in found if one.silent])
 """
 
 from __future__ import annotations
@@ -56,22 +56,6 @@ class Row:
     reaction_told: bool
     reaction_silent: bool  # the same of reactions; where poses are unresolved, nobody believes these
     warnings: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Line:
-    """Runs of one method with one step: how many were tried, off by more than the claim, told of, off and silent, and
-    told of although they are right all the way.
-    """
-
-    method: str
-    step: float
-    quantity: str  # "pose" or "reaction"
-    tried: int
-    off: int
-    told: int
-    silent: int
-    false: int
 
 
 def judged(seed: int, numbers: Iterable[int], kinds: tuple[str, ...] = EVERY) -> tuple[list[Case], list[int]]:
@@ -136,35 +120,6 @@ def row(engine: Engine, case: Case, step: float, every: int) -> Row:
         lost or any(of_reactions),
         bool(np.any(claimed & (reaction > REACTION))) and not lost and not any(of_reactions),
         run.warnings,
-    )
-
-
-def table(found: Sequence[Row]) -> list[Line]:
-    """Lines by method, step and quantity."""
-    lines = []
-    for method, step in sorted({(one.method, one.step) for one in found}):
-        same = [one for one in found if (one.method, one.step) == (method, step)]
-        poses = [(one.error > CLAIM, one.told, one.silent) for one in same]
-        reactions = [(one.reaction > REACTION, one.reaction_told, one.reaction_silent) for one in same]
-        for quantity, each in (("pose", poses), ("reaction", reactions)):
-            off, told, silent = (np.array(values, dtype=bool) for values in zip(*each, strict=True))
-            counts = (int(flags.sum()) for flags in (off, told, silent, told & ~off))
-            lines.append(Line(method, step, quantity, len(same), *counts))
-    return lines
-
-
-def as_text(lines: Sequence[Line]) -> str:
-    """The table in columns."""
-    head = f"{'method':20}{'step':>8}  {'quantity':10}{'tried':>7}{'off':>6}{'told':>6}{'silent':>8}{'false':>7}"
-    return "\n".join(
-        [
-            head,
-            *(
-                f"{one.method:20}{one.step:8.3g}  {one.quantity:10}{one.tried:7}{one.off:6}{one.told:6}"
-                f"{one.silent:8}{one.false:7}"
-                for one in lines
-            ),
-        ]
     )
 
 

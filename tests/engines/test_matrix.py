@@ -52,6 +52,7 @@ FREE_HALVES = replace(FREE_COORDINATES, variant="free coordinates, halves", slot
 TUNED_FREE = replace(mujoco.TUNED, variant="tuned, free coordinates", coordinates="free")
 TENDON_FRICTION = replace(mujoco.TUNED, variant="tendon friction", skates="tendon friction")
 SOFT = replace(mujoco.EXTENDED, variant="shipped compliance", stiffness=Hardened(softening=1.0), estimates=False)
+OVERWRITTEN = replace(mujoco.DEFAULT, variant="overwritten crank", drive="overwrite")
 (BLADE,) = SKATES
 
 
@@ -263,6 +264,9 @@ OF_MUJOCO = (
     # With a time constant of five steps the softness falls as dt^2.
     Row(mujoco.TUNED, FREE, pose=1e-6, order=(2,), room=0.5),
     Row(mujoco.TUNED, DRIVEN, pose=1e-6),
+    # An overwritten crank: the solver believes that it is free to accelerate, which a stiff loop alone makes up for.
+    Row(OVERWRITTEN, DRIVEN, 25, order=(0,), room=0.1),
+    Row(replace(OVERWRITTEN, stiffness=mujoco.TUNED.stiffness), DRIVEN, 25, order=(2,)),
     # 1e-2 s: five steps are longer than the motion's own time constant, and order 4 leaves about 1e-5.
     *on(mujoco.EXTENDED, (FREE, DRIVEN), 1, pose=1e-4, span=0.05),
     Row(mujoco.EXTENDED, FREE, 5, order=(4,), room=0.5),

@@ -23,7 +23,7 @@ from reference.joints import Slot
 from reference.mechanism import Mechanism
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY, FORCES, LINKS
-from tests.engines.claims import EVERIES, STEPS, Case, Row, as_text, judged, row, rows, table
+from tests.engines.claims import EVERIES, REACTION, STEPS, Case, Row, judged, row, rows
 from tests.engines.test_promised import QUICKLY, installed
 from tests.present import present
 
@@ -45,6 +45,11 @@ def known(seed: int, numbers: range, kinds: tuple[str, ...]) -> list[Case]:
     return judged(seed, numbers, kinds)[0]
 
 
+def silent(found: list[Row]) -> list[Row]:
+    """Wrong by more than is claimed, at a time at which nothing was told."""
+    return [one for one in found if one.silent or one.reaction_silent]
+
+
 @CLAIMING
 def test_twenty_mechanisms_are_right_or_told(engine):
     """At every step, and each mechanism at another sampling; the slow test asks all samplings of each."""
@@ -54,7 +59,7 @@ def test_twenty_mechanisms_are_right_or_told(engine):
         for number, every in enumerate(EVERIES)
         for each in rows(installed(engine), cases[number::4], STEPS, (every,))
     ]
-    assert sum(line.silent for line in table(found)) == 0, as_text(table(found))
+    assert silent(found) == []
 
 
 @pytest.mark.slow
@@ -63,9 +68,11 @@ def test_a_thousand_mechanisms_are_right_or_told_and_at_most_two_in_a_hundred_ar
     installed(engine)
     cases, unknown = judged(601, range(1000))
     assert len(unknown) < 20
-    found = table(rows(engine, cases))
-    assert sum(line.silent for line in found) == 0, as_text(found)
-    assert sum(line.false for line in found) <= 0.02 * sum(line.tried for line in found), as_text(found)
+    found = rows(engine, cases)
+    assert silent(found) == []
+    false = [one.told and one.error <= CLAIM for one in found]
+    false += [one.reaction_told and one.reaction <= REACTION for one in found]
+    assert np.mean(false) <= 0.02
 
 
 def asked(engine: Engine, seed: int, numbers: range, kinds: tuple[str, ...] = HELD) -> list[Row]:
@@ -77,7 +84,7 @@ def holds(found: list[Row], share: float) -> None:
     """So large a share is sound, the others say that they aren't, and hardly an estimate is ten times too small."""
     wrong = [one for one in found if one.error > CLAIM or one.reaction > 1e-3]
     assert len(wrong) <= (1 - share) * len(found), wrong
-    assert not [one for one in wrong if one.silent or one.reaction_silent]
+    assert silent(wrong) == []
     # Below 1e-11 rad there is rounding, as in all of the grid.
     wild = [one for one in found if not one.error <= max(10 * one.estimate, 1e-11)]
     assert len(wild) <= 1e-3 * len(found), wild

@@ -174,26 +174,6 @@ def test_a_gear_pair_has_one_freedom_and_the_inertia_of_both():
     np.testing.assert_allclose(motion.reaction[:, -1], inertias[1] * ratio * gain, rtol=1e-11)
 
 
-def test_a_welded_pair_is_one_body():
-    pair = ALONE["weld"]
-    a, b, c = pair.bodies
-    mass = b.mass + c.mass
-    centre = (b.mass * np.array(b.pose[:2]) + c.mass * np.array(c.pose[:2])) / mass
-    inertia = sum(body.inertia + body.mass * float(np.sum((centre - body.pose[:2]) ** 2)) for body in (b, c))
-    shift = centre - np.array(b.pose[:2])
-    cosine, sine = np.cos(b.pose[2]), np.sin(b.pose[2])
-    own = np.array([cosine * shift[0] + sine * shift[1], -sine * shift[0] + cosine * shift[1]])
-    merged = Body("b", mass, inertia, (float(centre[0]), float(centre[1]), b.pose[2]))
-    hung = pair.joints[1]
-    assert isinstance(hung, Pin)
-    moved = replace(hung, second_point=tuple((np.array(hung.second_point) - own).tolist()))
-    single = Mechanism((a, merged), (pair.joints[0], moved), GRAVITY)
-    one, other = (TRUTH.build(each, 0.05)(12, 1) for each in (pair, single))
-    np.testing.assert_allclose(one.pose[:, 0], other.pose[:, 0], atol=1e-11)
-    np.testing.assert_allclose(one.pose[:, 1, 2], other.pose[:, 1, 2], atol=1e-11)
-    np.testing.assert_allclose(one.reaction[:, :4], other.reaction, atol=1e-9 * np.abs(other.reaction).max())
-
-
 @pytest.mark.parametrize(
     ("name", "freedoms"),
     [("rod to the ground", 2), ("rod", 3), ("gear", 4), ("weld", 2), ("weld to the ground", 1), ("weld in a loop", 1)],

@@ -16,7 +16,7 @@ from scipy.integrate import quad
 from reference.checks import InvalidMechanism
 from reference.joints import Slot
 from reference.scenes.slider_crank.linkage import SliderCrank
-from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank, SliderAtDeadCentre
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank, SliderAtDeadCentre
 from reference.trajectory import energy
 
 THETA = np.linspace(0, 2 * math.pi, 37)
@@ -59,29 +59,6 @@ def test_the_drive_does_the_work_that_the_energy_gains(scene: DrivenSliderCrank)
     total = energy(scene.mechanism(), motion)
     assert abs(work - (total[-1] - total[0])) < 1e-5  # trapezoids of a smooth function
     assert np.abs(motion.reaction[:, names.index("level torque")]).max() < 1e-12
-
-
-def test_the_free_motion_takes_the_time_that_energy_says() -> None:
-    """dt = dtheta sqrt(J / 2(E - V)): a quadrature that integrates no equation of motion."""
-    scene = FreeSliderCrank()
-    masses = scene.mechanism().inertias.reshape(-1)
-
-    def reduced(theta: float) -> tuple[float, float]:
-        pose, tangent = scene.tangent(np.array([theta]))
-        return float(masses @ tangent[:, 0] ** 2), float(scene.gravity * masses[::3] @ pose[:, 1])
-
-    inertia, potential = reduced(scene.angle)
-    total = inertia * scene.rate**2 / 2 + potential
-
-    def slowness(theta: float) -> float:
-        inertia, potential = reduced(theta)
-        return math.sqrt(inertia / (2 * (total - potential)))
-
-    for end in (1.0, 1.7):
-        theta = float(scene.states([end])[0][0, 0])
-        edges = np.linspace(scene.angle, theta, 21)
-        time = sum(quad(slowness, a, b, epsabs=1e-14, epsrel=1e-14)[0] for a, b in pairwise(edges))
-        assert abs(time - end) < 1e-11
 
 
 def test_bad_slider_cranks_are_refused() -> None:
