@@ -8,14 +8,10 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from reference.chapter.centrodes import instant_centre
-from reference.chapter.parking import commutator_displacement, park, stops
 from reference.scenes.skates.pinned_body import PinnedBody
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.skates.slopes import SkateOnSlope
-from reference.scenes.wheels.cart import Casters
 from reference.scenes.wheels.tractrix import Tow
-from reference.scenes.wheels.trailers import towed
 from tests.reference.laws.law import DIGITS, Law, Outside, angle, decades
 from tests.reference.laws.pendulums import swung
 
@@ -167,79 +163,9 @@ def drawn_pinned(rng: np.random.Generator) -> tuple[float, ...]:
     )
 
 
-def caster(x: Any, y: Any, trail: Any, bend: Any, speed: Any, turning: Any) -> list[Any]:
-    """How fast a wheel behind a kingpin turns, from the kingpin's velocity across it."""
-    velocity = mp.mpc(speed - y * turning, x * turning) * mp.expj(-bend)
-    return [velocity.imag / trail]
-
-
-def our_caster(x: float, y: float, trail: float, bend: float, speed: float, turning: float) -> list[Any]:
-    return list(Casters(((x, y),), trail).turning_rates([bend], speed, turning))
-
-
-def several(*sizes: float) -> Any:
-    """Normal numbers of these decades' spread, all in a unit of their own."""
-
-    def draw(rng: np.random.Generator) -> tuple[float, ...]:
-        return tuple(float(rng.normal()) * decades(rng, -size, size) for size in sizes)
-
-    return draw
-
-
-def parked(*numbers: Any) -> list[Any]:
-    """The goal itself."""
-    return list(numbers[3:])
-
-
-def our_parked(*numbers: float) -> list[Any]:
-    start, goal = numbers[:3], numbers[3:]
-    return list(stops(start, park(start, goal))[-1])  # type: ignore[arg-type]
-
-
-def parked_sizes(*numbers: Any) -> list[Any]:
-    """Places and angles of both ends."""
-    far = sum(abs(numbers[k]) for k in (0, 1, 3, 4))
-    return [far, far, mp.pi + abs(numbers[2]) + abs(numbers[5])]
-
-
-def centre(x: Any, y: Any, u: Any, v: Any, turning: Any) -> list[Any]:
-    """In the world, and in the body that stands at the angle 0.3 there."""
-    arm = mp.mpc(-v, u) / turning
-    own = arm * mp.expj(-mp.mpf(0.3))
-    return [x + arm.real, y + arm.imag, own.real, own.imag]
-
-
-def our_centre(x: float, y: float, u: float, v: float, turning: float) -> list[Any]:
-    space, body = instant_centre(np.array([[x, y, 0.3]]), np.array([[u, v, turning]]))
-    return [*space[0], *body[0]]
-
-
 WHEELED = (
     Law("towed wheel", drawn_tow, our_tow, tow, vectors=(slice(1, 3),), angles=(0,), size=tow_sizes),
     Law("sleigh", drawn_sleigh, our_sleigh, sleigh),
     Law("skate on a slope", drawn_slope, our_slope, slope, vectors=(slice(0, 2), slice(2, 4)), size=slope_sizes),
     Law("pinned body", drawn_pinned, our_pinned, pinned, vectors=(slice(1, 3),), size=pinned_sizes),
-    Law(
-        "caster",
-        several(4, 4, 0.0, 0.3, 4, 4),
-        lambda *n: our_caster(n[0], n[1], abs(n[2]), *n[3:]),
-        lambda *n: caster(n[0], n[1], abs(n[2]), *n[3:]),
-    ),
-    Law(
-        "trailer",
-        several(4, 4, 0.3, 4, 4),
-        lambda v, w, bend, hitch, length: list(towed(v, w, bend, hitch, abs(length))),
-        lambda v, w, bend, hitch, length: [
-            v * mp.cos(bend) + hitch * w * mp.sin(bend),
-            (v * mp.sin(bend) - hitch * w * mp.cos(bend)) / abs(length),
-        ],
-    ),
-    Law("parked skate", several(4, 4, 0.3, 4, 4, 0.3), our_parked, parked, size=parked_sizes),
-    Law(
-        "skate moved to and fro",
-        several(9, 9),
-        lambda turn, slide: list(commutator_displacement(turn, slide)),
-        lambda turn, slide: [slide * (mp.cos(turn) - 1), slide * mp.sin(turn)],
-    ),
-    Law("instant centre", several(4, 4, 4, 4, 4), our_centre, centre, vectors=(slice(0, 2), slice(2, 4))),
 )
