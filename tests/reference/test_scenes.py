@@ -16,9 +16,9 @@ import pytest
 from engines.lagrange import TRUTH
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scene import Scene
+from reference.scene import PlacedScene, Scene
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FourBarScene, FreeFourBar
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
@@ -68,7 +68,13 @@ FREEDOMS: dict[str, tuple[int, int]] = {
     **{"person_swaying": (5, 5), "person_one_foot": (5, 5), "person_two_feet": (3, 3)},
 }
 NEWTON = 1e-8  # of the largest force: what differences of twists leave
-each_scene = pytest.mark.parametrize("each", ALL, ids=lambda each: each.name)
+
+
+def name_of(each: Scene) -> str:
+    return each.name
+
+
+each_scene = pytest.mark.parametrize("each", ALL, ids=name_of)
 
 
 def until(each: Scene) -> float:
@@ -146,6 +152,20 @@ def test_the_reactions_are_what_newtons_law_needs(each: Scene) -> None:
     assert off_newton(mechanism, motion, change) < NEWTON
 
 
+def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
+    """The accelerations that a scene works its reactions out from; None where it needs none."""
+    if isinstance(each, FourBarScene):
+        return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
+    return each.placement(t)[2] if isinstance(each, PlacedScene) else None
+
+
+@pytest.mark.parametrize("each", [each for each in ALL if isinstance(each, FourBarScene | PlacedScene)], ids=name_of)
+def test_the_accelerations_of_a_scene_are_those_of_its_motion(each: Scene) -> None:
+    mechanism, motion, _, change = known(each)
+    off = np.abs((present(told(each, motion.t)) - change) / unit(mechanism)).max()
+    assert off < 1e-9 * max(np.abs(change / unit(mechanism)).max(), fastest(mechanism, motion) ** 2)
+
+
 @each_scene
 def test_the_energy_of_what_nothing_drives_stays(each: Scene) -> None:
     mechanism, motion, *_ = known(each)
@@ -156,7 +176,7 @@ def test_the_energy_of_what_nothing_drives_stays(each: Scene) -> None:
     assert np.ptp(total) <= 1e-12 * (span + np.abs(total).max())
 
 
-@pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=lambda each: each.name)
+@pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=name_of)
 def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -> None:
     mechanism = each.mechanism()
     run = TRUTH.build(mechanism, until(each) / 8)(4, 1)
@@ -169,7 +189,7 @@ def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
 
 
-@pytest.mark.parametrize("each", [each for each in ALL if truth_error(each)], ids=lambda each: each.name)
+@pytest.mark.parametrize("each", [each for each in ALL if truth_error(each)], ids=name_of)
 def test_the_truths_own_error_is_told_and_small(each: Scene) -> None:
     # Tolerances of 1e-13 a step, over some hundreds; a standing knee makes a deviation e-fold in 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
@@ -198,15 +218,13 @@ def heavier(own: Mechanism) -> Mechanism:
 
 
 @pytest.mark.parametrize("wrong", WRONG)
-@pytest.mark.parametrize(
-    "each", [each for each in SCENES if each.name != "pinned_body_free"], ids=lambda each: each.name
-)
+@pytest.mark.parametrize("each", [each for each in SCENES if each.name != "pinned_body_free"], ids=name_of)
 def test_forces_of_another_mechanism_are_no_forces_of_the_scene(each: Scene, wrong: str) -> None:
     mechanism, motion, _, change = known(each)
     assert off_newton(*WRONG[wrong](mechanism, motion, change)) > 10 * NEWTON
 
 
-@pytest.mark.parametrize("each", SCENES, ids=lambda each: each.name)
+@pytest.mark.parametrize("each", SCENES, ids=name_of)
 def test_a_body_turned_or_sped_by_a_thousandth_is_seen_at_its_joints(each: Scene) -> None:
     mechanism, motion, *_ = known(each)
     turn = 1e-3 * np.array([0.0, 0.0, 1.0])
