@@ -16,7 +16,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 # The longest, each of which would keep one worker busy after the others have ended.
 FIRST = (
-    *("third_party", "site_in_browser", "cluster", "wrong_models", "any_rows", "wheel", "lagrange_compiled"),
+    *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
     *("other_elements", "other_engines", "conformance", "without_engines"),
 )
 

@@ -382,15 +382,6 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
     assert line.outcome == "**diverged**: not finite from 5 s"
 
 
-def test_an_experiment_of_which_no_task_was_run_says_so():
-    page = replace(skate.PAGE, figures=lambda material: {})
-    for answers, waiting in (({}, True), ({task: still(task) for task in all_tasks(page)}, False)):
-        text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
-        section = text.split("### The sleigh run backwards")[1].split("###")[0]
-        assert "exact motion" in section
-        assert ("Not run yet." in section) == waiting
-
-
 def test_a_referee_that_fails_is_named_and_the_others_rule():
     first, second = referees.TASKS[0], referees.TASKS[-1]
     lost: list[str] = []

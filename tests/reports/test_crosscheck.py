@@ -72,19 +72,10 @@ def test_what_an_engine_that_is_not_installed_leaves_out_is_skipped_by_its_extra
         test_the_grid_has_every_scene_and_method_of_the_baseline(request)
 
 
-def test_the_grid_has_every_scene_of_every_page():
-    assert {case.scene for case in GRID} == {scene for page in PAGES for scene in page.scenes}
-    assert GRID
-
-
 @pytest.mark.parametrize("scene", [pytest.param(scene, id=scene.name) for scene in SCENES])
 def test_every_scene_of_the_list_is_taught_by_one_page_with_its_own_numbers(scene: Scene):
     assert not untaught([scene])
     assert [page.name for page in PAGES if scene in page.scenes] == [present(page_of(scene)).name]
-
-
-def test_a_page_teaches_only_scenes_of_the_list():
-    assert {scene for page in PAGES for scene in page.scenes} == set(SCENES)
 
 
 def test_a_scene_that_no_page_teaches_is_named():

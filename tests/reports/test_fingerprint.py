@@ -20,7 +20,7 @@ from engines.registry import INSTALLED
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model import fingerprint as fingerprint_module
 from reports.model.cells import Cell
-from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_behind, modules_of, with_required
+from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_of, with_required
 from reports.model.measure import blank
 from reports.run.store import Store
 from tests.toys import Disc, FailingToy, Toy
@@ -157,12 +157,6 @@ def test_what_an_engine_holds_counts_wherever_it_holds_it(theirs):
     assert changed(path, replace(inner, settings={"base": Toy(), "other": inner}))
     assert not changed(path, Around("theirs"))
     assert changed(path, Extrapolated(inner, "extended", (1, 2), (2,)))
-
-
-def test_the_classes_that_an_engine_derives_from_count(theirs):
-    base = type(theirs[1])
-    derived = type("Derived", (base,), {"__module__": "derived"})
-    assert {"derived", "theirs.plugin"} <= modules_behind(derived()) & modules_behind((derived,))
 
 
 def pieces(*values: Any) -> set[str]:

@@ -3,27 +3,39 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from engines import Unsupported
 from engines.lagrange import Lagrange
+from engines.registry import VARIANTS
+from reference.chapter.centrodes import Centrodes
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
-from reference.scenes.pendulum.scenes import LinkPendulum
-from reports.cli.selection import QUICK_MOST, choose_cells
-from reports.model.cells import Cell, estimated_seconds
-from reports.model.measure import measure
+from reference.scenes.pendulum.link import BarPendulum
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
+from reports.cli.selection import QUICK_MOST, BadInput, choose_cells, steps_per_sample
+from reports.model import measure as measuring
+from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, estimated_seconds, sweep_cells
+from reports.model.measure import measure, repeated_stepping
+from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.model.scaling_fit import series_of
+from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
+from reports.pages.centrodes.page import returned
 from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
 from reports.pages.scaling.experiments import BandedChain
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, crossing
 from reports.pages.skate import page as skate
+from reports.pages.skate.page import constructions
+from reports.write.rows import Rows
+from tests.rows import falling, row_of, table
+from tests.toys import Disc, Plain, Toy
 
 
 def links(cell: Cell) -> int:
@@ -109,3 +121,199 @@ def test_the_page_is_whole_with_rows_and_without(material):
     for method in {row.method for row in material.rows.values()}:
         assert files["scaling.md"].count(f"| {method} |") == 3, method
     assert "Nothing was run yet" in render_page(PAGE, Material({}), "the command")["scaling.md"]
+
+
+def test_a_power_law_is_found_at_the_large_end_only():
+    sizes = [1, 10, 100, 200, 400]
+    assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
+    assert exponent(sizes, [n**2 if n < 100 else 1e2 * n for n in sizes]) == (pytest.approx(1.0), 100, 400)
+    assert LAST == 3
+    assert exponent(sizes, [math.nan, 7, math.nan, 14, 0])[1:] == (10, 200)
+    assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
+
+
+SERIES = Series("pymunk", "tuned", tuple(Point(n, 1e-6 * n**2, 1e-3 * n, "finished") for n in (1, 10, 100)))
+
+
+def test_costs_and_errors_have_their_own_exponents():
+    assert cost_exponent(SERIES) == (pytest.approx(2.0), 1, 100)
+    assert error_exponent(SERIES) == (pytest.approx(1.0), 1, 100)
+    assert (SERIES.at(10), SERIES.at(7)) == (SERIES.points[1], None)
+
+
+@dataclass(frozen=True)
+class Chain(Disc):
+    """A toy with a number of links."""
+
+    links: int = 1
+
+
+def test_a_point_of_a_series_is_its_own_cell():
+    def cell(links, duration=0.2, every=1, variant="tuned"):
+        return Cell(Chain(links=links, duration=duration), Toy(variant), every, "growth", 10)
+
+    rows = {
+        cell(100): row_of("toy tuned", cpu=7e-3, angle=1.3e-3),
+        cell(10): row_of("toy tuned", cpu=3e-3, angle=1.1e-3),
+        cell(1000, 0.01): row_of("toy tuned", cpu=5e-3, angle=1.7e-3),
+        cell(2000, 0.01, 2): row_of("toy tuned", cpu=11e-3, angle=9.0, outcome=Outcome.SATURATED),
+        cell(50): row_of("toy tuned", cpu=13e-3, angle=9.0, outcome=Outcome.TORN),
+        cell(10, variant="other"): row_of("toy other", cpu=17e-3, angle=1.9e-3),
+    }
+    tuned, other = series_of(rows, 0.2)
+    assert (tuned.method, other.method) == ("toy tuned", "toy other")
+    assert [p.size for p in tuned.points] == [10, 50, 100, 1000, 2000]
+    # A step is 0.02 s, or 1e-3 s, or half of that: CPU seconds of a simulated second times the step.
+    assert [p.step for p in tuned.points] == pytest.approx([6e-5, math.nan, 1.4e-4, 5e-6, 5.5e-6], nan_ok=True)
+    # What only ran for its cost has no error, and what failed has none either.
+    assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
+    assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
+    assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
+
+
+def test_a_crossing_is_where_the_first_becomes_the_dearer():
+    def line(*costs):
+        return Series(
+            "e", "v", tuple(Point(n, c, math.nan, "finished") for n, c in zip((1, 10, 100), costs, strict=True))
+        )
+
+    assert crossing(line(1, 2, 9), line(3, 3, 3)) == (10, 100)
+    assert crossing(line(1, 4, 9), line(3, 3, 3)) == (1, 10)
+    assert crossing(line(9, 2, 1), line(3, 3, 3)) is None
+    assert crossing(line(1, 1, 1), line(3, 3, 3)) is None
+    assert crossing(line(9, 9, 9), line(3, 3, 3)) is None
+    assert crossing(None, line(1, 1, 1)) is None
+
+
+class Clock:
+    """A process time that goes on by what it is told."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(measuring.time, "process_time", lambda: self.now)
+
+
+@dataclass(frozen=True)
+class Slow(Plain):
+    """Builds and steps in the times of two lists."""
+
+    clock: Clock
+    builds: list
+    steps: list
+    variant: str = "slow"
+    name: str = "toy"
+
+    def build(self, mechanism, dt) -> Any:
+        self.clock.now += self.builds.pop(0)
+
+        def run(samples, every):
+            seconds = self.steps.pop(0)
+            self.clock.now += seconds
+            return SimpleNamespace(stepping=seconds)
+
+        return run
+
+
+def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_is_not_repeated(monkeypatch):
+    clock = Clock(monkeypatch)
+    engine = Slow(clock, [4e-3, 2e-3, 3e-3, 3e-3, 9e-3], [4e-3, 2e-3, 3e-3, 3e-3, 5e-3])
+    found = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
+    assert found == (pytest.approx(2e-3), 5, pytest.approx(2e-3))
+    engine = Slow(clock, [5e-3] * 3, [2e-2, 3e-2, 1e-2])
+    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (2e-2, 2, 4e-3)  # 0.03 s spent
+    never = Slow(clock, [], [])
+    assert repeated_stepping(Cell(Disc(), never, 1), Disc().mechanism(), 0.5, 4e-3) == (0.5, 1, 4e-3)
+    assert measuring.process_seconds(lambda: setattr(clock, "now", clock.now + 3.0)) == (pytest.approx(3.0), None)
+
+
+def test_the_round_trip_is_the_worst_distance_and_the_rotation_looked_at():
+    # A wheel of 0.5 m on a line; its poses are wrong by 0.1 m at one end only.
+    theta = np.linspace(0.1, 1.1, 41)
+    pose = np.stack([-0.5 * theta, 0 * theta + 0.5, theta], axis=-1)
+    space = np.stack([-0.5 * theta, 0 * theta], axis=-1)
+    body = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
+    right = Centrodes(pose, space, body, 0.0)
+    distance, rotation = returned(right)
+    assert distance < 1e-6
+    low, high = right.rolling().limits
+    looked = theta[(theta >= low) & (theta <= high)]
+    assert rotation == pytest.approx(looked[-1] - looked[0])
+    pose[np.argmax(theta >= low), 1] += 0.1
+    assert returned(Centrodes(pose, space, body, 0.0))[0] == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_step_must_divide_the_sampling_to_ten_digits():
+    scene = Disc()
+    assert steps_per_sample(scene, scene.spacing / 7) == 7
+    assert steps_per_sample(scene, scene.spacing / 7 * (1 + 1e-10)) == 7
+    assert steps_per_sample(scene, scene.spacing) == 1
+    for wrong in (1.001, 0.999, 1 + 1e-7):
+        with pytest.raises(BadInput, match=r"does not divide .* --every 7"):
+            steps_per_sample(scene, scene.spacing / 7 * wrong)
+    with pytest.raises(BadInput, match="--every 1"):
+        steps_per_sample(scene, 1.0)
+    for step in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(BadInput, match="greater than zero"):
+            steps_per_sample(scene, step)
+
+
+@dataclass(frozen=True)
+class Costly(Toy):
+    """Says what a step costs [s]."""
+
+    cost: float = 3e-3
+
+    def step_cost(self, mechanism):
+        return self.cost
+
+
+def test_a_cells_step_is_the_duration_over_its_samples_and_steps_and_its_cost_that_of_all_steps():
+    assert Cell(Disc(duration=0.3), Toy(), 7).step == pytest.approx(0.3 / 30 / 7)
+    assert Cell(Disc(duration=0.3), Toy(), 7, samples=11).step == pytest.approx(0.3 / 11 / 7)
+    assert Cell(Disc(), Toy("tuned"), 3).label == "disc / toy tuned / 3.3e-03 s"
+    assert estimated_cost(Cell(Disc(), Costly(), 7)) == pytest.approx(20 * 7 * 3e-3)
+    assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
+
+
+@pytest.mark.parametrize("engine", VARIANTS, ids=lambda engine: f"{engine.name} {engine.variant}")
+def test_a_step_costs_more_with_more_bodies(engine):
+    costs = [engine.step_cost(scene.mechanism()) for scene in (BarPendulum(), TenLinks(), HundredLinks())]
+    assert 0 < 3 * costs[0] < costs[1]
+    assert 9 * costs[1] < costs[2]
+
+
+def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
+    assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300, 1000))
+    cells = sweep_cells((Disc(),), (Toy(),), FULL)
+    # 20 samples at 50 us a step: 0.7 s are 700 steps a sample.
+    assert [cell.every for cell in cells] == [1, 3, 10, 30, 100, 300]
+    assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Toy(), 1000))
+    dear = sweep_cells((Disc(),), (Costly(cost=10.0),), FULL)
+    assert [cell.every for cell in dear] == [1]
+    # The quick steps may take ten times as long: 20 * 10 steps of 30 ms are 6 s.
+    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(cost=3e-2),), FULL)] == [1, 3, 10]
+
+
+def test_the_row_of_a_step_is_the_nearest_by_ratio():
+    rows = [row_of("toy x", step=step) for step in (1e-2, 1e-3, 1e-4)]
+    near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
+    assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
+    assert not Rows([]).near(1e-3)
+
+
+def test_constructions_are_told_at_the_compared_step_best_first():
+    rows = [
+        *falling("pymunk b", (3e-2, 3e-4, 3e-6), "position", cpu=7e-3),
+        *falling("pymunk a", (1e-2, 1e-4, 1e-6), "position"),
+        row_of("pymunk c", outcome=Outcome.UNSUPPORTED, position=math.nan),
+        row_of("pymunk d", step=1e-3, outcome=Outcome.TORN, position=2.0),
+    ]
+    head, *body = table(constructions(rows))
+    assert [line[:2] for line in body] == [
+        ["pymunk a", "1.0e-6"], ["pymunk b", "3.0e-6"], ["pymunk d", "**torn** 2"], ["pymunk c", "can't be built"],
+    ]  # fmt: skip
+    second = dict(zip(head, body[1], strict=True))
+    told = [second[name] for name in ("slip [m/s]", "energy [relative]", "reaction [relative]", "CPU [ms/s]")]
+    assert told == ["4.7e-3", "5.3e-3", "5.9e-3", "7"]
+    assert body[1][-1].startswith("2.00 (±")
+    assert body[2][-1] == "wrong at every step"

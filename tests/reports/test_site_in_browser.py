@@ -170,7 +170,7 @@ BY_NAME = {lesson.name: lesson for lesson in LESSONS}
 APART = {"gears": 1e-2, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["as shipped", "another place"])
+@pytest.mark.parametrize("other", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["moved", "as shipped"])
 @pytest.mark.parametrize(("lesson", "index"), LIVE)
 def test_the_engines_in_the_page_give_what_python_gives(running, lesson, index, other):
     live = BY_NAME[lesson].live[index]
@@ -285,8 +285,12 @@ def test_the_page_names_by_how_much_its_engines_differ_from_pythons(running, fil
     assert float(page.evaluate("document.getElementById('live').dataset.apart_mujoco")) < 1e-12
 
 
-def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened):
-    for name in sorted(each for each in files if each.endswith(".html") and not each.startswith("reference/")):
+@pytest.mark.parametrize("each", [4, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, each):
+    """Every lesson, and of the others each fourth: pages of one kind have one template; the slow test opens all."""
+    names = sorted(name for name in files if name.endswith(".html") and not name.startswith("reference/"))
+    lessons = [name for name in names if name.startswith("lessons/")]
+    for name in dict.fromkeys([*lessons, *names[::each]]):
         page = opened(name, viewport=PHONE)
         assert page.title()
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")

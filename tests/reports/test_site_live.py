@@ -24,7 +24,7 @@ from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reports.site.drawn import demanded, loose, measure_of, opened, place_of
+from reports.site.drawn import demanded, loose, opened, place_of
 from reports.site.embed import forces
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
@@ -202,11 +202,6 @@ def test_friction_that_is_demanded_is_that_of_the_rolling_body():
     pulled = demanded(np.array([[1.0, 2.0], [1.0, -1.0]]))
     assert pulled[0] == 0.5
     assert np.isnan(pulled[1])
-
-
-def test_the_error_of_a_mechanism_on_skates_is_that_of_its_place():
-    assert measure_of(ChaplyginSleigh().mechanism()) == "position"
-    assert measure_of(DrivenFourBar().mechanism()) == "angle"
 
 
 def test_stored_rows_are_series_of_steps_and_errors():

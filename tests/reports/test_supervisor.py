@@ -16,10 +16,10 @@ from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.run import supervisor, worker
 from reports.run.running import run_cells
 from reports.run.supervisor import WorkersLost, supervise
-from tests.reports.rough_toys import ACTIONS, RoughToy, act, dies, helpers, spoiled
+from tests.reports.rough_toys import RoughToy, act, dies, helpers, spoiled
 from tests.toys import Disc, Toy
 
-fcntl = pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
+pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
 # What becomes of each, and a part of its sentence.
 ENDS = {
@@ -219,11 +219,6 @@ def test_a_system_without_room_for_processes_is_waited_for_and_told_in_one_line(
 def test_exit_codes_are_told_from_each_other(code, outside, words):
     assert from_outside(code) == outside
     assert describe_exit(code) == words
-
-
-def test_every_action_is_tried():
-    named = {"well", "short sleep", "nap", "kill once", "segfault once"}
-    assert set(ACTIONS) == set(ENDS) | LEAVES | named | {name for name in ACTIONS if name.startswith("held ")}
 
 
 def finest_tick(_):

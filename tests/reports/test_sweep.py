@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from reports.model.cells import FULL, Cell
-from reports.model.convergence import Verdict, by_method, fit, groups, judged, sweeps
+from reports.model.convergence import Verdict, by_method, fit, judged, sweeps
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 from reports.write.rows import Rows
 from reports.write.unmeasured import UNMEASURED
-from tests.rows import falling, row, row_of
+from tests.rows import falling, row_of
 from tests.toys import Disc, Toy
 
 STEPS = np.array([1e-2 / every for every in FULL])
@@ -170,14 +170,6 @@ def test_each_quantity_has_its_own_rounding():
         for last, verdict in ((0.9 * q.rounding, Verdict.ROUNDING), (1.1 * q.rounding, Verdict.FALLS)):
             found = sweeps(falling("a x", (1e4 * last, 1e2 * last, last), q.name))
             assert by_method(found, q.name)["disc", "a", "x"].verdict is verdict, q.name
-
-
-def test_groups_go_from_coarse_to_fine_and_leave_out_what_is_no_sweep():
-    rows = [row_of("a x", step=1e-3), row_of("b x"), row_of("a x", step=1e-1), row_of("a x", purpose="map")]
-    assert {key: [r.step for r in members] for key, members in groups(rows).items()} == {
-        ("disc", "a", "x"): [1e-1, 1e-3],
-        ("disc", "b", "x"): [row().step],
-    }
 
 
 def judgements(*errors: float, quantity: str = "angle") -> list[str]:

@@ -13,7 +13,6 @@ import pytest
 
 from engines import Unsupported, mujoco, pymunk
 from reference.scenes.catalogue import SCENES
-from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.gate.prediction import all_tasks
 from reports.model import fingerprint
@@ -217,14 +216,6 @@ def test_an_engine_that_is_built_while_a_page_is_written_is_noticed(monkeypatch)
     with pytest.raises(AssertionError, match="while a page is written"):
         page.words(Material({}))
     assert asked == ["Toy"]
-
-
-def test_motions_for_pictures_leave_out_what_was_not_run_or_failed():
-    sound, failed, never = (motion(variant).cell for variant in ("", "refuse", "raise"))
-    material = Material({}, {Motion(cell): answered(Motion(cell)) for cell in (sound, failed)})
-    found = material.motions([sound, failed, never])
-    assert set(found) == {sound}
-    assert isinstance(found[sound], Trajectory)
 
 
 def test_a_path_is_drawn_for_each_motion_that_was_kept():
