@@ -16,24 +16,20 @@ from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
-from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.scaling_fit import Point, Series
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
-from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling_charts
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
-from reports.plots.mechanisms import PALEST, Strip, outline, path, stroboscope
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
 from tests.drawn import annotation, handles
 from tests.mechanisms import four_bar, pendulum
-from tests.present import present
 from tests.rows import falling, row_of
 from tests.toys import Disc
 
@@ -287,30 +283,6 @@ def test_configurations_have_each_pose_under_its_title_and_methods_over_them_whe
     assert words == ["truth", "wrong", "right: not visibly off"]
 
 
-def test_an_outline_has_further_points_in_order_along_the_body_and_a_path_those_of_the_truth():
-    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
-    found = outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
-    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
-    found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
-    assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
-
-
-def test_a_stroboscope_has_every_pose_of_its_scene_the_last_in_full_ink():
-    ends = {"disc": ((1.0, 0.0),)}
-    strip = Strip(Disc(rate=2.0, duration=1.0), "Turning", 3, ends=ends, trace=("disc", (0.0, 1.0)))
-    [panel] = stroboscope((strip,), columns=1).axes
-    bars = [line for line in panel.get_lines() if line.get_color() == LIGHT.ink]
-    for line, angle in zip(bars, (0.0, 1.0, 2.0), strict=True):
-        points = np.asarray(line.get_xydata(), dtype=float)
-        assert points[:2] == pytest.approx(np.array([[0, 0], [math.cos(angle), math.sin(angle)]]), abs=1e-12)
-    strengths = [present(line.get_alpha()) for line in bars]
-    assert strengths == sorted(strengths)
-    assert (strengths[0], strengths[-1]) == (PALEST, 1.0)
-    [trace] = [line for line in panel.get_lines() if line.get_color() == LIGHT.second]
-    points = np.asarray(trace.get_xydata(), dtype=float)
-    assert points[[0, -1]] == pytest.approx(np.array([[0.0, 1.0], [-math.sin(2.0), math.cos(2.0)]]))
-
-
 def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_colour():
     near = [[0.0, 0.0], [1.0, 2.0]]
     wrong = [[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]]
@@ -353,21 +325,6 @@ def test_friction_is_that_of_the_scenes_law_with_each_limits_instant():
         hops = [] if scene.hop is None else [f"hops {scene.hop:.3f} s"]
         assert told == sorted([*hops, *(f"slips {s:.3f} s" for s in slips.values() if s is not None)])
         assert panel.get_xlim() == (0, scene.duration)
-
-
-def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_truths_rates():
-    scene = EllipticGears()
-    *pictures, rates = rolling_drawings.draw_gears(scene).axes
-    turn = 2 * math.pi / scene.turning_rate
-    for index, panel in enumerate(pictures):
-        t = (0.15 + index) * turn / 4
-        assert panel.get_title(loc="left") == f"t = {t:.2f} s"
-        for gear, pose in enumerate(scene.motion([t]).pose[0]):
-            assert has(panel, [[2 * scene.major * gear, 0.0], pose[:2]])
-    first, second = lines(rates)
-    truth = scene.motion(first[:, 0]).twist[:, :, 2]
-    assert first[:, 1] == pytest.approx(truth[:, 0])
-    assert second[:, 1] == pytest.approx(truth[:, 1])
 
 
 def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():

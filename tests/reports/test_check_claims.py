@@ -144,13 +144,6 @@ def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, s
     assert f"off the ideal motion by 0.008; at a step of {10 / 2 ** (len(sizes) - 1):.3g} ms" in told
 
 
-def test_joints_that_are_coordinates_are_not_called_soft(tmp_path):
-    hinged = re.sub(r"<equality>.*</equality>", "", FOUR_BAR)
-    found = found_in(tmp_path, hinged, duration=0.1)
-    assert "Softness: none. The joints are coordinates here, which can't part." in source(found)
-    assert found.parts.softness == 0
-
-
 def test_the_joint_that_opens_most_is_named_with_its_gap_and_time(soft):
     mechanism, t = soft.reading.mechanism, soft.own.t
     gap = np.abs(mechanism.gap(soft.own.pose, t))

@@ -25,9 +25,9 @@ from reports.model.errors import (
     root_mean_square,
     usable_samples,
 )
-from reports.model.measure import Measurement, blank, measure
+from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
-from tests.rows import row, row_of
+from tests.rows import row
 from tests.toys import Disc, Plain, Toy
 
 TIMES = np.array([0.0, 0.1, 0.2, 0.3])
@@ -228,30 +228,6 @@ def test_no_two_fields_of_the_row_by_hand_share_a_number():
     assert len({f"{value:.1e}" for value in numbers if isinstance(value, float)}) == sum(
         isinstance(value, float) for value in numbers
     )
-
-
-def test_a_blank_row_says_what_its_cell_is():
-    cell = Cell(Disc(rate=3.0), Toy("tuned", factor=5.0), 7, "failure", 11)
-    found = blank(cell, Outcome.ABORTED, "a sentence")
-    said = {
-        "key": cell.key,
-        "purpose": "failure",
-        "scene": "disc",
-        "parameters": "Disc(rate=3.0, duration=0.2, horizon=0.2)",
-        "engine": "toy",
-        "variant": "tuned",
-        "settings": "Toy(variant='tuned', factor=5.0, power=2.0, plateau=0.0, name='toy')",
-        "every": 7,
-        "samples": 11,
-        "step": 0.2 / 11 / 7,
-        "outcome": "aborted",
-        "sentence": "a sentence",
-    }
-    found = found.as_dict()
-    assert {name: found.pop(name) for name in said} == said
-    # Nothing else is known: no number, no count.
-    assert all(value == 0 if isinstance(value, int) else math.isnan(value) for value in found.values())
-    assert row_of("toy tuned").method == "toy tuned"
 
 
 def test_every_field_of_a_measured_row_is_its_own():

@@ -109,23 +109,6 @@ def test_its_numbers_are_those_of_the_rows_that_it_names():
             )
 
 
-@pytest.mark.parametrize(
-    ("name", "scene", "method", "quantity"),
-    [
-        ("spring", "free_four_bar", "mujoco RK4 alone", "angle"),
-        ("luck", "spinning_four_bar", "mujoco default", "angle"),
-        ("contact", "rolling_ellipse", "pymunk tuned", "angle"),
-        ("contact", "rolling_ellipse", "mujoco default", "angle"),
-    ],
-)
-def test_the_limit_that_it_tells_is_near_the_finest_error(name, scene, method, quantity):
-    rows = own_rows(changed(lambda cell, row: row)).of(scene, method)
-    limit, finest = rows.sweep(quantity).plateau, rows[-1]
-    assert number(limit) in told()[name].text
-    # All of these end flat: half a decade changes them by less than a twentieth.
-    assert getattr(finest, quantity) == pytest.approx(limit, rel=0.05)
-
-
 def times(factor, *fields, scene, method, purpose="sweep", steps=lambda step: True):
     """Rows of one method with some errors multiplied."""
 

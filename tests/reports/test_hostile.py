@@ -213,42 +213,12 @@ COMMANDS = {
     for name, command in sorted(vars(typer.main.get_command(app))["commands"].items())
 }
 FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # and what a shell would split
-WORDS = (
-    *FREE,
-    *[".", "..", "/", "/dev/null", "/dev/zero", "-", "--", "-1", "0", "1e400", "nan", "-inf", "1e-320"],
-    *("9" * 30, "mujoco tuned"),
-    *[
-        "free_four_bar",
-        "FREE",
-        "pymunk",
-        "lagrange",
-        "default",
-        "nope",
-        "a=b",
-        "=",
-        "crank=",
-        "crank=0",
-        "x.py",
-        "x.py:A",
-        "a:b:c",
-        "reference:SCENES",
-    ],
-    *[
-        "os:path",
-        "model.xml",
-        "<b>",
-        "[bold]",
-        "*",
-        "'",
-        '"',
-        "%s",
-        "{0}",
-        "tcp://127.0.0.1:1",
-        "local:0",
-        "pymunk==0",
-        "CON",
-    ],
-)
+SEVERAL = """
+. .. / /dev/null /dev/zero - -- -1 0 1e400 nan -inf 1e-320 free_four_bar FREE pymunk lagrange default nope a=b = crank=
+crank=0 x.py x.py:A a:b:c reference:SCENES os:path model.xml <b> [bold] * ' " %s {0} tcp://127.0.0.1:1 local:0 pymunk==0
+CON
+"""
+WORDS = (*FREE, *SEVERAL.split(), "9" * 30, "mujoco tuned")
 # A command that is right would do its work: each has something that no command takes, or that is nothing.
 WRONG = ("nope_nope", "nope_nope", "nope_nope", "--nonsense")
 

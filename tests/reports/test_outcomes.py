@@ -97,25 +97,6 @@ def test_a_drive_that_falls_behind_is_torn():
         assert found.drive_gap == pytest.approx(lag)
 
 
-@pytest.mark.parametrize(
-    ("variant", "outcome"),
-    [
-        ("flip", "branch flip"),
-        ("blind", "diverged"),
-        ("nan", "diverged"),
-        ("tear", "torn"),
-        ("reset", "reset"),
-        ("saturate", "saturated"),
-        ("refuse", "refused"),
-        ("unsupported", "unsupported"),
-    ],
-)
-def test_a_toy_that_fails_as_it_says_is_told_apart(variant, outcome):
-    found = measure(Cell(DISC, FailingToy(variant), 1), repeat=False)
-    assert found.outcome == outcome
-    assert found.sentence
-
-
 def test_changes_of_assembly_are_counted():
     found = measure(Cell(DISC, FailingToy("flip"), 1), repeat=False)
     assert (found.flips, found.sentence) == (1, "1 change of assembly that the truth lacks")

@@ -19,7 +19,7 @@ from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
 from reference.checks import InvalidMechanism
 from reports.check.checked import check
-from reports.check.judging import often, refuse_disagreement
+from reports.check.judging import refuse_disagreement
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
@@ -116,15 +116,6 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     assert any("its force is limited" in note.reason for note in reading.notes)
     without = read_mjcf(reading.model.scene.model, reading.model.scene.data, ("forcelimit",))  # type: ignore[attr-defined]
     assert check(without, "servo", 1.0, 1e-2).met
-
-
-def test_motors_that_exceed_their_joints_limit_only_together_are_refused_at_the_start():
-    motors = '<motor joint="a"/>' * 2
-    reading = mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.5, joint='actuatorfrcrange="-1.2 1.2"')
-    t, turn = judged_turn(reading)
-    np.testing.assert_allclose(np.abs(turn), 1.0 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match=r"^joint 'a' reaches the limit of its force: so it does at the start"):
-        mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.7, joint='actuatorfrcrange="-1.2 1.2"')
 
 
 def test_a_constant_force_beyond_its_limit_is_read_with_the_limit():
@@ -232,18 +223,6 @@ def test_a_hinge_driven_by_its_armature_turns_as_mujoco_turns_it(axis):
 def test_a_model_that_may_sleep_is_refused_by_name():
     with pytest.raises(Unsupported, match=r"^flag sleep: .* give --without sleep$"):
         mjcf(WHEEL, flags='sleep="enable"')
-
-
-def test_what_is_met_between_two_samples_is_seen():
-    """A pendulum turns back in the middle of two samples, a hair beyond its limit."""
-    t, height = np.array([0.0, 1.0]), np.array([[[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]]])
-    twist = np.array([[[0.0, 4.0, 0.0]], [[0.0, -4.0, 0.0]]])
-    from reference.trajectory import Trajectory
-
-    times, pose, rates = often(Trajectory(t, height, twist, np.zeros((2, 0)), 0.0), 10)
-    # The parabola 4 t - 4 t^2, with its rate.
-    np.testing.assert_allclose(pose[:, 0, 1], 4 * times - 4 * times**2, atol=1e-12)
-    np.testing.assert_allclose(rates[:, 0, 1], 4 - 8 * times, atol=1e-12)
 
 
 # ---------------------------------------------------------------------------------------------------------- pymunk

@@ -32,7 +32,6 @@ from reports.pages.rolling.methods import CONTACTS
 from reports.pages.skate import experiments as skate_failures
 from reports.pages.skate import methods as slipping
 from reports.pages.slider_crank import experiments as slider_crank
-from reports.pages.slider_crank import experiments as slider_crank_failures
 from reports.pages.wheels import experiments as wheels
 from reports.write.experiments import told_remark
 from reports.write.unmeasured import MARK
@@ -276,13 +275,6 @@ def test_a_hundred_links_at_large_steps() -> None:
         assert max(row.energy for row in found[name]) < 0.05
     assert 2.5 < max(row.gap for row in found["pymunk default"] + found["pymunk tuned"]) < 3.5  # [m], as are links
     assert all(comparable(rows)[-1] for rows in found.values())
-
-
-def test_a_groove_at_a_rods_end_is_wrong_at_every_step_and_of_first_order_with_the_gap_closed() -> None:
-    found = methods(slider_crank_failures.FAILURES, "The rod's end in a groove")
-    shipped, closed = (found[f"pymunk {name}, GrooveJoint at the rod's end"] for name in ("default", "tuned"))
-    assert stays(shipped)
-    assert all(8 < coarse.angle / fine.angle < 13 for coarse, fine in pairwise(closed))
 
 
 def test_a_ring_hardened_too_far_has_its_joint_shut_and_more_energy_than_there_was() -> None:

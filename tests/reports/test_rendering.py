@@ -15,8 +15,8 @@ from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.convergence import Verdict
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material, Observation, Page
-from reports.pages.index import render_index, render_readme
+from reports.model.page import Material, Page
+from reports.pages.index import render_readme
 from reports.pages.rendering import render_all, render_page
 from reports.write.page_tables import overviews
 from reports.write.provenance import machine
@@ -99,50 +99,6 @@ def test_a_page_judges_by_the_quantity_that_it_compares():
         page = replace(PAGE, scenes=(DISC,), quantity=quantity)
         text = render_page(page, Material(rows), "the command")["base_data.md"]
         assert set(re.findall(r"^- \*\*(plateau|converged)\*\*: ", text, re.MULTILINE)) == {outcome}
-
-
-def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
-    torn, sound = (Cell(DISC, Toy(name), 1, "failure") for name in ("torn", "sound"))
-    rows = {
-        torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
-        sound: row_of("mujoco sound", sentence="", angle=1.9e-5, step=0.1),
-    }
-    by_hand = Observation("by hand", "a setting", "0.02 rad")
-    first = Failure("First", "It should turn.", (torn,), lambda material: [by_hand])
-    second = Failure("Second", "So should this.", (sound,), columns=("energy",))
-    never = Failure("Third", "Never run.", (Cell(DISC, Toy("never"), 1, "failure"),))
-    page = replace(PAGE, scenes=(DISC,), failures=(first, second, never))
-    files = render_page(page, Material(rows), "the command")
-    text = files["base_data.md"]
-    one, two, three = (
-        text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second", "Third")
-    )
-    assert "| mujoco torn | - | **torn** 1.7 m |" in one
-    assert "**torn**: it tore" in one
-    assert "| by hand | a setting | 0.02 rad |" in one
-    assert "sound" not in one
-    assert "| mujoco sound | - | 0.1 | **finished** | 5.3e-3 |" in two
-    assert "|" not in three
-    lines = files["base.md"].split("## Where methods fail")[1].split("\n- ")
-    assert [line.split("**")[1] for line in lines[1:]] == [
-        f"[{name}](base_data.md#{name.lower()})" for name in ("First", "Second", "Third")
-    ]
-    assert "Of 1 run: 1 **torn**." in lines[1]
-    assert "Of 1 run: 1 ended with an energy error of 5.3e-3 relative." in lines[2]
-    assert "not run yet." in lines[3]
-
-
-def test_index_and_readme_tell_the_scenes_of_the_pages():
-    pages = {PAGE: Material(CELLS)}
-    index = render_index(pages, "the command")
-    assert "[disc](base.md), rad" in index
-    assert "[other disc](base.md), rad" in index
-    assert "- [Discs](base.md). One disc." in index
-    assert all(f"- **{outcome}**: {outcome.meaning}" in index for outcome in Outcome)
-    readme = render_readme(README, pages)
-    assert "[disc](reports/results/base.md), rad" in readme
-    assert "other disc" not in readme
-    assert "order 2.0" in readme
 
 
 def test_the_readme_is_the_same_after_a_run_that_took_another_time():

@@ -112,11 +112,6 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
             assert "/tmp" not in text
 
 
-def test_no_two_roles_of_a_theme_share_a_colour():
-    for theme in (LIGHT, DARK):
-        assert len(set(vars(theme).values())) == len(vars(theme))
-
-
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 def test_ink_can_be_read_on_every_paper_it_stands_on(theme):
     def luminance(colour: str) -> float:
@@ -148,20 +143,12 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_large_ones
     ("words", "telling"),
     [
         (["run", "fuor_bar"], "four_bar"),
-        (["run", "--engine", "pymonk"], "pymunk"),
-        (["run", "--variant", "tunde"], "tuned"),
         (["run", "--every", "0"], "greater than or equal to 1"),
-        (["run", "--every", "2.5"], "--every"),
         (["run", "--step", "0.0033"], "does not divide"),
-        (["run", "--step", "-1"], "greater than zero"),
-        (["run", "--step", "nan"], "greater than zero"),
         (["run", "--limit", "0"], "greater than zero"),
-        (["show", "driven_fourbar"], "driven_four_bar"),
         (["show", "driven_four_bar"], "crosscheck run"),
         (["report"], "crosscheck run"),
-        (["bench", "fuor_bar"], "four_bar"),
         (["rnu"], "rnu"),
-        (["show"], "scene"),
         (["run", "--nonsense"], "--nonsense"),
     ],
 )

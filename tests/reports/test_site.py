@@ -25,7 +25,7 @@ from reports.cli.commands import invoke
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
-from reports.site.animated import PAUSE, animation, ffmpeg, film
+from reports.site.animated import PAUSE, animation, film
 from reports.site.build import MARKER, build, reference_pages, tasks
 from reports.site.embed import Shown, data, shown
 from reports.site.folder import compressed_size, refuse_strangers, write_site
@@ -364,11 +364,3 @@ def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, 
     with pytest.raises(refusal, match=re.escape(told)):
         invoke(["animate", *words])
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("mine.svg", "mine")]
-
-
-def test_mp4_is_written_by_the_program_of_a_package_where_none_is_installed(monkeypatch, tmp_path):
-    program = ModuleType("imageio_ffmpeg")
-    program.get_ffmpeg_exe = lambda: "/some/ffmpeg"  # pyright: ignore[reportAttributeAccessIssue]
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", program)
-    assert ffmpeg() == "/some/ffmpeg"

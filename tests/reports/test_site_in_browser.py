@@ -12,7 +12,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import mujoco as mujoco_package
 import numpy as np
 import pytest
 
@@ -27,7 +26,6 @@ from reports.site.folder import compressed_size, server, write_site
 from reports.site.lesson import Source
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import BIASES, IMPEDANCES, INTEGRATORS, SWEEPS, TIME_CONSTANTS, TOLERANCES, Live
-from reports.site.packages import MUJOCO
 from tests import RESULTS
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -35,7 +33,6 @@ if BROWSER is None:
     pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
 
-native: Any = mujoco_package  # its bindings carry no types
 PHONE = {"width": 390, "height": 844}
 
 
@@ -224,15 +221,6 @@ def test_a_faster_motion_is_the_same_path_sooner(running):
     assert np.abs(np.reshape(found["munk"], truth.shape) - python.pose).max() < 1e-12
 
 
-def test_a_smaller_step_has_a_smaller_error_and_one_sweep_a_larger(running):
-    page = running("four_bar")
-    found = [choose(page, 0, {"steps": step})["errors"] for step in (1, 3, 6)]
-    assert found[0]["munk"] > 3 * found[1]["munk"] > 9 * found[2]["munk"]
-    assert found[0]["mujoco"] > found[1]["mujoco"] > found[2]["mujoco"]
-    many = choose(page, 0, {"bias": 3, "iterations": 5})["errors"]["munk"]
-    assert choose(page, 0, {"bias": 3, "iterations": 0})["errors"]["munk"] > 3 * many
-
-
 def test_a_link_holds_the_sliders(running, opened):
     page = running("skate")
     choose(page, 0, {"offset": 1, "steps": 1, "iterations": 6, "munk": 1})
@@ -266,23 +254,6 @@ def test_buttons_move_the_sliders_and_say_what_should_happen(running, lesson):
         page.get_by_role("button", name="As shipped").click()
         assert errors_of(page) == before
         assert page.locator("#live .expected").inner_text() == ""
-
-
-def test_the_naive_skate_stays_wrong_at_every_step_and_the_groove_does_not(running):
-    page = running("skate")
-    naive = [choose(page, 0, {"munk": 0, "steps": step})["errors"]["munk"] for step in (3, 6)]
-    groove = [choose(page, 0, {"munk": 1, "steps": step})["errors"]["munk"] for step in (3, 6)]
-    assert naive[1] > 0.9 * naive[0] > 0.1
-    assert groove[1] < 0.2 * groove[0] < 0.1
-
-
-def test_the_page_names_by_how_much_its_engines_differ_from_pythons(running, files):
-    page = running("four_bar")
-    choose(page, 0, {})
-    told = page.inner_text("#live .apart")
-    assert f"MuJoCo {native.mj_versionString()} in Python" in told
-    assert f"MuJoCo {MUJOCO.version} in this page" in told
-    assert float(page.evaluate("document.getElementById('live').dataset.apart_mujoco")) < 1e-12
 
 
 @pytest.mark.parametrize("each", [4, pytest.param(1, marks=pytest.mark.slow)])
@@ -322,14 +293,6 @@ def test_a_motion_is_played_dragged_and_switched_by_keys_alone(opened):
     page.keyboard.press("Enter")
 
 
-def test_a_trap_shows_another_motion(opened):
-    page = opened("lessons/four_bar.html", reduced_motion="reduce")
-    assert page.locator("#figure-5 .legend li").count() == 5
-    page.get_by_role("button", name="Driven towards a dead centre").click()
-    assert page.locator("#figure-5 .legend li").count() == 3  # the truth, and two that were not run
-    assert "not run" in page.inner_text("#figure-5 .legend")
-
-
 def test_without_a_script_words_pictures_and_tables_are_there(opened):
     page = opened("lessons/four_bar.html", java_script_enabled=False)
     assert "Three bars and four pins" in page.inner_text("main")
@@ -356,17 +319,6 @@ def test_a_table_is_sorted_and_filtered(opened):
     head.click()
     assert table.locator("tbody tr td:first-child").all_inner_texts() != first
     assert table.locator("th").first.get_attribute("aria-sort") == "descending"
-
-
-def test_dark_and_light_can_be_chosen_and_are_kept(opened):
-    page = opened("index.html", color_scheme="light", reduced_motion="reduce")
-    paper = "getComputedStyle(document.body).backgroundColor"
-    light = page.evaluate(paper)
-    page.get_by_role("button", name="between light and dark").click()
-    dark = page.evaluate(paper)
-    assert dark != light
-    page.reload()
-    assert page.evaluate(paper) == dark
 
 
 def test_words_stand_out_from_the_paper(opened):

@@ -81,14 +81,6 @@ def test_skates_on_a_slope_agree_with_multipliers(scene):
     assert row.reaction < 1e-10
 
 
-def test_a_turning_skate_on_a_slope_stands_as_high_as_before_after_each_turn():
-    turns = 2 * math.pi * np.arange(4)
-    pose = SkateOnSlope(turning_rate=1.0, speed=0.5).motion(turns).pose[:, 0]
-    assert np.abs(pose[:, 1]).max() < 1e-12
-    # And goes sideways by half the pull times the square of the time of a radian, each radian.
-    assert pose[:, 0] == pytest.approx(0.5 * turns, abs=1e-12)
-
-
 def test_bad_skates_on_a_slope_are_refused():
     with pytest.raises(InvalidMechanism, match="skate_on_slope"):
         SkateOnSlope().motion([-1.0])
@@ -285,12 +277,3 @@ def test_the_round_trip_and_the_rate_of_the_page_are_as_exact_as_it_says():
     wrong = replace(curves, body=curves.body * 1.001)
     assert centrodes_page.round_trip(wrong) > 1e-5
     assert centrodes_page.agreement(wrong) > 1e-5
-
-
-def test_the_centre_tells_engines_apart_by_their_velocities():
-    engines = (mujoco.DEFAULT, mujoco.EXTENDED)
-    cells = [Cell(centrodes_page.DrivenFourBar(), engine, 1) for engine in engines]
-    material = Material({}, {Motion(cell): answered(Motion(cell)) for cell in cells})
-    centre = {cell.engine.variant: error for cell, error, *_ in centrodes_page.measured(material)}
-    assert set(centre) == {"default", "extended"}
-    assert centre["extended"] < 1e-2 * centre["default"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import io
 import math
 import os
 import platform
@@ -12,10 +11,8 @@ from dataclasses import fields
 from importlib import metadata
 
 import pytest
-from rich.console import Console
 
 from engines.lagrange import loading
-from reports.cli.terminal import print_table
 from reports.model.convergence import Sweep, Verdict, sweeps
 from reports.model.measure import TIMINGS, Measurement
 from reports.model.outcomes import Outcome
@@ -34,20 +31,14 @@ NAN = math.nan
     [
         (0.0, "0", 2),
         (1.234e-7, "1.2e-7", 2),
-        (-1.234e-7, "-1.2e-7", 2),
-        (0.25, "0.25", 2),
         (0.01, "0.01", 2),
         (0.00999, "1.0e-2", 2),
-        (12.0, "12", 2),
         (99.6, "100", 2),
         (100.0, "100", 2),
-        (123.4, "123", 2),
         (9999.0, "9999", 2),
-        (2e4, "2.0e4", 2),
         (math.nan, "-", 2),
         (math.inf, "∞", 2),
         (1.26e-4, "1e-4", 1),
-        (1.26e-4, "1.26e-4", 3),
         (0.1256, "0.126", 3),
     ],
 )
@@ -81,16 +72,12 @@ def sweep(verdict: Verdict, order: float = NAN, points: int = 0, plateau: float 
     ("found", "words"),
     [
         (sweep(Verdict.FALLS, 1.994, 4), "1.99 (±0.13, 4 points)"),
-        (sweep(Verdict.FALLS, 1.994, 2), "1.99 (2 points, unchecked)"),
         (sweep(Verdict.FALLS), "falls, 1.7e-5"),
         (sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5), "1.10 (±0.13, 3 points), plateau **2.3e-5**"),
-        (sweep(Verdict.PLATEAU, plateau=2.3e-5), "plateau **2.3e-5**"),
         (sweep(Verdict.ROUNDING, 3.9, 3), "3.90 (±0.13, 3 points), then rounding"),
-        (sweep(Verdict.ROUNDING), "rounding"),
         (sweep(Verdict.LEVELS, 1.1, 3), "1.10 (±0.13, 3 points), levels off at the finest step, best 1.7e-5"),
         (sweep(Verdict.GROWS), "grows as the step shrinks, best 1.7e-5"),
         (sweep(Verdict.ERRATIC), "erratic, best 1.7e-5"),
-        (sweep(Verdict.TOO_FEW), "not enough points, 1.7e-5"),
         (sweep(Verdict.TOO_FEW, best=NAN), "-"),
     ],
 )
@@ -313,13 +300,3 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert told.startswith("an architecture, 97 processors, ")
     assert platform.node() not in told
     assert "/" not in told.replace("w/", "")
-
-
-def test_a_table_on_the_terminal_has_its_columns_in_order_and_keeps_brackets():
-    out = io.StringIO()
-    rows = (("a x", "0.1"), ("b [y]", "0.01"))
-    print_table(Console(file=out, width=80), "A [b] title", ("method", "step [s]"), rows, 1)
-    lines = [line.translate(str.maketrans("┃│", "  ")).split() for line in out.getvalue().splitlines()]
-    title, head, *_, first, second = lines
-    assert [title, head] == [["A", "[b]", "title"], ["method", "step", "[s]"]]
-    assert [first, second] == [["a", "x", "0.1"], ["b", "[y]", "0.01"]]

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import Unsupported, mujoco, pymunk
+from engines import Unsupported
 from reference.scenes.catalogue import SCENES
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.gate.prediction import all_tasks
@@ -24,7 +24,7 @@ from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
 from reports.pages.rendering import render_page
 from reports.pages.skate.page import path_picture
 from reports.run import store as store_module
-from reports.run.running import missing, run_into, run_items
+from reports.run.running import missing, run_into
 from reports.run.store import Store
 from tests.present import present
 from tests.reports.rough_toys import RoughToy
@@ -224,8 +224,3 @@ def test_a_path_is_drawn_for_each_motion_that_was_kept():
     one = path_picture(Material({}, {Motion(cell): answered(Motion(cell))}))
     drawn = [sum(len(panel.get_lines()) for panel in picture.axes) for picture in (empty, one)]
     assert drawn[1] == drawn[0] + 2  # a path and the dot at its end
-
-
-def test_the_motion_of_an_engine_is_the_same_from_a_worker():
-    for task, answer in run_items([Motion(Cell(Disc(), engine, 3)) for engine in (pymunk.TUNED, mujoco.TUNED)]):
-        assert np.array_equal(answer.array("pose"), answered(task).array("pose"))

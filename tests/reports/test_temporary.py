@@ -105,13 +105,6 @@ def test_a_folder_for_sockets_has_a_path_that_a_socket_can_have(tmp_path, monkey
     assert not folder.exists()
 
 
-def test_all_folders_of_a_process_go_at_once(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "_own", {})  # of this process' own, its workers' stays
-    with temporary_folder(tmp_path), temporary_folder(tmp_path):
-        remove_all()
-        assert [*tmp_path.iterdir()] == []
-
-
 MODEL = """<mujoco><worldbody><body><joint axis="0 1 0"/><geom type="capsule" fromto="0 0 0 1 0 0" size=".02"/></body>
 </worldbody></mujoco>"""
 COMMANDS = [

@@ -17,7 +17,7 @@ from reports.cli.commands import invoke
 from reports.model.ending import BadInput, Broken
 from reports.model.outcomes import Outcome
 from reports.run import installed as installation
-from reports.run.installed import built, cache_folder, distributions_in, environment, installed, nearest_versions
+from reports.run.installed import built, distributions_in, installed, nearest_versions
 from reports.versions.column import VersionRequest, column, modules_in
 from tests.toys import Disc
 
@@ -217,12 +217,6 @@ def test_words_that_mean_nothing_are_one_line(words, told, here, monkeypatch):
 def test_the_nearest_versions_are_in_their_own_order():
     offered = ["3.9.0", "3.10.0", "3.8.1", "3.11.0", "3.2.0", "4.0.0", "4.0.1", "3.7.0"]
     assert nearest_versions("3.9.5", offered) == ["3.7.0", "3.8.1", "3.9.0", "3.10.0", "3.11.0", "4.0.0"]
-
-
-def test_the_cache_is_where_the_user_says(monkeypatch, tmp_path):
-    monkeypatch.setenv(installation.CACHE, str(tmp_path))
-    assert cache_folder() == tmp_path
-    assert environment(tmp_path, (Path("x"),))["PYTHONPATH"].split(os.pathsep) == [str(tmp_path), "x"]
 
 
 def wheel(folder: Path, version: str, error: float) -> Path:

@@ -18,7 +18,6 @@ from typing import Any
 import matplotlib
 import pytest
 
-from reports.write.templates import marks
 from tests import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -31,14 +30,6 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     assert re.fullmatch(r"largest angle error \d\.\de-\d\d rad after 1 s\n", said)
     # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6.
     assert float(said.split()[3]) < 1e-4
-
-
-def test_both_parts_are_written_and_none_tells_a_time():
-    told = {name: README.split(marks(name)[0])[1].split(marks(name)[1])[0] for name in ("findings", "overview")}
-    assert len(re.findall("^- ", told["findings"], re.MULTILINE)) == 10
-    assert "pymunk default" in told["overview"]
-    assert "mujoco extended" in told["overview"]
-    assert not re.search(r"(?<!at )(?<![\d.])[\d.]+ ms\b(?!\*\*)", told["overview"])  # "at 0.33 ms" is a step
 
 
 def git(folder, *words):
