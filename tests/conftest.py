@@ -4,7 +4,6 @@ import ast
 import os
 import signal
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -58,13 +57,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture
 def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands run what they run in this process: workers take seconds to start, and are the subject of other tests."""
+    from reports.gate import walk
     from reports.run import cluster, supervisor
+    from tests.toys import in_process
 
-    def supervised(work: Any, items: Any, *terms: Any, **named: Any) -> Any:
-        return ((item, work(item), "") for item in items)
-
-    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, supervised))
-    monkeypatch.setattr(supervisor, "supervise", supervised)  # for what commands import when they are called
+    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, in_process))
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # for what commands import when they are called
+    monkeypatch.setattr(walk, "supervise", in_process)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

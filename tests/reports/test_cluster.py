@@ -84,7 +84,7 @@ def untimed(row):
 
 
 def test_a_local_cluster_gives_the_same_rows_as_the_pool():
-    cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS]
+    cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS[::3]]
     cells += [Cell(Disc(), FailingToy(variant), 1) for variant in ("abort", "refuse", "raise")]
     with cluster("local:2") as own:
         there = {row.key: untimed(row) for row in run_cells(cells, supervised=own.supervise)}
@@ -127,7 +127,7 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(two_worke
     assert told == {1: "fine", 2: "fine"}
 
 
-@pytest.mark.parametrize("kills", [4, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
 def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers, tmp_path, kills):
     cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 1 + 30 * kills)]
     chance, killed, rows, over = random.Random(kills), [], [], threading.Event()

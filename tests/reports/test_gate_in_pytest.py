@@ -66,7 +66,7 @@ def suite(pytester):
     return pytester
 
 
-def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite):
+def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite, at_home):
     """A test of all verdicts is kept with it, and one of nothing is not."""
     suite.makepyfile(
         f"{SUITE}\ndef test_of_all(verdicts):\n    assert len(verdicts) == 1\n\ndef test_of_nothing(): pass\n"

@@ -29,7 +29,7 @@ from reports.run.store import Store
 from reports.run.supervisor import WorkersLost, supervise
 from tests import ROOT
 from tests.reports.rough_toys import RoughToy
-from tests.toys import FAILURES, Disc, FailingToy, Toy
+from tests.toys import FAILURES, Disc, FailingToy, Toy, in_process
 
 
 @pytest.fixture(scope="module")
@@ -59,10 +59,10 @@ def test_a_sentence_is_the_engines_own_or_tells_the_signal_and_the_last_words(fa
 def test_stored_cells_are_not_run_again_unless_asked(tmp_path):
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2)]
     with Store(tmp_path / "cells.sqlite") as store:
-        assert run_into(store, cells[:1]) == 1
-        assert run_into(store, cells) == 1
-        assert run_into(store, cells) == 0
-        assert run_into(store, cells, fresh=True) == 2
+        assert run_into(store, cells[:1], supervised=in_process) == 1
+        assert run_into(store, cells, supervised=in_process) == 1
+        assert run_into(store, cells, supervised=in_process) == 0
+        assert run_into(store, cells, fresh=True, supervised=in_process) == 2
         rows = store.get(cells)
     assert [rows[cell].every for cell in cells] == [1, 2]
 
@@ -285,7 +285,7 @@ def test_more_workers_than_cores_run_what_is_timed_first_and_alone(monkeypatch):
 
     def told(function, items, limit, workers, watch, wall, alone):
         rounds.append(([type(item).__name__ for item in items], workers, alone))
-        return supervise(function, items, limit, workers, watch, wall, alone)
+        return in_process(function, items)
 
     items = [Cell(Disc(), Toy(), 1), Where(1), Cell(Disc(), Toy(), 2, "map")]
     assert {item for item, _ in run_items(items, workers=3, supervised=told)} == set(items)

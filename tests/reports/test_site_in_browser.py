@@ -36,8 +36,15 @@ playwright = pytest.importorskip("playwright.sync_api", reason="playwright is no
 PHONE = {"width": 390, "height": 844}
 
 
+# A linkage, a skate and bodies that roll; the slow tests open the other lessons too.
+QUICK = ("four_bar", "skate", "rolling")
+
+
 @pytest.fixture(scope="module")
-def files(tmp_path_factory, request):
+def files(request):
+    """The site with the quick lessons and with those that a test that was selected asks for."""
+    given = (vars(item).get("callspec") for item in request.session.items)
+    wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
     four_bar = LESSONS[0]
     answers = {
@@ -45,7 +52,7 @@ def files(tmp_path_factory, request):
     } | {motion: answered(motion) for live in four_bar.live for motion in live.shipped().values()}
     cache = Path(request.config.cache.mkdir("site"))
     source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
-    return build(source)
+    return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
 
 
 SUFFIXES = (".md", ".svg", ".csv")
@@ -157,8 +164,20 @@ def python_of(live: Live, places: dict[str, int]) -> tuple[Scene, Engine, Engine
     return scene, munk, engine, step
 
 
-LIVE = [(lesson.name, index) for lesson in LESSONS for index, _ in enumerate(lesson.live) if lesson.name != "centrodes"]
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
+
+
+def marked(*asked: Any) -> Any:
+    """Parameters that begin with the name of a lesson: slow unless it is a quick one."""
+    return pytest.param(*asked, marks=() if asked[0] in QUICK else pytest.mark.slow)
+
+
+LIVE = [
+    marked(lesson.name, index)
+    for lesson in LESSONS
+    for index, _ in enumerate(lesson.live)
+    if lesson.name != "centrodes"
+]
 # By how much an engine in the page may differ from the same one in Python, relative to the motion's size. Both do the
 # same operations, though MuJoCo's releases differ, and compilers round some sums in another order: measured are 1e-17
 # to 1e-13. Coarse steps of a car that stands on contacts (5e-8), of a blade that does (2e-11), and of a crank with a
@@ -241,7 +260,7 @@ def test_a_link_chooses_the_motion_and_a_wrong_one_does_no_harm(opened):
     assert page.evaluate("document.querySelector('[name=\"0.crank\"]').value") == "2"
 
 
-@pytest.mark.parametrize("lesson", [lesson.name for lesson in LESSONS if lesson.live])
+@pytest.mark.parametrize("lesson", [marked(lesson.name) for lesson in LESSONS if lesson.live])
 def test_buttons_move_the_sliders_and_say_what_should_happen(running, lesson):
     page = running(lesson)
     for index, live in enumerate(BY_NAME[lesson].live):

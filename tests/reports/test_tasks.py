@@ -28,7 +28,7 @@ from reports.run.running import missing, run_into
 from reports.run.store import Store
 from tests.present import present
 from tests.reports.rough_toys import RoughToy
-from tests.toys import Disc, FailingToy, Toy
+from tests.toys import Disc, FailingToy, Toy, in_process
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
     results = []
     with Store(tmp_path / "cells.sqlite") as store:
         assert missing([*tasks, cell], store) == (*tasks, cell)
-        assert run_into(store, [*tasks, cell], done=results.append) == len(results) == 4
+        assert run_into(store, [*tasks, cell], done=results.append, supervised=in_process) == len(results) == 4
         assert run_into(store, [*tasks, cell]) == 0
         assert store.get([cell])[cell].outcome == Outcome.FINISHED
         found = store.answers([*tasks, Sum((5.0,))])

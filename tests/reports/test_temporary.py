@@ -190,7 +190,7 @@ runpy.run_module("reports", run_name="__main__", alter_sys=True)
 
 
 # Seeded. This command asks for more than 1400 modules: numpy, scipy, matplotlib and both engines are among them.
-MOMENTS = [1, 2, 5, *random.Random(16).sample(range(6, 1300), 2)]
+MOMENTS = [1, 5, random.Random(16).randrange(6, 1300)]
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
