@@ -4,6 +4,7 @@ import ast
 import os
 import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
 

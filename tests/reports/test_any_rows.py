@@ -8,7 +8,7 @@ import math
 import random
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cache
 from typing import Any
@@ -53,10 +53,17 @@ from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, wi
 from tests import ROOT
 from tests.committed_rows import page_rows
 
-SUBSETS, MORE = 3, 16  # of every page: every day, and among the slow tests
+SUBSETS, MORE = 2, 16  # of every page: every day, and among the slow tests
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
+
+
+def third(pages: Sequence[Page]) -> list[Any]:
+    """Each third page every day, the others among the slow tests."""
+    return [pytest.param(page, marks=() if n % 3 == 0 else pytest.mark.slow) for n, page in enumerate(pages)]
+
+
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
 DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
 
@@ -170,7 +177,7 @@ def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
     assert complaints(page.name, written(cheap(page), failed)) == []
 
 
-@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", third(FROM_ROWS), ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
     chance, rows = random.Random(page.name), page_rows(page)

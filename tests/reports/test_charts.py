@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation, Text
 
 from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
@@ -28,7 +31,6 @@ from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
-from tests.drawn import annotation, handles
 from tests.mechanisms import four_bar, pendulum
 from tests.rows import falling, row_of
 from tests.toys import Disc
@@ -224,6 +226,19 @@ def test_plateaus_have_one_line_a_step_with_failed_runs_left_out():
     assert (left.get_xlabel(), right.get_xlabel()) == ("corners", "contact's time constant [s]")
     with pytest.raises(ValueError, match="4 steps"):
         rolling_charts.draw_plateaus([(8, row_of("pymunk a", step=s)) for s in (1e-1, 1e-2, 1e-3, 1e-4)], softness)
+
+
+def annotation(text: Text) -> Annotation:
+    """A text that points at a place."""
+    assert isinstance(text, Annotation)
+    return text
+
+
+def handles(legend: Legend) -> list[Any]:
+    """A legend's pieces: lines, which have a colour, or patches, which have a face and a hatch."""
+    found: list[Any] = [handle for handle in legend.legend_handles if handle is not None]
+    assert len(found) == len(legend.legend_handles)
+    return found
 
 
 def lines(panel: Axes) -> list[np.ndarray]:

@@ -184,7 +184,6 @@ BAD = {
         FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
         "row 'C y' is open by 0.263 m",
     ),
-    "malformed.xml": ("<mujoco><worldbody><body></mujoco>", "MuJoCo can't compile it"),
     "empty.xml": ("", "MuJoCo can't compile it"),
     "no_robot.urdf": ("<robot name='x'/>", ""),
     "many.xml": (
@@ -197,29 +196,21 @@ BAD = {
         "geom 'floor' touches geom 'ball' at 0.1",
     ),
     "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError: no space"),
-    "ends.py:space": ("import sys\nsys.exit(3)", "ends.py raised SystemExit: 3"),
     "nothing.py:space": ("x = 1", "it has no 'space'"),
-    "other.py:space": ("space = 3", "it is int; it must be a pymunk.Space"),
     "unnamed.py": ("x = 1", "give the name of the space"),
     "drives.py:space": (
         "import pymunk\nspace = pymunk.Space()\nbody = pymunk.Body(1, 1)\nbody.angular_velocity = 1\n"
         "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
         "is moving apart at",
     ),
-    "prints.py:space": ("print('hello')\nspace = 'text'", "it is str; it must be a pymunk.Space"),
-    "leaves.py:space": ("import sys\nsys.exit('enough')", "leaves.py raised SystemExit: enough"),
-    "stops.py:space": ("raise KeyboardInterrupt", "stops.py raised KeyboardInterrupt"),
     "binary.xml": (bytes(range(256)) * 40, "MuJoCo can't compile it"),
-    "binary.mjb": (b"\x00\xff" * 300, "MuJoCo can't compile it"),
     "binary.py:space": (b"\x00\x01\x02", "binary.py raised"),
     "folder.xml": ("/", "it is a folder"),
-    "folder.py:space": ("/", "it is a folder"),
     "mesh.xml": (
         '<mujoco><asset><mesh name="m" file="nowhere.stl"/></asset><worldbody><body><joint/><geom type="mesh" '
         'mesh="m"/></body></worldbody></mujoco>',
         "nowhere.stl",
     ),
-    "includes.xml": ('<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
     "not_a_number.xml": (
         '<mujoco><worldbody><body><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
         '<keyframe><key qpos="nan"/></keyframe></mujoco>',

@@ -255,15 +255,10 @@ def test_a_wrong_command_line_is_one_line(count, here, capfd):
     "words",
     [
         ("run", "free_four_bar", "--every", "3000000000"),
-        ("run", "free_four_bar", "--every", "0"),
         ("run", "free_four_bar", "--step", "1e-320"),
-        ("run", "free_four_bar", "--step", "1e-300"),
-        ("run", "free_four_bar", "--step", "nan"),
         ("view", "free_four_bar", "--variant", "nope"),
         ("animate", "free_four_bar", "--every", "1" + 20 * "0"),
-        ("animate", "free_four_bar", "--every", "0"),
         ("check", "one.xml", "--markdown", ""),
-        ("check", "one.xml", "--html", "."),
         ("shapes", "/dev/zero"),
     ],
 )

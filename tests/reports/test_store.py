@@ -268,7 +268,7 @@ def scribbled(path, seed, count):
     path.write_bytes(data)
 
 
-@pytest.mark.parametrize("count", [1, 40, 500])
+@pytest.mark.parametrize("count", [40, *(pytest.param(count, marks=pytest.mark.slow) for count in (1, 500))])
 def test_random_bytes_anywhere_end_in_no_traceback_and_no_wrong_row(tmp_path, count):
     """What is left is right, or put aside, or refused with a sentence that says what to do; a run then goes on."""
     whole = filled(tmp_path / "whole.sqlite")
@@ -349,14 +349,6 @@ def test_a_store_that_another_process_locks_is_a_sentence_and_keeps_its_rows(tmp
         with pytest.raises(FileTrouble, match="another process"), Store(path):
             pass
         assert set(stored(path)) == {*CELLS[:2], CELLS[3]}
-
-
-def test_a_results_folder_that_is_a_file_or_lies_below_one_is_a_sentence(tmp_path):
-    (tmp_path / "file").write_text("a file")
-    for folder in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(FileTrouble, match=r"can't be a folder.*--results"), Store(folder / "cells.sqlite"):
-            pass
-    assert (tmp_path / "file").read_text() == "a file"
 
 
 FULL_DISK = """

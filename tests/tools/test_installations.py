@@ -7,13 +7,14 @@ is made once for all tests of this file.
 from __future__ import annotations
 
 import csv
+import subprocess
+import sys
 import zipfile
 
 import numpy as np
 import pytest
 
-from tests.tools.installations import ROOT, environment_with, our_wheel, run, wheel_of
-from tests.tools.third_party import distribution
+from tests.tools.installations import ROOT, distribution, environment_with, our_wheel, run, wheel_of
 
 STEPS = ("--every", "1", "--every", "3", "--every", "10")
 METHODS = ("impulses default", "impulses closed")
@@ -218,3 +219,47 @@ def test_their_engine_has_a_colour_and_a_mark_of_its_own(programs, texts, tmp_pa
     drawn = texts["flywheel_work.svg"] + texts["flywheel_steps.svg"]
     assert looks["impulses"][0].lower() in drawn.lower()
     assert looks["pymunk"][0].lower() not in drawn.lower()  # it was not run in this scene
+
+
+# Hides what we register of some engines, then writes every page from no rows at all. Pictures are drawn and not written
+# as text: by then no engine is asked for.
+WITHOUT = """
+import sys
+from engines import entry_points
+from reports.plots.theme import FigureCanvasSVG
+
+FigureCanvasSVG.print_svg = lambda self, out, **settings: out.write("<svg/>")
+
+ours, hidden = entry_points._ours, sys.argv[1:]
+entry_points._ours = lambda group: [point for point in ours(group) if not any(word in point[1] for word in hidden)]
+from engines.registry import ENGINES
+from reports.model.catalogue import PAGES, TROUBLES
+from reports.model.page import Material
+from reports.pages.index import render_index
+from reports.pages.rendering import render_page
+
+assert ENGINES and not {engine.name for engine in ENGINES} & set(sys.argv[1:])
+assert TROUBLES == (), TROUBLES
+materials = {page: Material({}) for page in PAGES}
+for page, material in materials.items():
+    render_page(page, material, "a test")
+render_index(materials, "a test")
+print(*[page.name for page in PAGES])
+"""
+
+
+def written_without(*engines):
+    ended = subprocess.run([sys.executable, "-c", WITHOUT, *engines], cwd=ROOT, capture_output=True, text=True)
+    assert ended.stderr == ""
+    assert {"four_bar", "skate", "rolling", "errata"} <= set(ended.stdout.split())
+
+
+def test_our_pages_are_written_where_two_engines_are_not_registered():
+    """What asks for one of them by its name fails without both too; the slow test hides each alone."""
+    written_without("pymunk", "mujoco")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", ["pymunk", "mujoco", "lagrange"])
+def test_our_pages_are_written_where_an_engine_is_not_registered(engine):
+    written_without(engine)

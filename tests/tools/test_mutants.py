@@ -147,24 +147,6 @@ def test_the_likely_tests_run_the_mistakes_own_block_and_the_most_particular_com
     assert Traced(tmp_path).likely(mistake, 10.0) == ("tests/test_b.py::narrow", "tests/test_a.py::wide")
 
 
-def test_the_matrix_tells_who_alone_notices_something_and_goes_on_where_it_was(tmp_path, monkeypatch):
-    def row(name: str, *noticed: str) -> matrix.Row:
-        return matrix.Row(name, "reference/plane.py", 1, ("tests/a.py", "tests/b.py"), 4, noticed, 1.0, "")
-
-    rows = [row("1", "tests/a.py::x[1]", "tests/b.py::y"), row("2", "tests/a.py::x[1]", "tests/a.py::x[2]"), row("3")]
-    assert dict(matrix.alone(rows)) == {"tests/a.py::x": ["2"]}
-    assert matrix.cover(rows) == ["tests/a.py::x"]
-    text = matrix.reading(rows)
-    assert "| reference | 3 | 2 | 67% |" in text
-    assert "* 3 (reference/plane.py:1; 4 tests)" in text
-    assert "| tests/b.py | 3 | 1 | 0 |" in text
-    kept = tmp_path / "matrix.jsonl"
-    given = [wrong("2 * ", f"{factor} * ") for factor in (3, 4)]
-    monkeypatch.setattr(Traced, "likely", lambda *_: ())
-    matrix.filled(given, Traced(tmp_path), kept, [], 1.0, first=False)
-    assert [(each.mistake, each.caught) for each in matrix.read(kept)] == [(each.name, False) for each in given]
-
-
 @pytest.mark.parametrize(
     ("name", "test", "reason", "status"),
     [
