@@ -1,4 +1,4 @@
-"""Charts read back from their axes: which numbers are drawn, across and up, by which method, in which panel."""
+"""Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`crosscheck check`, `export` and `view` on the command line: files, exit statuses, and one line for what is bad."""
+"""`crosscheck check`, `export` and `view` on the command line: files, exit statuses, and a line for each bad model."""
 
 # pyright: reportAttributeAccessIssue=false
 # MuJoCo's module has no list of its names.

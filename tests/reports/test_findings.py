@@ -1,4 +1,4 @@
-"""Ten findings from the committed rows: each number is a row's, and a claim that its rows contradict is not made."""
+"""Ten findings and the guides from the committed rows: each number is a row's, what its rows contradict is not said."""
 
 # pyright: reportAttributeAccessIssue=false
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Scenes and engines of somebody else that exit, trap, hang, fork or lie: an outcome or one line, never a traceback."""
+"""Scenes and engines that exit, hang or lie, and wrong command lines: an outcome or one line, never a traceback."""
 
 from __future__ import annotations
 

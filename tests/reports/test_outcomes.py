@@ -12,7 +12,7 @@ from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.measure import compare, measure
 from reports.model.outcomes import BLOWN, LETTERS, MEANINGS, SATURATED, TORN, Outcome, of_motion
-from tests.reports.test_errors import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
+from tests.reports.test_measure import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
 from tests.rows import row
 from tests.toys import Disc, FailingToy, ImpossibleDisc, Toy
 

@@ -1,4 +1,4 @@
-"""The shape of each mechanism's page: its data page beside it, code that runs as it is printed."""
+"""The shape of the pages: links that lead somewhere, code that runs as it is printed, no two documents of one name."""
 
 from __future__ import annotations
 

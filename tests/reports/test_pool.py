@@ -1,4 +1,4 @@
-"""Supervised cells: every way to fail is a row, every row is kept, and a killed run goes on."""
+"""Supervised cells: every way to fail is a row, a killed run goes on, and the dearest begin, akin in one process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers in remarks under experiments are those of the experiments' own rows and motions, and vanish without them."""
+"""What remarks under experiments say: numbers are those of rows and motions, and "falls", "stays", "tears" is so."""
 
 from __future__ import annotations
 

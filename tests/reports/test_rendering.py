@@ -1,4 +1,4 @@
-"""A page's rows, tables and sentences, and the files that are written of them."""
+"""A page's rows, its sentences and files, and the overview: each cell from its own scene's and method's rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The static site: what its pages carry is the reference's motion, its words are the pages', and no link is dead."""
+"""The static site and pictures that move: what they carry is the reference's motion, and no link is dead."""
 
 from __future__ import annotations
 

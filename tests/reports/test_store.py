@@ -1,4 +1,4 @@
-"""The store: what is in it survives; whatever happens to its file is one sentence, or a new file beside the old one."""
+"""The store: what is in it survives; a file that is damaged, locked or somebody else's is one sentence or put aside."""
 
 from __future__ import annotations
 

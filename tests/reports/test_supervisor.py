@@ -1,4 +1,4 @@
-"""Supervised workers: whatever a job does to its process, or somebody else does to it, is told as what it is."""
+"""Supervised workers: whatever a job, a check of an engine or somebody else does to a process is told as what it is."""
 
 from __future__ import annotations
 

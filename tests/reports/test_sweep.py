@@ -1,4 +1,4 @@
-"""Orders and plateaus of invented errors: the fit finds what was put in, and says when it can't."""
+"""Orders and plateaus of invented errors: the fit finds what was put in; and the steps that people use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every table and CSV file from rows by hand: each column takes its own field, each line its own rows."""
+"""Every table and CSV file from rows by hand: each column takes its own field; and what is printed of versions."""
 
 from __future__ import annotations
 

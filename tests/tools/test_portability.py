@@ -1,4 +1,4 @@
-"""Windows and macOS, as far as they can be had here: what they lack is hidden, what they do otherwise is forced."""
+"""Windows and macOS as far as they can be had here, the oldest packages, and the layers of imports."""
 
 from __future__ import annotations
 

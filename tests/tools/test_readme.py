@@ -1,4 +1,4 @@
-"""The readme keeps its promises: its example runs, it is short, and its table has a place."""
+"""The readme and the lecture keep their promises: what they show runs and is so; help loads no more than it needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What another processor rounds otherwise is no change, and what a wrong model changes is one there too."""
+"""What rounding or noise alone moves is no change and published as it was; what a wrong model changes is one."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ OLDER = {"OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-A
 PROGRAM = """
 import json
 from reports.model.measure import measure
-from tests.reports.test_two_processors import CELLS
+from tests.reports.test_rounding import CELLS
 print(json.dumps([measure(cell, repeat=False).as_dict() for cell in CELLS]))
 """
 

@@ -1,4 +1,4 @@
-"""Errors by hand: a motion with a known offset in every number, and what each field makes of it."""
+"""Errors and rows by hand: a motion with a known offset in every number, and what each field makes of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The skate's and the wheels' pages: their experiments' reference, their runnable lines, and what they print."""
+"""The pages of skates, wheels, rolling and centrodes: their experiments' reference, their code, what breaks how."""
 
 from __future__ import annotations
 

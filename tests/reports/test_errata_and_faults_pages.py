@@ -1,5 +1,4 @@
-"""The faults of released engines: scripts print what the page says, wrong formulas are those of the engines, releases
-are what was recorded."""
+"""Faults of engines and slips of the book: scripts print what pages say, and engines rule as derivatives do."""
 
 # pyright: reportAttributeAccessIssue=false
 # MuJoCo's module has no list of its names.

@@ -1,4 +1,4 @@
-"""Temporary folders: gone afterwards, after a signal, and swept by the next program after a kill."""
+"""Signals and Ctrl-C at any moment: no temporary folder and no word is left, and what a kill leaves is swept."""
 
 from __future__ import annotations
 

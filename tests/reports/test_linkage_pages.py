@@ -1,4 +1,4 @@
-"""The pages of pendulums, slider-crank, N-four-bar and person: scenes made for failures, pictures, words, and traps."""
+"""The pages of linkages, chains and engines: scenes made for failure, and each experiment ends as its words say."""
 
 from __future__ import annotations
 

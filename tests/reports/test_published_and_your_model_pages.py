@@ -1,4 +1,4 @@
-"""The page of published problems: Newton's bounds and Acrobot's energy, each held against a second way."""
+"""Published problems, and a user's own model: each number is held against a second way or is what was found."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scaling: the long chain knows what linear algebra finds, exponents are those of known laws, the page is whole."""
+"""Growth laws, times, steps and costs of cells by hand, and the page of scaling, whose chain linear algebra knows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The grid as a suite of pytest: what is selected, the table, options that can not be meant."""
+"""The grid as a suite of pytest, its judge beside the cells, and wrong engines that it is asked about."""
 
 from __future__ import annotations
 
