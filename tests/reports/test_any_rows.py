@@ -25,7 +25,7 @@ from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
-from reports.model.tasks import Answer, Motion, Task, answered
+from reports.model.tasks import Answer, Motion, Task
 from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
 from reports.pages.errata import experiments as referees
 from reports.pages.faults.experiments import Equalities, Grooves, Offsets
@@ -51,7 +51,7 @@ from reports.write.experiments import observe
 from reports.write.templates import environment
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests import ROOT
-from tests.committed_rows import page_rows
+from tests.committed_rows import answer_to, page_rows
 
 SUBSETS, MORE = 2, 16  # of every page: every day, and among the slow tests
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
@@ -234,7 +234,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         for task in failure.tasks
         if not isinstance(task, Neighbours)  # takes seconds, and any growth makes a sentence
     )
-    material = Material(page_rows(page), answers | {task: answered(task) for task in said})
+    material = Material(page_rows(page), answers | {task: answer_to(task) for task in said})
     assert complaints(page.name, render_page(cheap(page), material, "the command")) == []
     assert vanished == []
 

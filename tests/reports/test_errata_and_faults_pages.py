@@ -31,6 +31,7 @@ from reports.pages.faults.page import PAGE, SCRIPTS
 from reports.pages.faults.scripts import RELEASES, found_with, recorded
 from reports.pages.rendering import render_page
 from reports.write.templates import TEMPLATES
+from tests.committed_rows import answer_to
 
 # A velocity or an acceleration by two routes of some twenty operations, with masses and arms over two decades.
 ROUNDING = 1e-12
@@ -38,7 +39,7 @@ ROUNDING = 1e-12
 
 @pytest.fixture(scope="module")
 def material() -> Material:
-    return Material({}, {task: answered(task) for task in all_tasks(PAGE)})
+    return Material({}, {task: answer_to(task) for task in all_tasks(PAGE)})
 
 
 def not_here(name: str) -> str:
@@ -185,7 +186,7 @@ IDS = [str(erratum.number) for erratum in ERRATA]
 
 @pytest.fixture(scope="module")
 def said() -> tuple[Ruling, ...]:
-    return rulings((task, answered(task)) for task in TASKS)
+    return rulings((task, answer_to(task)) for task in TASKS)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,6 @@ from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.model.tasks import answered
 from reports.pages.engines.cells import CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG
 from reports.pages.engines.experiments import ASKED, Capabilities
 from reports.pages.four_bar import experiments as failures
@@ -31,7 +30,7 @@ from reports.pages.pendulum import page as pendulum
 from reports.pages.person import page as person
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
-from tests.committed_rows import committed_rows
+from tests.committed_rows import answer_to, committed_rows
 
 PAGES = (pendulum.PAGE, slider_crank.PAGE, n_four_bar.PAGE, person.PAGE)
 LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, branch=-1), SliderAtDeadCentre(angle=1e-2))
@@ -107,7 +106,7 @@ def test_a_groove_in_a_moving_lever_opens_at_every_step_and_is_right_with_the_ce
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_pages_observations_are_computed_and_say_something(page):
-    material = Material({}, {task: answered(task) for task in all_tasks(page)})
+    material = Material({}, {task: answer_to(task) for task in all_tasks(page)})
     told = [seen for failure in page.failures if failure.observations for seen in failure.observations(material)]
     assert all(seen.outcome and "nan" not in seen.outcome for seen in told)
     assert told

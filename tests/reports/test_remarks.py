@@ -17,7 +17,7 @@ from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
-from reports.model.tasks import Answer, Motion, Task, answered
+from reports.model.tasks import Answer, Motion, Task
 from reports.pages.atlas.page import lines as atlas_lines
 from reports.pages.four_bar import experiments as four_bar
 from reports.pages.four_bar import experiments as four_bar_failures
@@ -35,7 +35,7 @@ from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
 from reports.write.experiments import told_remark
 from reports.write.unmeasured import MARK
-from tests.committed_rows import committed_rows
+from tests.committed_rows import answer_to, committed_rows
 
 
 def experiment(failures: tuple[Failure, ...], title: str) -> Failure:
@@ -136,13 +136,13 @@ def test_a_slider_that_starts_nearer_leaves_later_by_what_the_answers_say():
 
 def test_friction_slips_a_tenth_or_two_after_its_limit_is_passed():
     tasks = [Motion(cell) for cells in slipping.LIMITED.values() for cell in cells]
-    found = slipping.delays(Material({}, {task: answered(task) for task in tasks}))
+    found = slipping.delays(Material({}, {task: answer_to(task) for task in tasks}))
     assert 0 < found["least"] <= found["most"] < 0.3
 
 
 def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
     tasks = (wheels.REFERENCE, *(Motion(cell) for cell in wheels.RUNS if cell.engine.name == "pymunk"))
-    material = Material({}, {task: answered(task) for task in tasks})
+    material = Material({}, {task: answer_to(task) for task in tasks})
     late = wheels.lateness(material)["late"]
     assert len(late) == 2
     assert all(0.4 < each < 0.7 for each in late)
@@ -155,7 +155,7 @@ def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
 def test_contacts_part_from_the_ideal_motion_by_hundreds_of_times_their_error():
     contacts = [Motion(cell) for cell in parting.PARTINGS if cell.engine in CONTACTS]
     assert len(contacts) == 4
-    assert parting.after_parting(Material({}, {task: answered(task) for task in contacts}))["least"] > 100
+    assert parting.after_parting(Material({}, {task: answer_to(task) for task in contacts}))["least"] > 100
 
 
 BROKEN = (Outcome.TORN, Outcome.RESET)

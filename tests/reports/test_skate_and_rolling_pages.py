@@ -25,7 +25,7 @@ from reports.model.cells import Cell
 from reports.model.measure import measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.model.tasks import Motion, answered, trajectory_of
+from reports.model.tasks import Motion, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
 from reports.pages.rolling.methods import absent_contact, parting
 from reports.pages.skate import methods
@@ -33,6 +33,7 @@ from reports.pages.skate import page as skate
 from reports.pages.skate.experiments import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
+from tests.committed_rows import answer_to
 from tests.present import present
 
 TEMPLATE = Path(reports.pages.__file__).parent / "skate" / "page.md"
@@ -45,7 +46,7 @@ PROMISED = (1e-3, 1e-3, 1e-6, 1e-10)
 
 def kept(tasks):
     """What there is when these tasks were run."""
-    return Material({}, {task: answered(task) for task in tasks})
+    return Material({}, {task: answer_to(task) for task in tasks})
 
 
 @pytest.mark.parametrize(("block", "bound"), tuple(zip(BLOCKS, PROMISED, strict=True)))
@@ -165,7 +166,7 @@ def row(scene, engine, every, samples=None):
 
 
 def motion_of(cell):
-    return trajectory_of(answered(Motion(cell)))
+    return trajectory_of(answer_to(Motion(cell)))
 
 
 def run_of(measured, scene, engine, every):

@@ -26,6 +26,7 @@ from reports.pages.skate.page import path_picture
 from reports.run import store as store_module
 from reports.run.running import missing, run_into
 from reports.run.store import Store
+from tests.committed_rows import answer_to
 from tests.present import present
 from tests.reports.rough_toys import RoughToy
 from tests.toys import Disc, FailingToy, Toy, in_process
@@ -168,7 +169,7 @@ def test_no_answer_is_stale_because_of_words_or_pictures():
 
 @cache
 def answers(page: Page) -> dict[Task, Answer]:
-    return {task: answered(task) for task in all_tasks(page)}
+    return {task: answer_to(task) for task in all_tasks(page)}
 
 
 def refusing(monkeypatch) -> list[str]:
