@@ -36,9 +36,6 @@ from reports.pages.pendulum.experiments import Neighbours
 from reports.pages.published import acrobot, newton
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling import page as rolling
-from reports.pages.rolling.experiments import polygon_cells, softness_cells
-from reports.pages.scaling import page as scaling
 from reports.pages.skate import methods as turning_round
 from reports.pages.skate import page as skate
 from reports.pages.skate.methods import slipping
@@ -186,23 +183,6 @@ def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
         few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
     for name, text in written(replace(cheap(page), figures=lambda material: {}), few).items():
         assert not name.endswith(".svg") or text.startswith("<?xml")
-
-
-def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones():
-    chance = random.Random(0)
-    rows = page_rows(rolling.PAGE)
-    corners = [(value, rows[cell]) for value, cell in polygon_cells()]
-    constants = [(value, rows[cell]) for value, cell in softness_cells()]
-    chains = page_rows(scaling.PAGE)
-    for count in (1, 4):
-        few, soft = chance.sample(corners, count), chance.sample(constants, count)
-        failed = [(value, replace(row, angle=math.nan)) for value, row in few]
-        failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
-        assert theme.svg(rolling.draw_plateaus(few, soft), "few")
-        assert theme.svg(rolling.draw_plateaus(failed, failed_soft), "failed")
-        some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
-        for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
-            assert scaling.figures(Material(own))
 
 
 def test_the_overview_can_be_read_whatever_was_run():

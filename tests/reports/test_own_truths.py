@@ -136,19 +136,6 @@ def test_a_limit_that_the_velocity_reaches_is_seen(rate, refused):
     np.testing.assert_allclose(np.abs(turn), rate * INERTIA * (1 - np.exp(-t / INERTIA)), rtol=0, atol=CLOSE)
 
 
-TENDON = (
-    '<tendon><fixed name="t" {0}><joint joint="a" coef="3"/></fixed></tendon>'
-    '<actuator><motor name="pull" tendon="t" gear="2"/></actuator>'
-)
-
-
-def test_a_motor_of_a_tendon_has_its_coefficient_and_the_tendons_limit():
-    t, turn = judged_turn(mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.5))
-    np.testing.assert_allclose(np.abs(turn), 0.5 * 2 * 3 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match=r"^actuator 'pull' reaches the limit of its force: so it does at the start"):
-        mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.6)
-
-
 def test_a_limit_is_seen_that_is_passed_between_two_samples():
     """A body thrown up passes its limit for 4 ms about 0.205 s, the middle of two samples of 10 ms."""
     rate = 9.81 * 0.205
@@ -172,25 +159,6 @@ def test_of_two_motors_the_one_whose_group_is_switched_off_does_not_act():
     np.testing.assert_allclose(np.abs(turn), 3 * 0.5 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
 
 
-SPRUNG = 'stiffness="8" damping="0.5"'
-SPRUNG_TENDON = (
-    '<tendon><fixed stiffness="2" damping="0.125" springlength="0"><joint joint="a" coef="2"/></fixed></tendon>'
-)
-
-
-@pytest.mark.parametrize(("joint", "more"), [(SPRUNG, ""), ("", SPRUNG_TENDON)], ids=["a joint", "a tendon"])
-@pytest.mark.parametrize("off", ["spring", "damper", ""])
-def test_springs_and_dampers_act_unless_the_model_switches_them_off(joint, more, off):
-    """With both, a damped oscillation; a damper alone lets the rate fade, a spring alone is a sine."""
-    t, turn = judged_turn(mjcf(WHEEL, more, f'{off}="disable"' if off else "", rate=1.0, joint=joint))
-    decay = 0.0 if off == "damper" else 0.5 / (2 * INERTIA)
-    fast = sqrt(8 / INERTIA - decay**2)
-    wanted = np.exp(-decay * t) * np.sin(fast * t) / fast
-    if off == "spring":
-        wanted = (1 - np.exp(-2 * decay * t)) / (2 * decay)
-    np.testing.assert_allclose(np.abs(turn), np.abs(wanted), rtol=0, atol=CLOSE)
-
-
 @pytest.mark.parametrize("flag", ["", 'gravity="disable"'])
 def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
     """Forces and torques that stand in the data: on a free body off its frame, and on a hinge."""
@@ -206,18 +174,6 @@ def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
     np.testing.assert_allclose(gone[:, 1, 0], 3.0 / 2 * half, rtol=0, atol=CLOSE)
     np.testing.assert_allclose(gone[:, 1, 1], (-1.0 / 2 - (0 if flag else 9.81)) * half, rtol=0, atol=CLOSE)
     np.testing.assert_allclose(gone[:, 1, 2], -0.4 / INERTIA * half, rtol=0, atol=CLOSE)
-
-
-@pytest.mark.parametrize("axis", ["0 1 0", "0 -1 0"])
-def test_a_hinge_driven_by_its_armature_turns_as_mujoco_turns_it(axis):
-    model = mujoco.MjModel.from_xml_string(
-        f"<mujoco><worldbody>{WHEEL.format('armature=' + chr(34) + '1e9' + chr(34)).replace('0 1 0', axis)}</worldbody>"
-        "</mujoco>"
-    )
-    data = mujoco.MjData(model)
-    data.qvel[0] = 2.0
-    t, turn = judged_turn(read_mjcf(model, data))
-    np.testing.assert_allclose(turn, -2.0 * t if axis == "0 1 0" else 2.0 * t, rtol=0, atol=CLOSE)
 
 
 def test_a_model_that_may_sleep_is_refused_by_name():

@@ -12,7 +12,6 @@ import pytest
 from engines import mujoco, pymunk
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
-from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
@@ -113,14 +112,6 @@ def test_torn_runs_are_counted():
     rows = {cell: blank(cell, end) for cell, end in zip(failure.cells, ends, strict=False)}
     assert "3 of these 5 runs end with finite numbers" in remark(failure, Material(rows))
     assert "of these" not in remark(failure, Material({}))
-
-
-def test_remarks_have_no_mark_left_when_nothing_was_run():
-    for page in PAGES:
-        for failure in page.failures:
-            text = remark(failure, Material({}))
-            assert MARK not in text
-            assert "{" not in text
 
 
 def test_a_slider_that_starts_nearer_leaves_later_by_what_the_answers_say():

@@ -12,7 +12,6 @@ from importlib import metadata
 
 import numpy as np
 import pytest
-from jinja2 import UndefinedError
 
 from reports import __main__ as command_line
 from reports.cli.selection import (
@@ -26,7 +25,6 @@ from reports.model.measure import measure
 from reports.model.page import Failure, Material, Observation, Page
 from reports.pages.rendering import render_all
 from reports.plots.theme import DARK, LIGHT, SERIES
-from reports.write.templates import environment
 from tests.committed_rows import stale
 from tests.reports import test_any_rows as rendering
 from tests.toys import FAILURES, Disc, FailingToy, Toy
@@ -180,8 +178,3 @@ def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd, undrawn, at_h
 def test_no_published_row_is_of_other_numbers_or_settings_than_the_present_ones():
     found = stale(dict.fromkeys(cell for page in PAGES for cell in shown_cells(page)))
     assert found == [], f"{len(found)} cells have to be published anew: {', '.join(found[:5])}"
-
-
-def test_a_template_that_names_what_is_not_given_fails():
-    with pytest.raises(UndefinedError):
-        environment().from_string("{{ nothing }}").render()

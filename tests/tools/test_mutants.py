@@ -98,20 +98,6 @@ def test_generated_mistakes_are_named_by_place_and_operator_and_not_by_line():
     assert set(made(AREA.replace("2 * abs(width) * height", "(\n        2 * abs(width) * height\n    )"))) == set(found)
 
 
-def test_a_draw_takes_a_place_of_every_file_first_and_is_the_same_each_time():
-    files = SOURCES[::25]
-    found = list(drawn("1", files))
-    assert found == list(drawn("1", files))
-    having = {mistake.file for mistake in found}
-    assert [mistake.file for mistake in found[: len(having)]] != [
-        m.file for m in list(drawn("2", files))[: len(having)]
-    ]
-    assert {mistake.file for mistake in found[: len(having)]} == having
-    assert len({mistake.name for mistake in found}) == len(found)
-    for mistake in found[::20]:
-        assert ast.dump(ast.parse(mistake.text(ROOT))) != ast.dump(ast.parse((ROOT / mistake.file).read_bytes()))
-
-
 def test_a_mistake_is_noticed_by_the_tests_that_fail_and_taken_back(tree):
     tests = ("tests/test_area.py",)
     mistakes = [None, wrong("2 * ", "-2 * "), wrong("2 * ", "3 * "), wrong("width < 0", "width < -1")]

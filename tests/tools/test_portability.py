@@ -7,7 +7,6 @@ import os
 import shutil
 import subprocess
 import sys
-import warnings
 from pathlib import Path
 
 import pytest
@@ -112,20 +111,6 @@ def is_mode(node: ast.expr) -> bool:
 )
 def test_a_text_file_of_the_machine_s_encoding_is_found(line, found):
     assert unnamed_encodings(line) == found
-
-
-@pytest.mark.parametrize("kind", [DeprecationWarning, PendingDeprecationWarning, FutureWarning, UserWarning])
-def test_what_will_be_gone_is_an_error_in_our_own_code_alone_and_any_other_warning_everywhere(kind):
-    for module in ("engines.mujoco.engine", "reference.plane", "reports.cli.run", "tests.tools.test_portability"):
-        with pytest.raises(kind):
-            warnings.warn_explicit("it will be gone", kind, "file.py", 1, module)
-    with warnings.catch_warnings(record=True) as told:
-        if kind is UserWarning:
-            with pytest.raises(kind):
-                warnings.warn_explicit("it is odd", kind, "file.py", 1, "numpy")
-        else:
-            warnings.warn_explicit("it will be gone", kind, "file.py", 1, "numpy.random")
-    assert len(told) == (kind is not UserWarning)
 
 
 def test_every_dependency_has_a_lower_bound_that_can_be_tried():
