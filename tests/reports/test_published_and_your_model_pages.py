@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -22,6 +22,7 @@ from reports.pages.your_model import page as others
 from reports.pages.your_model.experiments import CART, SWING, WALKS
 from reports.pages.your_model.experiments import FOUR_BAR as LOOP
 from reports.pages.your_model.page import PAGE as YOUR_MODEL
+from tests.reports.models_of_others import models, spaces, unpacked
 
 
 @pytest.fixture(scope="module")
@@ -144,3 +145,30 @@ def test_every_model_of_others_is_on_the_page_by_name(checks):
         assert f"`{row['model']}`" in told
         assert row["reason"].replace("|", "\\|") in told
     assert len({(row["source"], row["model"]) for row in others.rows()}) == len(others.rows()) >= 50
+
+
+@pytest.fixture(scope="module")
+def examples():
+    return list(spaces())
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory):
+    """The packages' own files, fetched by pip and unpacked; skipped where no registry answers."""
+    folder = tmp_path_factory.mktemp("packages")
+    if not unpacked(folder):
+        pytest.skip("pip finds no registry here")
+    return folder
+
+
+@pytest.mark.slow
+def test_every_space_of_pymunks_examples_is_read_or_refused_in_a_sentence_as_the_page_tells(examples):
+    assert len(examples) >= 10
+    for found in examples:
+        assert found.bodies or (20 < len(found.reason) < 400 and "\n" not in found.reason)
+    assert [asdict(found) for found in examples] == [row for row in others.rows() if row["source"] == "pymunk"]
+
+
+@pytest.mark.slow
+def test_the_table_of_the_page_has_every_model_of_the_packages(packages):
+    assert [asdict(found) for found in models(packages)] == [row for row in others.rows() if row["source"] != "pymunk"]
