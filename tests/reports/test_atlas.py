@@ -22,7 +22,7 @@ from reports.model.outcomes import TORN, Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer
 from reports.pages.atlas import page
-from reports.pages.atlas.column import Column, bisected, gives_from, line_of
+from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps, line_of
 from reports.pages.atlas.page import atlas_map, edges
 from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
 from reports.pages.atlas.table import (
@@ -284,3 +284,20 @@ def test_no_two_failures_look_and_read_alike():
     assert fine == {LIGHT.good, LIGHT.middling}
     assert LIGHT.good not in colours[0]
     assert len(set(HATCHES.values())) == len(HATCHES)
+
+
+def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
+    mechanism = LinkPendulum(links=10).mechanism()
+    left = {engine: left_by_sweeps(mechanism, engine) for engine in SHOWN}
+    for engine, value in left.items():
+        assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
+        assert math.isnan(value) or 0 < value < 1
+
+
+def test_scaling_is_bounded_by_what_one_client_gets_through():
+    lines = (Cost("toys", "toy default", 1000, 30.0),)
+    told = page.scaling(Costs("here", 0.0, 2, math.nan, 1000.0, lines))
+    assert told["stops"] == pytest.approx(30.0)  # 30 ms a cell, 1000 of them stored in a second
+    assert "| 64 | 7.81 min | 16.7 min | the client |" in told["table"]
+    fast = page.scaling(Costs("here", 0.0, 2, 10.0, 1e9, lines))
+    assert fast["stops"] == pytest.approx(3.0)  # 10 chunks of 0.3 s in a second

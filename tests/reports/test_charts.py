@@ -19,16 +19,20 @@ from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
 from reference.joints import Pin, Slot
 from reference.mechanism import Body, Mechanism
+from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
+from reports.model.quantities import quantity
 from reports.model.scaling_fit import Point, Series
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
+from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling_charts
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
+from reports.plots.mechanisms import outline, path
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
 from tests.mechanisms import four_bar, pendulum
@@ -370,3 +374,42 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
     (run, total), [missed] = lines(draw_rate(wrong).axes[0]), lines(draw_rate(wrong).axes[1])
     assert missed[5:-5, 1] == pytest.approx(np.abs(total / run - 1)[5:-5, 1])
     assert missed[20, 1] > 0.1
+
+
+@pytest.mark.parametrize("field", ["angle", "reaction"])
+def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name(field):
+    errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), field)
+    [panel] = panels(charts.error_against_step(errors, field=field))
+    [band] = panel.patches
+    low, high = band.get_path().get_extents(band.get_patch_transform()).intervaly
+    assert (low, high) == (pytest.approx(1e-16), pytest.approx(quantity(field).rounding))
+    guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
+    assert len(guides) == 3
+    for text, ((left, bottom), (right, top)) in zip(panel.texts, guides, strict=True):
+        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
+        assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
+    assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
+    assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
+
+
+def test_an_outline_has_further_points_in_order_along_the_body_and_a_path_those_of_the_truth():
+    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
+    found = outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
+    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
+    found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
+    assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
+
+
+def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_truths_rates():
+    scene = EllipticGears()
+    *pictures, rates = rolling_drawings.draw_gears(scene).axes
+    turn = 2 * math.pi / scene.turning_rate
+    for index, panel in enumerate(pictures):
+        t = (0.15 + index) * turn / 4
+        assert panel.get_title(loc="left") == f"t = {t:.2f} s"
+        for gear, pose in enumerate(scene.motion([t]).pose[0]):
+            assert has(panel, [[2 * scene.major * gear, 0.0], pose[:2]])
+    first, second = lines(rates)
+    truth = scene.motion(first[:, 0]).twist[:, :, 2]
+    assert first[:, 1] == pytest.approx(truth[:, 0])
+    assert second[:, 1] == pytest.approx(truth[:, 1])

@@ -30,10 +30,11 @@ from reports.pages.centrodes.page import returned
 from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
 from reports.pages.scaling.experiments import BandedChain
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, crossing
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, cost_table, crossing
 from reports.pages.skate import page as skate
+from reports.pages.skate.page import constructions
 from reports.write.rows import Rows
-from tests.rows import row_of
+from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
 
 
@@ -298,3 +299,32 @@ def test_the_row_of_a_step_is_the_nearest_by_ratio():
     near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
     assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
     assert not Rows([]).near(1e-3)
+
+
+def test_a_cost_table_is_in_microseconds_with_the_law_at_its_end():
+    torn = replace(
+        SERIES, variant="torn", points=(Point(1, math.nan, math.nan, "torn"), Point(10, 3e-6, 0.1, "finished"))
+    )
+    assert table(cost_table((SERIES, torn))) == [
+        ["method", "1", "10", "100", "exponent (links)"],
+        ["pymunk tuned", "1", "100", "1.0e4", "2.0 (1 to 100)"],
+        ["pymunk torn", "**torn**", "3", "", "-"],
+    ]
+
+
+def test_constructions_are_told_at_the_compared_step_best_first():
+    rows = [
+        *falling("pymunk b", (3e-2, 3e-4, 3e-6), "position", cpu=7e-3),
+        *falling("pymunk a", (1e-2, 1e-4, 1e-6), "position"),
+        row_of("pymunk c", outcome=Outcome.UNSUPPORTED, position=math.nan),
+        row_of("pymunk d", step=1e-3, outcome=Outcome.TORN, position=2.0),
+    ]
+    head, *body = table(constructions(rows))
+    assert [line[:2] for line in body] == [
+        ["pymunk a", "1.0e-6"], ["pymunk b", "3.0e-6"], ["pymunk d", "**torn** 2"], ["pymunk c", "can't be built"],
+    ]  # fmt: skip
+    second = dict(zip(head, body[1], strict=True))
+    told = [second[name] for name in ("slip [m/s]", "energy [relative]", "reaction [relative]", "CPU [ms/s]")]
+    assert told == ["4.7e-3", "5.3e-3", "5.9e-3", "7"]
+    assert body[1][-1].startswith("2.00 (±")
+    assert body[2][-1] == "wrong at every step"

@@ -300,3 +300,7 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
     assert told.startswith("an architecture, 97 processors, ")
     assert platform.node() not in told
     assert "/" not in told.replace("w/", "")
+
+
+def test_bars_and_line_ends_do_not_break_a_table():
+    assert tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1) == "| a | b |\n| --- | --: |\n| 1\\|2 | 3 4 |"
