@@ -37,10 +37,6 @@ from reports.pages.published import acrobot, newton
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.skate import methods as turning_round
-from reports.pages.skate import page as skate
-from reports.pages.skate.methods import slipping
-from reports.pages.wheels import experiments as wheels_failures
-from reports.pages.wheels import page as wheels
 from reports.pages.wheels.experiments import Folding
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
@@ -338,20 +334,6 @@ def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
         assert not re.search(r"\b(nan|None|Unmeasured)\b|\{\{|\{%", told)
         assert MARK not in told
         assert WORDS not in told
-
-
-@pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.UNSUPPORTED])
-def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
-    for page, observations in (
-        (skate.PAGE, turning_round.backwards),
-        (skate.PAGE, slipping),
-        (wheels.PAGE, wheels_failures.folding),
-    ):
-        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in all_tasks(page)}))
-        assert [seen for seen in told if "exact" in seen.method or "closed form" in seen.method]
-        engines = [seen for seen in told if "reference" not in seen.method]
-        lost = [seen for seen in engines if seen.outcome == "**aborted**: no such thing"]
-        assert bool(lost) == (outcome == Outcome.ABORTED)
 
 
 def test_a_motion_that_can_not_be_read_says_so_in_its_line():

@@ -26,7 +26,7 @@ from reports.pages.errata.experiments import CONFIRMED, REFEREES, TASKS, Ruling,
 from reports.pages.errata.page import PAGE as ERRATA_PAGE
 from reports.pages.errata.page import SNIPPETS, digits, table
 from reports.pages.faults import experiments, scripts
-from reports.pages.faults.experiments import CASES, KINDS, Bead, Equalities, Grooves, across, beside
+from reports.pages.faults.experiments import CASES, KINDS, Bead, Equalities, Grooves
 from reports.pages.faults.page import PAGE, SCRIPTS
 from reports.pages.faults.scripts import RELEASES, found_with, recorded
 from reports.pages.rendering import render_page
@@ -69,18 +69,6 @@ def test_a_groove_drives_the_wrong_velocity_to_zero(case: str) -> None:
     # Right in one case of four only, and there to rounding.
     off = np.asarray(answer["off"], dtype=float)
     assert np.all(off < 1e-14) if case == "ground, centre" else np.all(off > experiments.WRONG)
-
-
-def test_an_ideal_groove_keeps_the_velocity_across_it_at_zero() -> None:
-    setup = beside(0.7)
-    assert abs(across(setup, setup.predicted(experiments.right))) < 1e-15
-    assert across(setup, setup.predicted(experiments.wrong)) == pytest.approx(
-        across(setup, setup.measured()), abs=1e-15
-    )
-    # Where the arm lies along the groove or across it, pymunk's is right too.
-    for anchor in ((0.6, 0.0), (0.0, 0.6)):
-        setup = replace(beside(0.7), anchor=np.array(anchor), place=np.array([0.0, anchor[1]]))
-        assert abs(across(setup, setup.measured())) < 1e-15
 
 
 def test_more_iterations_do_not_mend_a_groove() -> None:

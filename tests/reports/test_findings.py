@@ -13,9 +13,7 @@ from functools import cache
 import mujoco
 import numpy as np
 import pytest
-import typer
 
-from reports.cli.commands import app
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
@@ -325,13 +323,3 @@ def test_a_program_of_the_page_prints_the_weight_of_the_hanging_body(place):
         exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
     assert said.getvalue().count("19.62") == 2  # 2 kg at 9.81 m/s^2: by Newton's law, and by what the engine says
     assert "-19.62" not in said.getvalue()
-
-
-def test_the_guide_to_clusters_names_commands_and_options_that_exist():
-    text = render_page(CLUSTER, Material({}), "crosscheck report")["cluster.md"]
-    commands = set(re.findall(r"^crosscheck ([a-z]+).*--scheduler (tcp://HOST:8786|local:4)$", text, re.MULTILINE))
-    assert commands == {("search", "local:4"), ("run", "tcp://HOST:8786")}
-    known = typer.main.get_command(app)
-    for name, _ in commands:
-        options = [option for each in known.commands[name].params for option in each.opts]  # type: ignore[attr-defined]
-        assert "--scheduler" in options

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -17,7 +17,6 @@ from reports.model.tasks import Answer, Task, answered
 from reports.write.experiments import compared_only, happened, told_experiment
 from reports.write.holders import holders
 from reports.write.page_tables import advice, advice_table, reliable, scene_table
-from reports.write.programs import advised_settings, compact
 from reports.write.tables import markdown, outcome_grid
 from tests.present import present
 from tests.rows import falling, row_of, table
@@ -152,26 +151,6 @@ def test_who_holds_the_joints_stands_beside_each_method_and_changes_with_the_sce
     head, line = table(outcome_grid([row_of("toy ours")], found))
     assert (head[:2], line[:2]) == (["method", "joints held by"], ["toy ours", "ours or engine"])
     assert markdown(["method", "b"], [["x", "1"]], held={"y": "ours"}).splitlines()[-1] == "| x | - | 1 |"
-
-
-def test_settings_are_told_without_those_that_are_the_engines_own():
-    @dataclass(frozen=True)
-    class Inner:
-        count: int = 3
-        factor: float = 1.0
-
-    @dataclass(frozen=True)
-    class Outer:
-        variant: str
-        inner: Inner = field(default_factory=Inner)
-        levels: tuple[int, ...] = (1,)
-
-    assert compact(Outer("a")) == "Outer()"
-    assert compact(Outer("a", Inner(count=5), (2,))) == "Outer(inner=Inner(count=5), levels=(2,))"
-    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {"a x": Outer("x")})
-    assert (found.method, found.settings, found.program) == ("a x", "Outer()", "")
-    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {})
-    assert found.settings == "Toy(order=2.0)"  # of an engine that is not here any more: as its row has them
 
 
 @dataclass(frozen=True)
