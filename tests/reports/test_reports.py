@@ -141,6 +141,7 @@ def test_a_quick_run_has_the_failures_of_the_pages_and_a_full_one_the_large_ones
     ("words", "telling"),
     [
         (["run", "fuor_bar"], "four_bar"),
+        (["run", "--engine", "pymonk"], "pymunk"),
         (["run", "--every", "0"], "greater than or equal to 1"),
         (["run", "--step", "0.0033"], "does not divide"),
         (["run", "--limit", "0"], "greater than zero"),

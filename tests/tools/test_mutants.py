@@ -100,10 +100,10 @@ def test_generated_mistakes_are_named_by_place_and_operator_and_not_by_line():
 
 def test_a_mistake_is_noticed_by_the_tests_that_fail_and_taken_back(tree):
     tests = ("tests/test_area.py",)
-    mistakes = [None, wrong("2 * ", "-2 * "), wrong("2 * ", "3 * "), wrong("width < 0", "width < -1")]
+    mistakes = [None, wrong("2 * ", "-2 * "), wrong("width < 0", "width < -1")]
     answers = asked([Question(tests, mistake, first=False) for mistake in mistakes], [tree])
     positive, product = (f"tests/test_area.py::test_{name}" for name in ("positive", "product"))
-    assert [answer.noticed for answer in answers] == [(), (positive, product), (product,), ()]
+    assert [answer.noticed for answer in answers] == [(), (positive, product), ()]
     assert (tree / "area.py").read_text() == AREA
     [first] = asked([Question(tests, mistakes[1])], [tree])
     assert first.noticed == (positive,)
