@@ -20,7 +20,6 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import DiscInHole, RollingDisc, RollingEllipse, RollingOnCircle, SquareOnCatenaries
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
-from reports.cli.selection import choose_cells, known_engines
 from reports.model.cells import Cell
 from reports.model.measure import measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome
@@ -29,7 +28,6 @@ from reports.model.tasks import Motion, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
 from reports.pages.rolling.methods import absent_contact, parting
 from reports.pages.skate import methods
-from reports.pages.skate import page as skate
 from reports.pages.skate.experiments import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
@@ -147,18 +145,6 @@ def test_counting_tells_what_the_rows_leave():
     assert told["two skates in one line"] == "(3, 1); integrable: of 3 it can reach 1"
     assert told["three skates"].startswith("(3, 0)")
     assert "| car_and_trailer | 5 | (4, 1) | 1 | integrable |" in wheels.counted(wheels.SCENES)
-
-
-def test_a_run_has_the_named_methods_of_a_page_and_those_of_its_experiments():
-    engines = known_engines((skate.PAGE,))
-    cells = choose_cells(skate.SCENES, engines, (skate.PAGE,), full=False)
-    swept = {(cell.scene.name, cell.engine.variant) for cell in cells if cell.purpose == "sweep"}
-    assert ("sleigh", "skate: groove, extrapolated") in swept
-    # Nothing constructs a skate where there is none.
-    assert ("pinned_body", "skate: groove, extrapolated") not in swept
-    everything = choose_cells(skate.SCENES, engines, (skate.PAGE,), full=True)
-    assert {cell for failure in skate.PAGE.failures for cell in failure.cells} <= set(everything)
-    assert set(cells) < set(everything)
 
 
 def row(scene, engine, every, samples=None):

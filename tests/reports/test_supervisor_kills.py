@@ -120,39 +120,6 @@ def test_workers_end_when_their_parent_is_gone(tmp_path):
             wait_until(lambda file=file: is_free(file))
 
 
-INTERRUPTED = """
-import sys
-import time
-from reports.run.running import TIME_LIMIT
-from reports.run.supervisor import supervise
-
-if __name__ == "__main__":
-    try:
-        print("starting", flush=True)
-        list(supervise(time.sleep, [1000.0, 1000.0], TIME_LIMIT, 2))
-    except KeyboardInterrupt:
-        print("interrupted")
-"""
-
-
-@pytest.mark.parametrize("delay", [0.1, 2.0])
-def test_ctrl_c_reaches_all_processes_of_a_terminal_and_the_parent_alone_tells_it(tmp_path, delay):
-    (tmp_path / "script.py").write_text(INTERRUPTED, encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(
-        [sys.executable, tmp_path / "script.py"],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == b"starting\n"
-    time.sleep(delay)  # workers are started or at work: what comes out is the same
-    os.killpg(process.pid, signal.SIGINT)
-    assert process.communicate(timeout=60) == (b"interrupted\n", b"")
-
-
 def is_free(file) -> bool:
     """Whether no process holds a lock on a file: processes that have ended may still have their number."""
     try:
