@@ -32,7 +32,7 @@ from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
-from reports.plots.mechanisms import outline, path
+from reports.plots.mechanisms import Strip, outline, path, stroboscope
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
 from tests.mechanisms import four_bar, pendulum
@@ -413,3 +413,24 @@ def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_trut
     truth = scene.motion(first[:, 0]).twist[:, :, 2]
     assert first[:, 1] == pytest.approx(truth[:, 0])
     assert second[:, 1] == pytest.approx(truth[:, 1])
+
+
+@pytest.mark.parametrize("draw", [charts.work_precision, charts.error_against_step])
+def test_the_quantity_that_was_asked_for_is_drawn_with_its_unit(draw):
+    figure = draw(falling("pymunk default", (1e-2, 1e-3), "position", angle=5.0), field="position")
+    [panel] = panels(figure)
+    [drawn] = series(panel).values()
+    assert [y for _, y in drawn] == [1e-2, 1e-3]
+    assert panel.get_ylabel() == "largest position error [m]"
+
+
+def test_a_strip_takes_its_poses_at_equal_times_and_says_so():
+    strip = Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)
+    assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])
+    assert strip.caption == "Turning: every 0.25 s"
+    assert Strip(Disc(duration=2.0), "Turning", 3).times() == pytest.approx([0.0, 1.0, 2.0])
+    assert Strip(Disc(), "Once", 1, start=0.125).caption == "Once: 0.125 s"
+    strips = [
+        Strip(Disc(duration=end), name, 2, ends={"disc": ((1.0, 0.0),)}) for end, name in ((1.0, "One"), (3.0, "Two"))
+    ]
+    assert [panel.get_title(loc="left") for panel in stroboscope(strips).axes] == [each.caption for each in strips]

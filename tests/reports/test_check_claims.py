@@ -267,3 +267,11 @@ def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
     weight = sum(body.mass for body in mechanism.bodies) * 9.81 * 1e-3
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1)).max()
     assert errors(mechanism, truth, lifted).worst("energy") == pytest.approx(weight / kinetic, rel=1e-6)
+
+
+@pytest.mark.parametrize("falling", [True, False])
+def test_a_third_part_is_told_where_an_error_no_longer_falls(soft, falling):
+    told = source(replace(soft, parts=replace(soft.parts, falling=falling, rest=0.123)))
+    assert ("0.12 is left, and it still falls: there is no sign of a third part." in told) == falling
+    assert ("0.12 is left, and it no longer falls: this much neither softness nor step explains." in told) != falling
+    assert "No smaller step removes this; stiffer joints do." in told

@@ -20,7 +20,7 @@ from engines.registry import INSTALLED
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model import fingerprint as fingerprint_module
 from reports.model.cells import Cell
-from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_of, with_required
+from reports.model.fingerprint import OURS, ROOT, fingerprint, modules_behind, modules_of, with_required
 from reports.model.measure import blank
 from reports.run.store import Store
 from tests.toys import Disc, FailingToy, Toy
@@ -335,3 +335,9 @@ def test_what_is_required_in_turn_is_found_without_extras_and_without_what_is_no
     assert with_required(["Engine"]) == {"engine", "binding", "parser-of-c"}
     assert with_required(["drawing"]) == {"drawing"}
     assert with_required(["nothing"]) == set()
+
+
+def test_the_classes_that_an_engine_derives_from_count(theirs):
+    base = type(theirs[1])
+    derived = type("Derived", (base,), {"__module__": "derived"})
+    assert {"derived", "theirs.plugin"} <= modules_behind(derived()) & modules_behind((derived,))

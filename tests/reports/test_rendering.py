@@ -15,7 +15,7 @@ from reference.mechanism import Mechanism
 from reports.model.cells import Cell
 from reports.model.convergence import Verdict
 from reports.model.outcomes import Outcome
-from reports.model.page import Material, Page
+from reports.model.page import Failure, Material, Observation, Page
 from reports.pages.index import render_readme
 from reports.pages.rendering import render_all, render_page
 from reports.write.page_tables import overviews
@@ -247,3 +247,19 @@ def test_a_cell_ends_with_who_holds_the_joints_and_a_shipped_engines_cell_with_w
     assert cell_of(torn, method=f"toy {variant}", page=page) == f"torn; {words}"
     unbuilt = [replace(row, outcome=Outcome.UNSUPPORTED) for row in rows]
     assert cell_of(unbuilt, method=f"toy {variant}", page=page) == "unsupported"
+
+
+def test_an_experiment_has_its_own_rows_their_sentences_and_what_was_observed():
+    torn, sound = (Cell(DISC, Toy(name), 1, "failure") for name in ("torn", "sound"))
+    rows = {
+        torn: row_of("mujoco torn", outcome=Outcome.TORN, sentence="it tore", gap=1.7, step=0.1),
+        sound: row_of("mujoco sound", sentence="", step=0.1),
+    }
+    first = Failure("First", "It should turn.", (torn,), lambda material: [Observation("by hand", "a way", "0.02 rad")])
+    second = Failure("Second", "So should this.", (sound,), columns=("energy",))
+    page = replace(PAGE, scenes=(DISC,), failures=(first, second))
+    text = render_page(page, Material(rows), "the command")["base_data.md"]
+    one, two = (text.split(f"### {name}")[1].split("\n## ")[0].split("\n### ")[0] for name in ("First", "Second"))
+    for words in ("| mujoco torn | - | **torn** 1.7 m |", "**torn**: it tore", "| by hand | a way | 0.02 rad |"):
+        assert (words in one, words in two) == (True, False)
+    assert "| mujoco sound | - | 0.1 | **finished** | 5.3e-3 |" in two

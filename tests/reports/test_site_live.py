@@ -15,12 +15,16 @@ from engines import Unsupported
 from engines import mujoco as mujoco_engine
 from engines import pymunk as pymunk_engine
 from engines.pymunk.methods import SKATE_GROOVE
+from reference.plane import rotated
+from reference.rolling.curves import Circle
+from reference.rolling.kinematics import Rolling
+from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reports.site.drawn import demanded, loose, opened
+from reports.site.drawn import demanded, loose, opened, place_of
 from reports.site.embed import forces
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
@@ -200,3 +204,12 @@ def test_stored_rows_are_series_of_steps_and_errors():
     for live in LIVE.values():
         methods = {each["method"] for each in stored_rows(published, [live.scene.name])}
         assert methods & {"pymunk default", "pymunk tuned", "mujoco default"}
+
+
+def test_a_contact_turns_with_the_body_on_which_something_rolls():
+    joint = Roll("roll", "first", "second", Rolling.at_arcs(Circle(0.3), Circle(0.5)))
+    first, second = np.array([[0.0, 0.0, 0.0]]), np.array([[0.8, 0.0, 0.4]])
+    place, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
+    second_turned = [*(shift + rotated(turn, second[0, :2])), 0.4 + turn]
+    turned = place_of(joint, np.array([[*shift, turn]]), np.array([second_turned]))
+    assert turned[0] == pytest.approx(shift + rotated(turn, place[0]), abs=1e-14)

@@ -304,3 +304,25 @@ def test_a_machine_is_told_without_its_name_or_a_path(monkeypatch):
 
 def test_bars_and_line_ends_do_not_break_a_table():
     assert tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1) == "| a | b |\n| --- | --: |\n| 1\\|2 | 3 4 |"
+
+
+def test_a_method_that_built_nothing_does_not_make_the_mechanism_empty():
+    nothing = dict.fromkeys(("bodies", "own_bodies", "own_coordinates", "own_rows", "own_freedoms"), 0)
+    unsupported = row_of("a x", outcome=Outcome.UNSUPPORTED, **nothing)
+    lost = row_of("b x", step=1.0, outcome=Outcome.TIMED_OUT, **nothing)
+    _, *body = table(tables.size_table([unsupported, lost, row_of("b x")]))
+    assert body == [
+        ["139", "149", "151", "-", "*the mechanism itself, 157 freedoms*"],
+        ["113", "127", "131", "137", "b (x)"],
+    ]
+    # Where nobody built it, there is nothing to say of it.
+    assert table(tables.size_table([unsupported])) == [["bodies", "coordinates", "rows", "solver rows", "modelled by"]]
+
+
+def test_an_outcome_table_has_each_cells_own_sentence():
+    head, *body = table(tables.outcome_table([row(outcome=Outcome.TORN, sentence="it tore"), row(sentence="")]))
+    assert head == ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
+    assert body == [
+        ["toy default", "0.011", "**torn**: it tore", "1.9e-3", "4.1e-3"],
+        ["toy default", "0.011", "**finished**", "1.9e-3", "4.1e-3"],
+    ]
