@@ -1,6 +1,5 @@
 """The grid's options and its table, from the package, so that an installed copy has them too."""
 
-import ast
 import os
 import signal
 from pathlib import Path
@@ -26,27 +25,8 @@ GRID = "test_crosscheck.py"
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Where `-m` asks for the grid alone, no other file is imported: importing them all takes ten seconds."""
-    other = collection_path.name.startswith("test_") and collection_path.name != GRID
-    return True if other and wants_the_grid_alone(config.getoption("-m") or "") else None
-
-
-def wants_the_grid_alone(expression: str) -> bool:
-    """Whether an expression of `-m` is false of every test without the mark `crosscheck`; False where in doubt."""
-    try:
-        return _false_without_the_mark(ast.parse(expression, mode="eval").body)
-    except SyntaxError:
-        return False
-
-
-def _false_without_the_mark(node: ast.expr) -> bool:
-    match node:
-        case ast.Name(id=name):
-            return name == "crosscheck"
-        case ast.BoolOp(op=ast.And(), values=values):
-            return any(map(_false_without_the_mark, values))
-        case ast.BoolOp(op=ast.Or(), values=values):
-            return all(map(_false_without_the_mark, values))
-    return False
+    alone = config.getoption("-m") in ("crosscheck", "crosscheck and not slow")
+    return True if alone and collection_path.name.startswith("test_") and collection_path.name != GRID else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -25,7 +25,6 @@ from reports.model.catalogue import PAGES, page_of, untaught
 from reports.model.checks import CHECKS
 from reports.model.outcomes import Outcome
 from tests.conftest import GRID as FILE
-from tests.conftest import wants_the_grid_alone
 from tests.present import present
 from tests.toys import Disc
 
@@ -82,20 +81,6 @@ def test_a_scene_that_no_page_teaches_is_named():
     assert untaught((*SCENES, Disc())) == ("disc",)
     assert untaught(SCENES, [page for page in PAGES if page.name != "wheels"]) == ("car_and_trailer", "cart")
     assert page_of(Disc()) is None
-
-
-@pytest.mark.parametrize(
-    ("expression", "alone"),
-    [
-        ("crosscheck", True),
-        ("not slow and (crosscheck or crosscheck and browser)", True),
-        ("", False),
-        ("not crosscheck", False),
-        ("crosscheck(level=", False),
-    ],
-)
-def test_other_files_are_left_out_only_where_no_test_of_theirs_can_be_meant(expression, alone):
-    assert wants_the_grid_alone(expression) is alone
 
 
 def test_no_other_file_has_tests_of_the_grid():

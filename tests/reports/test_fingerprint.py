@@ -198,16 +198,6 @@ def test_every_import_of_ours_is_followed():
         assert wanted <= fingerprint_module._imports(path), path
 
 
-def test_a_sentence_is_no_import_and_a_folder_without_sources_no_package(tmp_path, monkeypatch):
-    text = "imports a, b\nimport a model of b\nfrom it import what it has\nimport c as d, e.f  # g\nif h: import k\n"
-    (tmp_path / "file.py").write_text(text + "from l import (m,  # n\n    o)\nfrom p import *\n", encoding="utf-8")
-    assert fingerprint_module._imports(tmp_path / "file.py") >= {"c", "e.f", "k", "l", "l.m", "l.o", "p"}
-    assert not fingerprint_module._imports(tmp_path / "file.py") & {"a", "b", "it", "d", "h"}
-    (tmp_path / "results_of_mine").mkdir()
-    monkeypatch.syspath_prepend(tmp_path)
-    assert fingerprint_module._piece("results_of_mine") == ()
-
-
 def test_every_engine_imports_another_s_package_by_an_import_alone():
     """A module that is imported by its name as a text would not be followed, unless it lies in the same package."""
     for engine in INSTALLED:

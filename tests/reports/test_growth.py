@@ -14,24 +14,21 @@ from engines import Unsupported
 from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes
-from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
-from reports.cli.selection import QUICK_MOST, BadInput, choose_cells, steps_per_sample
+from reports.cli.selection import BadInput, steps_per_sample
 from reports.model import measure as measuring
-from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, estimated_seconds, sweep_cells
+from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.model.measure import measure, repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.pages.centrodes.page import returned
-from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
 from reports.pages.scaling.experiments import BandedChain
-from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP, cost_table, crossing
-from reports.pages.skate import page as skate
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, STEP, cost_table, crossing
 from reports.pages.skate.page import constructions
 from reports.write.rows import Rows
 from tests.rows import falling, row_of, table
@@ -93,17 +90,6 @@ def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alo
     assert {round(cell.step / STEP, 9) for cell in CELLS} == {1.0}
     assert all(cell.scene.duration < 0.5 for cell in CELLS if links(cell) in COSTLY)
     assert len({cell.key for cell in CELLS}) == len(CELLS)
-
-
-def test_a_quick_run_has_the_small_chains_and_a_full_one_all():
-    pendulums = tuple(scene for scene in SCENES if pendulum.PAGE.teaches(scene))
-    engines = tuple(dict.fromkeys(cell.engine for cell in CELLS))
-    for full in (False, True):
-        chosen = [c for c in choose_cells(pendulums, engines, (PAGE,), full) if isinstance(c.scene, LongPendulum)]
-        quick = [cell for cell in CELLS if links(cell) in SMALL and estimated_seconds(cell) <= QUICK_MOST]
-        assert chosen == (list(CELLS) if full else quick)
-    others = tuple(scene for scene in SCENES if skate.PAGE.teaches(scene))
-    assert not any(isinstance(c.scene, LongPendulum) for c in choose_cells(others, engines, (PAGE,), True))
 
 
 def test_costs_are_of_a_step_and_errors_of_whole_runs_alone(material):

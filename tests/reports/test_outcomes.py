@@ -14,7 +14,7 @@ from reports.model.measure import compare, measure
 from reports.model.outcomes import BLOWN, LETTERS, MEANINGS, SATURATED, TORN, Outcome, of_motion
 from tests.reports.test_measure import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
 from tests.rows import row
-from tests.toys import Disc, FailingToy, ImpossibleDisc, Toy
+from tests.toys import Disc, ImpossibleDisc, Toy
 
 
 def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
@@ -95,13 +95,6 @@ def test_a_drive_that_falls_behind_is_torn():
         assert found.outcome == outcome
         assert telling in found.sentence
         assert found.drive_gap == pytest.approx(lag)
-
-
-def test_changes_of_assembly_are_counted():
-    found = measure(Cell(DISC, FailingToy("flip"), 1), repeat=False)
-    assert (found.flips, found.sentence) == (1, "1 change of assembly that the truth lacks")
-    sentence = of_motion(row(gap=0.0, drive_gap=0.0, flips=2), DISC.mechanism(), disc(), len(INSTANTS))[1]
-    assert sentence == "2 changes of assembly that the truth lacks"
 
 
 def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) -> str:

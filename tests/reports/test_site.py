@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import sys
-import tomllib
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -216,16 +215,6 @@ def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
     assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
     write_site(new, {MARKER: b"{}", "c.html": b"two"})
     assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
-
-
-def test_every_file_of_the_site_is_in_a_wheel():
-    globs = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-data"]["*"]
-    folder = ROOT / "reports" / "site"
-    for path in folder.rglob("*"):
-        if path.is_dir() or path.suffix in (".py", ".pyc") or path.name == "readme.svg":
-            continue
-        package = next(each for each in path.parents if (each / "__init__.py").is_file())
-        assert any(path in package.glob(pattern) for pattern in globs), path
 
 
 HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))

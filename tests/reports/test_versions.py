@@ -80,14 +80,6 @@ def ended(outcome):
     return [row(float("nan"), outcome)]
 
 
-def test_a_cost_is_the_median_of_the_ratios_of_all_rows_and_of_each_methods():
-    before = [row(1e-3, every=every) for every in (1, 3, 10)]
-    after = [row(1e-3, every=every, cpu=cpu) for every, cpu in ((1, 1.0), (3, 2.0), (10, 9.0))]
-    found = compared(before, after)
-    assert found.cost == 2.0
-    assert dict(found.costs) == {before[0].method: 2.0}
-
-
 def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():
     before = [row(1e-3), row(1e-4, every=10)]
     assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
