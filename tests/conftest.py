@@ -16,7 +16,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # The longest, each of which would keep one worker busy after the others have ended.
 FIRST = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
-    *("other_elements", "other_engines", "conformance", "without_engines"),
+    *("other_elements", "other_engines", "conformance"),
 )
 
 # The one file whose tests are marked `crosscheck`, which a test there holds.
