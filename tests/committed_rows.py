@@ -13,6 +13,7 @@ from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
+from reports.model.tasks import Answer, Task, answered
 from reports.write.csv_files import digest
 from tests import RESULTS
 
@@ -53,6 +54,12 @@ def stale(cells: Iterable[Cell]) -> list[str]:
 def page_rows(page: Page) -> Mapping[Cell, Measurement]:
     """The committed rows of a page's cells: read once for all tests, because a cell's key takes its time."""
     return committed_rows(shown_cells(page))
+
+
+@cache
+def answer_to(task: Task) -> Answer:
+    """A task's answer: worked out once for all tests of a process, because engines take their time."""
+    return answered(task)
 
 
 def _lines_of(cell: Cell) -> list[dict[str, str]]:

@@ -1,6 +1,5 @@
 """The grid's options and its table, from the package, so that an installed copy has them too."""
 
-import ast
 import os
 import signal
 from pathlib import Path
@@ -16,8 +15,8 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 # The longest, each of which would keep one worker busy after the others have ended.
 FIRST = (
-    *("third_party", "site_in_browser", "cluster", "wrong_models", "any_rows", "wheel", "lagrange_compiled"),
-    *("promised", "matrix", "random", "scenes", "conformance", "without_engines"),
+    *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
+    *("promised", "matrix", "random", "scenes", "conformance"),
 )
 
 # The one file whose tests are marked `crosscheck`, which a test there holds.
@@ -26,27 +25,8 @@ GRID = "test_crosscheck.py"
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Where `-m` asks for the grid alone, no other file is imported: importing them all takes ten seconds."""
-    other = collection_path.name.startswith("test_") and collection_path.name != GRID
-    return True if other and wants_the_grid_alone(config.getoption("-m") or "") else None
-
-
-def wants_the_grid_alone(expression: str) -> bool:
-    """Whether an expression of `-m` is false of every test without the mark `crosscheck`; False where in doubt."""
-    try:
-        return _false_without_the_mark(ast.parse(expression, mode="eval").body)
-    except SyntaxError:
-        return False
-
-
-def _false_without_the_mark(node: ast.expr) -> bool:
-    match node:
-        case ast.Name(id=name):
-            return name == "crosscheck"
-        case ast.BoolOp(op=ast.And(), values=values):
-            return any(map(_false_without_the_mark, values))
-        case ast.BoolOp(op=ast.Or(), values=values):
-            return all(map(_false_without_the_mark, values))
-    return False
+    alone = config.getoption("-m") in ("crosscheck", "crosscheck and not slow")
+    return True if alone and collection_path.name.startswith("test_") and collection_path.name != GRID else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -58,13 +38,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture
 def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands run what they run in this process: workers take seconds to start, and are the subject of other tests."""
+    from reports.gate import walk
     from reports.run import cluster, supervisor
+    from tests.toys import in_process
 
-    def supervised(work: Any, items: Any, *terms: Any, **named: Any) -> Any:
-        return ((item, work(item), "") for item in items)
-
-    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, supervised))
-    monkeypatch.setattr(supervisor, "supervise", supervised)  # for what commands import when they are called
+    monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Pool(1, in_process))
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # for what commands import when they are called
+    monkeypatch.setattr(walk, "supervise", in_process)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

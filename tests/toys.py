@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,11 @@ from reference.joints import Joint, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scene import Scene
 from reference.trajectory import Trajectory
+
+
+def in_process(work: Callable[[Any], Any], items: Iterable[Any], *_: Any, **__: Any) -> Iterator[tuple[Any, Any, str]]:
+    """Stands for `supervise` where workers, which take seconds to start, are not the subject."""
+    return ((item, work(item), "") for item in items)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import math
 import random
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cache
 from typing import Any
@@ -25,7 +25,7 @@ from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_words
 from reports.model.quantities import QUANTITIES
-from reports.model.tasks import Answer, Motion, Task, answered
+from reports.model.tasks import Answer, Motion, Task
 from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
 from reports.pages.errata import experiments as referees
 from reports.pages.faults.experiments import Equalities, Grooves, Offsets
@@ -36,14 +36,7 @@ from reports.pages.pendulum.experiments import Neighbours
 from reports.pages.published import acrobot, newton
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling import page as rolling
-from reports.pages.rolling.experiments import polygon_cells, softness_cells
-from reports.pages.scaling import page as scaling
 from reports.pages.skate import methods as turning_round
-from reports.pages.skate import page as skate
-from reports.pages.skate.methods import slipping
-from reports.pages.wheels import experiments as wheels_failures
-from reports.pages.wheels import page as wheels
 from reports.pages.wheels.experiments import Folding
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
@@ -51,12 +44,19 @@ from reports.write.experiments import observe
 from reports.write.templates import environment
 from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
 from tests import ROOT
-from tests.committed_rows import page_rows
+from tests.committed_rows import answer_to, page_rows
 
-SUBSETS, MORE = 3, 16  # of every page: every day, and among the slow tests
+SUBSETS, MORE = 2, 16  # of every page: every day, and among the slow tests
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
+
+
+def third(pages: Sequence[Page]) -> list[Any]:
+    """Each third page every day, the others among the slow tests."""
+    return [pytest.param(page, marks=() if n % 3 == 0 else pytest.mark.slow) for n, page in enumerate(pages)]
+
+
 # The pictures of the others show the truth alone, with trajectories over it that no row holds.
 DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
 
@@ -170,7 +170,7 @@ def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
     assert complaints(page.name, written(cheap(page), failed)) == []
 
 
-@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", third(FROM_ROWS), ids=lambda page: page.name)
 def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
     """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
     chance, rows = random.Random(page.name), page_rows(page)
@@ -179,23 +179,6 @@ def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
         few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
     for name, text in written(replace(cheap(page), figures=lambda material: {}), few).items():
         assert not name.endswith(".svg") or text.startswith("<?xml")
-
-
-def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones():
-    chance = random.Random(0)
-    rows = page_rows(rolling.PAGE)
-    corners = [(value, rows[cell]) for value, cell in polygon_cells()]
-    constants = [(value, rows[cell]) for value, cell in softness_cells()]
-    chains = page_rows(scaling.PAGE)
-    for count in (1, 4):
-        few, soft = chance.sample(corners, count), chance.sample(constants, count)
-        failed = [(value, replace(row, angle=math.nan)) for value, row in few]
-        failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
-        assert theme.svg(rolling.draw_plateaus(few, soft), "few")
-        assert theme.svg(rolling.draw_plateaus(failed, failed_soft), "failed")
-        some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
-        for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
-            assert scaling.figures(Material(own))
 
 
 def test_the_overview_can_be_read_whatever_was_run():
@@ -227,7 +210,7 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
         for task in failure.tasks
         if not isinstance(task, Neighbours)  # takes seconds, and any growth makes a sentence
     )
-    material = Material(page_rows(page), answers | {task: answered(task) for task in said})
+    material = Material(page_rows(page), answers | {task: answer_to(task) for task in said})
     assert complaints(page.name, render_page(cheap(page), material, "the command")) == []
     assert vanished == []
 
@@ -236,15 +219,10 @@ def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
     ("template", "said"),
     [
         ("{{ row.angle | number }}", WORDS),
-        ("{{ row.cpu | milliseconds }}", WORDS),
         ("{{ (1e3 * row.step / row.other.step) | number }}", WORDS),
-        ("{{ rows[3].step | number(3) }}", WORDS),
-        ("{{ '%.2f' | format(row.order) }}", WORDS),
         ("{{ row }} {{ unknown }} {{ nothing }}", f"{WORDS} {WORDS} {WORDS}"),
         ("{% if row %}run{% else %}not run{% endif %}", "not run"),
-        ("{% if row.points >= 2 %}many{% endif %}", ""),
         ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
-        ("a{% filter if_measured %}: {{ 0.25 | number }} rad{% endfilter %}.", "a: 0.25 rad."),
         (
             "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
             "a: 1.",
@@ -358,20 +336,6 @@ def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
         assert WORDS not in told
 
 
-@pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.UNSUPPORTED])
-def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
-    for page, observations in (
-        (skate.PAGE, turning_round.backwards),
-        (skate.PAGE, slipping),
-        (wheels.PAGE, wheels_failures.folding),
-    ):
-        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in all_tasks(page)}))
-        assert [seen for seen in told if "exact" in seen.method or "closed form" in seen.method]
-        engines = [seen for seen in told if "reference" not in seen.method]
-        lost = [seen for seen in engines if seen.outcome == "**aborted**: no such thing"]
-        assert bool(lost) == (outcome == Outcome.ABORTED)
-
-
 def test_a_motion_that_can_not_be_read_says_so_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
@@ -380,15 +344,6 @@ def test_a_motion_that_can_not_be_read_says_so_in_its_line():
     lost = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
     [line] = observe(lost, cell, "a step", lambda run: "all is well")
     assert line.outcome == "**diverged**: not finite from 5 s"
-
-
-def test_an_experiment_of_which_no_task_was_run_says_so():
-    page = replace(skate.PAGE, figures=lambda material: {})
-    for answers, waiting in (({}, True), ({task: still(task) for task in all_tasks(page)}, False)):
-        text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
-        section = text.split("### The sleigh run backwards")[1].split("###")[0]
-        assert "exact motion" in section
-        assert ("Not run yet." in section) == waiting
 
 
 def test_a_referee_that_fails_is_named_and_the_others_rule():

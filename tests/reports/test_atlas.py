@@ -26,7 +26,6 @@ from reports.pages.atlas.column import Column, bisected, gives_from, left_by_swe
 from reports.pages.atlas.page import atlas_map, edges
 from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
 from reports.pages.atlas.table import (
-    BY_LETTER,
     CELLS,
     COSTS,
     LIKE_THE_LAST,
@@ -35,7 +34,6 @@ from reports.pages.atlas.table import (
     Line,
     as_csv,
     costs_as_csv,
-    power,
     read,
     read_costs,
 )
@@ -70,14 +68,6 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range(subject
         assert subject.make(value).mechanism().bodies
         assert 0 < subject.frequency(value) < math.inf
         assert subject.make(value) == subject.make(value)
-
-
-def test_steps_are_evenly_spaced_in_their_logarithm_and_the_largest_come_first():
-    counts = [samples * every for samples, every in SUBJECTS[0].steps(40)]
-    assert counts == sorted(set(counts))
-    ratios = np.diff(np.log(counts))
-    even = SUBJECTS[0].doublings * math.log(2) / 39
-    assert np.all(np.abs(ratios - even) < 0.1)  # two counts of ten and more, each rounded by a half
 
 
 def test_lines_of_the_map_are_rates_that_closed_forms_and_fine_grids_give():
@@ -119,14 +109,6 @@ def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length
     # The pin stays where it is, so that an engine without the term of velocities loses nothing.
     lacking = Soft(1.0, 0.0, complete=False)
     assert gives_from(scene, mechanism, (lacking,), 1e-3, 1e-1) == [math.inf]  # type: ignore[arg-type]
-
-
-def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
-    mechanism = LinkPendulum(links=10).mechanism()
-    left = {engine: left_by_sweeps(mechanism, engine) for engine in SHOWN}
-    for engine, value in left.items():
-        assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
-        assert math.isnan(value) or 0 < value < 1
 
 
 def test_a_column_tells_what_its_cells_do_and_an_abort_costs_one_cell():
@@ -215,17 +197,6 @@ def test_the_files_are_read_as_they_were_written(tmp_path):
         read_costs(tmp_path / "wrong.csv")
 
 
-def test_letters_and_powers_say_what_became_of_a_cell():
-    for outcome in Outcome:
-        assert BY_LETTER[outcome.letter].comparable == outcome.comparable
-    assert BY_LETTER["·"] is Outcome.FINISHED
-    assert LINES[0].steps == (0.1, 0.05, 0.025, 0.0125)
-    assert LINES[0].told == (Outcome.FINISHED, Outcome.SATURATED, Outcome.FINISHED, Outcome.TORN)
-    assert (power(2e-3), power(1.0)) == (-2.7, 0.0)
-    assert math.isnan(power(math.nan))
-    assert math.isnan(power(0.0))
-
-
 def test_regions_lie_where_the_cells_of_their_outcome_are():
     figure = atlas_map(TOYS, LINES[:2])
     [panel] = [axes for axes in figure.axes if axes.get_visible()]
@@ -239,19 +210,6 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
 
 
-def test_lines_are_drawn_only_where_they_explain_something():
-    def labels(lines):
-        return {text.get_text() for text in atlas_map(TOYS, lines).legends[0].get_texts()}
-
-    swept = "sweeps leave half of the slowest mode"
-    soft = "from here on the method's own softness tears a joint"
-    assert {swept, soft} <= labels(LINES[:2])
-    assert not {swept, soft} & labels(LINES[2:])
-    # 2 / rate is above the largest step of 0.1 s up to 20 rad/s.
-    assert not any("frequency" in label for label in labels(LINES[:2]))
-    assert any("frequency of the disc" in label for label in labels([*LINES[:2], line(100.0, "TT·S")]))
-
-
 def test_the_largest_safe_step_is_safe_at_every_value():
     assert page.largest_safe([line(1.0, "·S··"), line(2.0, "TTS·")]) == "0.013"
     assert page.largest_safe([line(1.0, "·S··")]) == "0.025"
@@ -262,15 +220,6 @@ def test_the_largest_safe_step_is_safe_at_every_value():
         1,
         2,
     )
-
-
-def test_scaling_is_bounded_by_what_one_client_gets_through():
-    lines = (Cost("toys", "toy default", 1000, 30.0),)
-    told = page.scaling(Costs("here", 0.0, 2, math.nan, 1000.0, lines))
-    assert told["stops"] == pytest.approx(30.0)  # 30 ms a cell, 1000 of them stored in a second
-    assert "| 64 | 7.81 min | 16.7 min | the client |" in told["table"]
-    fast = page.scaling(Costs("here", 0.0, 2, 10.0, 1e9, lines))
-    assert fast["stops"] == pytest.approx(3.0)  # 10 chunks of 0.3 s in a second
 
 
 def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
@@ -335,3 +284,20 @@ def test_no_two_failures_look_and_read_alike():
     assert fine == {LIGHT.good, LIGHT.middling}
     assert LIGHT.good not in colours[0]
     assert len(set(HATCHES.values())) == len(HATCHES)
+
+
+def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
+    mechanism = LinkPendulum(links=10).mechanism()
+    left = {engine: left_by_sweeps(mechanism, engine) for engine in SHOWN}
+    for engine, value in left.items():
+        assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
+        assert math.isnan(value) or 0 < value < 1
+
+
+def test_scaling_is_bounded_by_what_one_client_gets_through():
+    lines = (Cost("toys", "toy default", 1000, 30.0),)
+    told = page.scaling(Costs("here", 0.0, 2, math.nan, 1000.0, lines))
+    assert told["stops"] == pytest.approx(30.0)  # 30 ms a cell, 1000 of them stored in a second
+    assert "| 64 | 7.81 min | 16.7 min | the client |" in told["table"]
+    fast = page.scaling(Costs("here", 0.0, 2, 10.0, 1e9, lines))
+    assert fast["stops"] == pytest.approx(3.0)  # 10 chunks of 0.3 s in a second

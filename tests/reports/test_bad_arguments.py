@@ -6,7 +6,6 @@ import dataclasses
 import faulthandler
 import math
 import os
-import pickle
 import random
 import signal
 from array import array
@@ -33,50 +32,49 @@ from tests.samples import INSTANCES, SCENES_OF_LIMITS
 TRIED = 2000
 # Dataclasses that users don't make: what the suite gives back or uses inside, and the catalogue of errata.
 NOT_MADE_BY_USERS = {
-    *(
-        "reference.chapter.errata.catalogue.WordSlip",
-        "reference.chapter.errata.erratum.Values",
-        "reference.chapter.errata.erratum.Erratum",
-    ),
-    *(
-        "reference.chapter.errata.linkages.BarState",
-        "reference.scenes.four_bar.closed_form.Constants",
-        "reference.kinds.Rule",
-    ),
-    *("reference.rows.JointGroup", "reference.rows.JointRows"),
-    *("reference.forces.ForceGroup", "reference.forces.AppliedForces"),
-    *("reference.kinds.Kind", "reference.numerics.integration.Integrated", "reference.numerics.windows.Windows"),
-    "reference.numerics.windows.InDouble",
-    *("reference.chapter.errata.linkages.TwoPoints", "reference.scenes.pendulum.joint_forces.JointForces"),
-    *("reports.gate.change.Altered", "engines.contract.Size"),
-    "engines.pymunk.contraction.Sweeping",
-    *("engines.contract.Softness", "engines.contract.Promise", "engines.contract.Unpromised"),
-    *(
-        "engines.loading.Kind",
-        "engines.finer.Division",
-        "engines.entry_points.Registered",
-    ),
-    *("engines.lagrange.machine.Machine", "engines.lagrange.arrays.Arrays"),
-    *("reference.rolling.contact.Contact", "reference.scenes.wheels.trailers.Convoy"),
-    *("engines.mujoco.construction.Hooks", "engines.mujoco.construction.Building", "engines.mujoco.model.Model"),
-    *("engines.mujoco.model.Settings", "engines.pymunk.running.Recording"),
-    *("engines.mujoco.joints.drive.DrivenCoordinate", "engines.mujoco.running.MuJoCoRun", "engines.tree.Link"),
-    *("engines.tree.Tree", "engines.mujoco.construction.WrittenJoint"),
-    *("engines.pymunk.joints.drive.Crank", "engines.pymunk.model.Settings", "engines.pymunk.model.Model"),
-    *(
-        "engines.reading.Note",
-        "engines.reading.Obstacle",
-        "engines.reading.Change",
-        "engines.reading.Give",
-        "engines.reading.Reading",
-    ),
-    *("engines.mujoco.reading.frame.Frame", "engines.mujoco.reading.frame.Groups", "engines.mujoco.writers.Mjcf"),
-    *("engines.mujoco.reading.elements.Scene", "engines.mujoco.reading.own_model.OwnMuJoCo"),
-    "engines.mujoco.writers.Urdf",
-    *("engines.pymunk.reading.joints.Described", "engines.pymunk.reading.own_model.OwnPymunk"),
-    *("engines.single_run.Recorded", "engines.conformance.same.Isometry"),
-    *("engines.conformance.check.Case", "engines.conformance.check.Check", "engines.conformance.check.Result"),
-    *("engines.conformance.world.Motion", "engines.conformance.world.World"),
+    f"{module}.{name}"
+    for module, names in {
+        "reference.chapter.errata.catalogue": "WordSlip",
+        "reference.chapter.errata.erratum": "Values Erratum",
+        "reference.chapter.errata.linkages": "BarState TwoPoints",
+        "reference.scenes.four_bar.closed_form": "Constants",
+        "reference.kinds": "Rule Kind",
+        "reference.rows": "JointGroup JointRows",
+        "reference.forces": "ForceGroup AppliedForces",
+        "reference.numerics.integration": "Integrated",
+        "reference.numerics.windows": "Windows InDouble",
+        "reference.scenes.pendulum.joint_forces": "JointForces",
+        "reports.gate.change": "Altered",
+        "engines.contract": "Size Softness Promise Unpromised",
+        "engines.pymunk.contraction": "Sweeping",
+        "engines.loading": "Kind",
+        "engines.finer": "Division",
+        "engines.entry_points": "Registered",
+        "engines.lagrange.machine": "Machine",
+        "engines.lagrange.arrays": "Arrays",
+        "reference.rolling.contact": "Contact",
+        "reference.scenes.wheels.trailers": "Convoy",
+        "engines.mujoco.construction": "Hooks Building WrittenJoint",
+        "engines.mujoco.model": "Model Settings",
+        "engines.pymunk.running": "Recording",
+        "engines.mujoco.joints.drive": "DrivenCoordinate",
+        "engines.mujoco.running": "MuJoCoRun",
+        "engines.tree": "Link Tree",
+        "engines.pymunk.joints.drive": "Crank",
+        "engines.pymunk.model": "Settings Model",
+        "engines.reading": "Note Obstacle Change Give Reading",
+        "engines.mujoco.reading.frame": "Frame Groups",
+        "engines.mujoco.writers": "Mjcf Urdf",
+        "engines.mujoco.reading.elements": "Scene",
+        "engines.mujoco.reading.own_model": "OwnMuJoCo",
+        "engines.pymunk.reading.joints": "Described",
+        "engines.pymunk.reading.own_model": "OwnPymunk",
+        "engines.single_run": "Recorded",
+        "engines.conformance.same": "Isometry",
+        "engines.conformance.check": "Case Check Result",
+        "engines.conformance.world": "Motion World",
+    }.items()
+    for name in names.split()
 }
 ABSTRACT = {"reference.scenes.four_bar.scenes.FourBarScene", "reference.scenes.rolling.scenes.RollingScene"}
 
@@ -209,12 +207,6 @@ def test_the_same_values_in_other_clothes_make_the_same(sample):
     for field in dataclasses.fields(sample):
         for value in unusual(getattr(sample, field.name)):
             assert repr(dataclasses.replace(sample, **{field.name: value})) == repr(sample), (field.name, value)
-
-
-@pytest.mark.parametrize("sample", INSTANCES, ids=lambda each: type(each).__name__)
-def test_what_is_checked_can_be_replaced_and_travels(sample):
-    assert repr(dataclasses.replace(sample)) == repr(sample)
-    assert repr(pickle.loads(pickle.dumps(sample))) == repr(sample)
 
 
 def test_lists_and_numbers_of_numpy_are_taken_by_functions():

@@ -1,7 +1,6 @@
 """`crosscheck bench`: what it compares is the same motion, and what is missing is told."""
 
 import re
-from types import SimpleNamespace
 
 import pytest
 
@@ -13,22 +12,11 @@ from reference.scenes.rolling.scenes import SquareOnCatenaries
 from reports.bench import judge
 from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, loop_costs, timings_alike
 from reports.cli.bench import bench
-from reports.model import spending
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Motion
 from reports.run.running import run_items
 from tests.toys import Disc, FailingToy, Toy
-
-
-def test_a_part_is_charged_without_the_parts_inside_it(monkeypatch):
-    clock = iter([0.0, 1.0, 4.0, 10.0])
-    spending.taken()
-    monkeypatch.setattr(spending, "time", SimpleNamespace(process_time=lambda: next(clock)))
-    with spending.spending("outer"), spending.spending("inner"):
-        pass
-    assert spending.taken() == {"outer": 7.0, "inner": 3.0}
-    assert spending.taken() == {}
 
 
 def test_an_engine_is_compared_with_the_loop_that_is_declared_for_its_name():

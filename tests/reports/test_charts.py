@@ -1,33 +1,43 @@
-"""Charts read back from their axes: which numbers are drawn, across and up, by which method, in which panel."""
+"""Charts and drawings read back from their axes: which numbers and poses are drawn, where, and by which method."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation, Text
 
-from engines import registry
+from reference import trajectory as outlines
+from reference.chapter.centrodes import Centrodes
+from reference.joints import Pin, Slot
+from reference.mechanism import Body, Mechanism
+from reference.scenes.rolling.elliptic_gears import EllipticGears
+from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
+from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
-from reports.model.scaling_fit import Point, Series, cost_exponent
+from reports.model.scaling_fit import Point, Series
+from reports.pages.centrodes.page import draw_centrodes, draw_rate
+from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling_charts
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
+from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
-from reports.plots.looks import role
-from reports.plots.theme import DARK, LIGHT, SERIES
-from tests.drawn import annotation
+from reports.plots.mechanisms import Strip, outline, path, stroboscope
+from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
+from reports.plots.theme import LIGHT
+from tests.mechanisms import four_bar, pendulum
 from tests.rows import falling, row_of
-from tests.toys import Toy
-
-ENGINES = ("pymunk", "mujoco", "lagrange", "other")
-# A stranger comes after all that are registered, installed or not.
-FAMILIES = [*dict.fromkeys(each.family for each in (*registry.ENGINES, *registry.OTHERS)), "other"]
+from tests.toys import Disc
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -114,15 +124,6 @@ def test_each_method_is_drawn_with_its_numbers_in_its_scenes_panel(draw, across,
     assert set(entries) - {"nothing is better and cheaper", "other methods", "rounding"} == set(methods)
 
 
-@pytest.mark.parametrize("draw", [charts.work_precision, charts.error_against_step])
-def test_the_quantity_that_was_asked_for_is_drawn_with_its_unit(draw):
-    figure = draw(falling("pymunk default", (1e-2, 1e-3), "position", angle=5.0), field="position")
-    [panel] = panels(figure)
-    [drawn] = series(panel).values()
-    assert [y for _, y in drawn] == [1e-2, 1e-3]
-    assert panel.get_ylabel() == "largest position error [m]"
-
-
 def front(panel: Axes) -> list[tuple[float, float]]:
     [line] = [line for line in panel.get_lines() if line.get_drawstyle() == "steps-post"]
     return points(line)
@@ -164,58 +165,6 @@ def test_the_front_holds_what_nothing_beats_whatever_the_order():
     assert charts.pareto([]) == []
 
 
-def test_each_front_is_that_of_its_own_scene():
-    rows = [
-        row_of("pymunk default", scene="one", angle=1e-3, cpu=1e-3),
-        row_of("pymunk default", scene="two", angle=1e-5, cpu=1e-4),
-    ]
-    first, second = panels(charts.work_precision(rows))
-    assert front(first) == [pytest.approx((1.0, 1e-3))]
-    assert front(second) == [pytest.approx((0.1, 1e-5))]
-
-
-@pytest.mark.parametrize("field", ["angle", "reaction"])
-def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name(field):
-    errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), field)
-    [panel] = panels(charts.error_against_step(errors, field=field))
-    [band] = panel.patches
-    low, high = band.get_path().get_extents(band.get_patch_transform()).intervaly
-    assert (low, high) == (pytest.approx(1e-16), pytest.approx(quantity(field).rounding))
-    guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
-    assert len(guides) == 3
-    for text, ((left, bottom), (right, top)) in zip(panel.texts, guides, strict=True):
-        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
-        assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
-    assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
-    assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
-
-
-@pytest.mark.parametrize("theme", [LIGHT, DARK])
-def test_an_engine_is_a_colour_and_a_mark_and_a_variant_a_line_and_a_filling(theme):
-    variants = ["default", "tuned", "extended", "fourth", "fifth"]
-    shown: dict[str, list[str]] = dict.fromkeys(map(str, ENGINES), variants)
-    looks = {(engine, v): families.look(engine, v, shown, theme) for engine in ENGINES for v in variants}
-    for engine in ENGINES:
-        own = [looks[engine, variant] for variant in variants]
-        place = FAMILIES.index(engine)
-        assert {look["color"] for look in own} == {getattr(theme, SERIES[place % len(SERIES)])}
-        assert {look["marker"] for look in own} == {families.MARKS[place % len(families.MARKS)]}
-        fillings = {(str(look["linestyle"]), look["fillstyle"], look["markerfacecolor"]) for look in own}
-        assert len(fillings) == len(variants)
-        assert len({str(look["linestyle"]) for look in own}) == len(variants)
-    for variant in variants:
-        assert len({str(looks[engine, variant]["linestyle"]) for engine in ENGINES}) == 1
-
-
-def test_a_variant_looks_the_same_whichever_others_are_shown():
-    def look(variant: str, *variants: str):
-        return families.look("pymunk", variant, {"other": ["x"], "pymunk": variants}, LIGHT)
-
-    assert look("tuned", "tuned") == look("tuned", "extended", "x", "tuned", "default")
-    assert look("x", "x", "y")["linestyle"] == families.LINES[0]  # named methods alone
-    assert look("x", "default", "x")["linestyle"] == families.LINES[3]
-
-
 def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_theirs():
     strangers = [f"engine {number:02}" for number in range(60)]
     pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
@@ -224,23 +173,6 @@ def test_any_number_of_families_are_told_apart_and_those_of_the_registry_keep_th
     assert pairs["engine 03"] == (families.role("engine 03", strangers[::-1]), families.mark("engine 03", strangers))
     # The first nine differ in their marks alone, as on paper without colours.
     assert len(set(families.MARKS)) == 9
-
-
-def test_engines_of_one_family_share_a_colour_and_differ_in_their_lines(monkeypatch):
-    relatives = (Toy(name="wide"), Relative("tuned", name="narrow"))
-    monkeypatch.setattr(families.registry, "ENGINES", (*families.registry.ENGINES, *relatives))
-    shown = {"wide": ["default"], "narrow": ["default", "tuned"]}
-    looks = [families.look(engine, v, shown, LIGHT) for engine, variants in shown.items() for v in variants]
-    assert len({(look["color"], look["marker"]) for look in looks}) == 1
-    assert len({str(look["linestyle"]) for look in looks}) == 3
-
-
-class Relative(Toy):
-    """Of the family of another engine."""
-
-    @property
-    def family(self) -> str:
-        return "wide"
 
 
 def test_a_chart_without_a_row_that_can_be_compared_is_empty_and_no_error():
@@ -278,14 +210,6 @@ def test_a_scaling_chart_has_costs_in_microseconds_and_errors_over_the_number_of
         assert (panel.get_xscale(), panel.get_yscale()) == ("log", "log")
 
 
-def test_each_slope_is_told_beside_its_line():
-    found = (growth("pymunk default", 1e-6, 1e-5, 1e-4), growth("mujoco tuned", 1e-6, 1e-4, 1e-2))
-    cost, error = scaling_chart(found).axes
-    told = {text.get_text(): text.get_color() for text in cost.texts}
-    assert told == {f"{cost_exponent(one)[0]:.1f}": getattr(LIGHT, role(one.engine)) for one in found}
-    assert (set(told), len(error.texts)) == ({"1.0", "2.0"}, 0)
-
-
 def test_plateaus_have_one_line_a_step_with_failed_runs_left_out():
     corners = [
         (8, row_of("pymunk a", step=1e-2, angle=0.3)),
@@ -306,3 +230,207 @@ def test_plateaus_have_one_line_a_step_with_failed_runs_left_out():
     assert (left.get_xlabel(), right.get_xlabel()) == ("corners", "contact's time constant [s]")
     with pytest.raises(ValueError, match="4 steps"):
         rolling_charts.draw_plateaus([(8, row_of("pymunk a", step=s)) for s in (1e-1, 1e-2, 1e-3, 1e-4)], softness)
+
+
+def annotation(text: Text) -> Annotation:
+    """A text that points at a place."""
+    assert isinstance(text, Annotation)
+    return text
+
+
+def handles(legend: Legend) -> list[Any]:
+    """A legend's pieces: lines, which have a colour, or patches, which have a face and a hatch."""
+    found: list[Any] = [handle for handle in legend.legend_handles if handle is not None]
+    assert len(found) == len(legend.legend_handles)
+    return found
+
+
+def lines(panel: Axes) -> list[np.ndarray]:
+    return [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
+
+
+def has(panel: Axes, points) -> bool:
+    """Whether one line of a panel goes through these points and no others."""
+    wanted = np.asarray(points, dtype=float)
+    return any(found.shape == wanted.shape and np.allclose(found, wanted, equal_nan=True) for found in lines(panel))
+
+
+def colours(panel: Axes) -> list[str]:
+    return [to_hex(line.get_color()) for line in panel.get_lines()]
+
+
+def test_a_bodys_points_are_its_joints_turned_and_moved():
+    mechanism = four_bar()
+    found = outlines.body_points(mechanism, mechanism.pose)
+    # A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
+    assert found["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
+    assert found["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
+    assert found["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
+    assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
+    # A slot in the ground holds to a line: its point is no support.
+    crank = DrivenSliderCrank(offset=0.1).mechanism()
+    assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
+    assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
+
+
+def test_a_method_is_visibly_off_by_its_worst_joint_and_never_where_it_is_not_finite():
+    mechanism = pendulum()
+    pose = mechanism.pose
+    shifted = pose + np.array([0.0, 0.01, 0.0])
+    assert drawings.visibly_off(mechanism, pose, shifted, 1.0)
+    assert not drawings.visibly_off(mechanism, pose, shifted, 3.0)  # a two-hundredth of the picture is 0.015 m there
+    assert not drawings.visibly_off(mechanism, pose, shifted * np.nan, 1e-9)
+    disc = Disc().mechanism()
+    assert not drawings.visibly_off(disc, disc.pose, disc.pose, 1.0)
+
+
+def test_configurations_have_each_pose_under_its_title_and_methods_over_them_where_they_differ():
+    mechanism = four_bar()
+    truth = np.stack([mechanism.pose, mechanism.pose + 0.1, mechanism.pose - 0.1])
+    other = truth + np.array([0.2, 0.0, 0.0]) * np.array([0, 1, 0])[:, None, None]
+    figure = drawings.configurations(
+        mechanism, truth, ["zero", "one", "two"], {"wrong": (other, "first", "--"), "right": (truth, "second", ":")}
+    )
+    panels = figure.axes[:3]
+    assert [panel.get_title(loc="left") for panel in panels] == ["zero", "one", "two"]
+    for index, panel in enumerate(panels):
+        assert all(has(panel, bar) for bar in outlines.body_points(mechanism, truth[index]).values())
+        assert (to_hex(LIGHT.first) in colours(panel)) == (index == 1)
+        assert to_hex(LIGHT.second) not in colours(panel)
+    assert all(has(panels[1], bar) for bar in outlines.body_points(mechanism, other[1]).values())
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["truth", "wrong", "right: not visibly off"]
+
+
+def test_paths_are_drawn_through_their_finite_points_in_their_panel_with_their_colour():
+    near = [[0.0, 0.0], [1.0, 2.0]]
+    wrong = [[0.0, 0.0], [math.nan, 0.0], [9.0, 8.0]]
+    blades = Blades([[0.5, 0.5, math.pi / 2]], 0.2, "quiet")
+    first = Panel(
+        "first", [Path(near, "truth"), Path(wrong, "wrong", "first", "--", framed=False, dot=True)], [blades],
+        [Note((0.25, 1.5), "here", "center")],
+    )  # fmt: skip
+    second = Panel(
+        "second", [Path([[1.0, 1e-3], [2.0, 1e-1]], "truth")], plane=False, across="time [s]", up="m", logarithmic=True
+    )
+    left, right = paths([first, second], columns=2).axes
+    assert [panel.get_title(loc="left") for panel in (left, right)] == ["first", "second"]
+    assert has(left, near)
+    assert has(left, [[0.0, 0.0], [9.0, 8.0]])
+    assert has(left, [[9.0, 8.0]])  # the dot at its end
+    assert has(left, [[0.5, 0.4], [0.5, 0.6]])  # a blade of 0.2 m upright about its middle
+    assert [(text.get_text(), annotation(text).xy) for text in left.texts] == [("here", (0.25, 1.5))]
+    assert (right.get_xlabel(), right.get_ylabel(), right.get_yscale()) == ("time [s]", "m", "log")
+    assert has(right, [[1.0, 1e-3], [2.0, 1e-1]])
+    assert [to_hex(handle.get_color()) for handle in handles(left.figure.legends[0])] == [
+        to_hex(LIGHT.ink),
+        to_hex(LIGHT.first),
+    ]
+    # What is not framed does not stretch the picture.
+    assert left.get_xlim()[1] < 2
+    assert left.get_ylim() == (pytest.approx(-0.14), pytest.approx(2.14))
+
+
+def test_friction_is_that_of_the_scenes_law_with_each_limits_instant():
+    scenes = (RollingEllipse(), RollingOnCircle())
+    for panel, scene in zip(rolling_charts.draw_friction(scenes).axes, scenes, strict=True):
+        demanded = lines(panel)[0]
+        assert demanded[5:50, 1] == pytest.approx(scene.motion_law.required_friction(demanded[5:50, 0]))
+        assert demanded[-1, 0] == pytest.approx(scene.hop or scene.duration)
+        slips = {mu: scene.motion_law.slip(mu, scene.duration) for mu in rolling_charts.COEFFICIENTS}
+        marked = [tuple(line[0]) for line in lines(panel) if len(line) == 1]
+        assert marked == [(pytest.approx(slip), mu) for mu, slip in slips.items() if slip is not None]
+        told = sorted(text.get_text() for text in panel.texts if "s " in text.get_text())
+        hops = [] if scene.hop is None else [f"hops {scene.hop:.3f} s"]
+        assert told == sorted([*hops, *(f"slips {s:.3f} s" for s in slips.values() if s is not None)])
+        assert panel.get_xlim() == (0, scene.duration)
+
+
+def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
+    """A wheel of 0.5 m that rolls on a line, held by no joint but a pin of another body."""
+    bodies = (Body("wheel", 1.0, 1.0, (0.0, 1.0, 0.0)), Body("crank", 1.0, 1.0, (0.0, 0.0, 0.0)))
+    mechanism = Mechanism(bodies, (Pin("A", None, "crank", (0.0, 0.0), (0.0, 0.0)),))
+    theta = np.linspace(0.1, 1.1, 41)
+    poses = np.zeros((len(theta), 2, 3))
+    poses[:, 0] = np.stack([-0.5 * theta, 0 * theta + 0.5, theta], axis=-1)
+    space = np.stack([-0.5 * theta, 0 * theta], axis=-1)
+    own = -0.5 * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
+    curves = Centrodes(poses[:, 0], space, own, 0.0)
+    for panel, index in zip(draw_centrodes(mechanism, poses, curves, (5, 30), 0).axes, (5, 30), strict=True):
+        assert has(panel, space)
+        assert has(panel, [space[index]])
+        c, s = math.cos(theta[index]), math.sin(theta[index])
+        assert has(panel, own @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
+        assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, produced to the centre
+    above, _ = draw_rate(curves).axes
+    run, total = lines(above)
+    assert run[:, 0] == pytest.approx(np.degrees(theta))
+    # The centre runs its radius in a radian; splines of the curves know that to 1e-6 away from their ends.
+    assert run[5:-5, 1] == pytest.approx(np.full(31, 0.5), abs=1e-6)
+    assert total == pytest.approx(
+        np.column_stack([np.degrees(theta), 1 / (curves.space_curvature + curves.body_curvature)])
+    )
+    wrong = replace(curves, body=2 * own)
+    (run, total), [missed] = lines(draw_rate(wrong).axes[0]), lines(draw_rate(wrong).axes[1])
+    assert missed[5:-5, 1] == pytest.approx(np.abs(total / run - 1)[5:-5, 1])
+    assert missed[20, 1] > 0.1
+
+
+@pytest.mark.parametrize("field", ["angle", "reaction"])
+def test_the_band_of_rounding_ends_where_rounding_does_and_guides_have_the_slopes_they_name(field):
+    errors = falling("pymunk default", (1e-2, 1e-3, 1e-4, 1e-5), field)
+    [panel] = panels(charts.error_against_step(errors, field=field))
+    [band] = panel.patches
+    low, high = band.get_path().get_extents(band.get_patch_transform()).intervaly
+    assert (low, high) == (pytest.approx(1e-16), pytest.approx(quantity(field).rounding))
+    guides = [points(line) for line in panel.get_lines() if line.get_marker() in (None, "None", "")]
+    assert len(guides) == 3
+    for text, ((left, bottom), (right, top)) in zip(panel.texts, guides, strict=True):
+        assert math.log(top / bottom) / math.log(right / left) == pytest.approx(float(text.get_text()))
+        assert annotation(text).xy == (pytest.approx(right), pytest.approx(top))
+    assert [text.get_text() for text in panel.texts] == ["1", "2", "4"]
+    assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
+
+
+def test_an_outline_has_further_points_in_order_along_the_body_and_a_path_those_of_the_truth():
+    mechanism = pendulum(angle=math.pi / 2)  # from the origin straight up, one metre
+    found = outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
+    assert found == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
+    found = path(Disc(rate=2.0), "disc", (1.0, 0.5), np.array([0.0, math.pi / 4]))
+    assert found == pytest.approx(np.array([[1.0, 0.5], [-0.5, 1.0]]), abs=1e-12)
+
+
+def test_gears_stand_at_the_instants_that_their_titles_tell_and_turn_at_the_truths_rates():
+    scene = EllipticGears()
+    *pictures, rates = rolling_drawings.draw_gears(scene).axes
+    turn = 2 * math.pi / scene.turning_rate
+    for index, panel in enumerate(pictures):
+        t = (0.15 + index) * turn / 4
+        assert panel.get_title(loc="left") == f"t = {t:.2f} s"
+        for gear, pose in enumerate(scene.motion([t]).pose[0]):
+            assert has(panel, [[2 * scene.major * gear, 0.0], pose[:2]])
+    first, second = lines(rates)
+    truth = scene.motion(first[:, 0]).twist[:, :, 2]
+    assert first[:, 1] == pytest.approx(truth[:, 0])
+    assert second[:, 1] == pytest.approx(truth[:, 1])
+
+
+@pytest.mark.parametrize("draw", [charts.work_precision, charts.error_against_step])
+def test_the_quantity_that_was_asked_for_is_drawn_with_its_unit(draw):
+    figure = draw(falling("pymunk default", (1e-2, 1e-3), "position", angle=5.0), field="position")
+    [panel] = panels(figure)
+    [drawn] = series(panel).values()
+    assert [y for _, y in drawn] == [1e-2, 1e-3]
+    assert panel.get_ylabel() == "largest position error [m]"
+
+
+def test_a_strip_takes_its_poses_at_equal_times_and_says_so():
+    strip = Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)
+    assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])
+    assert strip.caption == "Turning: every 0.25 s"
+    assert Strip(Disc(duration=2.0), "Turning", 3).times() == pytest.approx([0.0, 1.0, 2.0])
+    assert Strip(Disc(), "Once", 1, start=0.125).caption == "Once: 0.125 s"
+    strips = [
+        Strip(Disc(duration=end), name, 2, ends={"disc": ((1.0, 0.0),)}) for end, name in ((1.0, "One"), (3.0, "Two"))
+    ]
+    assert [panel.get_title(loc="left") for panel in stroboscope(strips).axes] == [each.caption for each in strips]

@@ -26,7 +26,6 @@ from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
 from reports.check.picture_data import from_text, shown_of
 from reports.check.pictures import pictures
-from reports.check.request import CheckReport, CheckRequest, answered
 from reports.check.telling import data, sections, verdict
 from tests.toys import Disc
 
@@ -94,13 +93,6 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert "Your settings meet the tolerance" in verdict(again)
 
 
-def test_lines_pasted_as_they_are_printed_do_what_was_promised(tmp_path, shipped):
-    found = shipped
-    printed = "\n".join(sections(found)[0].code)
-    again = found_in(tmp_path, FOUR_BAR.replace("</mujoco>", f"{printed}</mujoco>"))
-    assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)  # type: ignore[union-attr]
-
-
 def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
     text = re.sub(r"<mujoco>.*?</mujoco>", "", urdf(PENDULUM_2.mechanism()), flags=re.DOTALL)
     found = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
@@ -122,13 +114,6 @@ def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reac
     values = re.search(r"(solref=.*)/></default>", lines[1])[1]  # type: ignore[index]
     mended = own.replace('solref="0.04 1"', values).replace("</mujoco>", f"{lines[0]}</mujoco>")
     assert found_in(tmp_path, mended).met
-
-
-def test_coordinates_that_cannot_part_are_not_said_to_open(tmp_path):
-    told = sections(found_in(tmp_path, urdf(PENDULUM_2.mechanism()), "chain.urdf", "chain.urdf"))
-    sentences = [sentence for section in told for sentence in section.sentences]
-    assert "No joint opens by more than rounding." in sentences
-    assert any(sentence.startswith("Step: your run is off the ideal motion") for sentence in sentences)
 
 
 def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):
@@ -272,13 +257,3 @@ def test_a_model_at_rest_says_that_nothing_moves(tmp_path):
     assert "Nothing moves" in text
     assert found.met
     assert "A tenth of that error" not in text
-
-
-def test_redundant_joints_are_told_and_their_reactions_not_compared(tmp_path):
-    twice = FOUR_BAR.replace("</equality>", '<connect body1="coupler" body2="rocker" anchor="0.8 0 0.3"/></equality>')
-    (tmp_path / "twice.xml").write_text(twice)
-    answer = answered(CheckRequest("twice.xml", str(tmp_path), 0.2, 1e-4, pictures=False))
-    assert isinstance(answer, CheckReport)
-    assert answer.data["facts"]["redundant"] == 2
-    told = " ".join(sentence for section in answer.sections for sentence in section.sentences)
-    assert "2 rows are redundant" in told

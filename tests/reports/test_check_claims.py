@@ -57,12 +57,6 @@ def source(found: Checked) -> str:
     return " ".join(told.sentences)
 
 
-def rows_of(found: Checked) -> dict[str, str]:
-    """The marks of the table of settings, by what is tried."""
-    (told,) = [each for each in sections(found) if each.title == "What to change"]
-    return {row[0]: row[-1] for row in told.rows}
-
-
 # ---------------------------------------------------------------------------------------------------------- advice
 
 
@@ -114,16 +108,6 @@ def test_what_is_assumed_is_said_first_and_only_where_it_is(swing, soft, tmp_pat
     assert data(soft)["cpu"] == soft.own.stepping > 0
 
 
-def test_settings_with_the_same_errors_are_listed_once_by_the_cheapest_or_the_users_own(soft):
-    errors = [(1e-3, 2.0), (1e-3, 1.0), (1e-5, 6.0), (1e-5, 5.0), (1e-5, 7.0), (1e-6, 9.0)]
-    marks = rows_of(priced(soft, *errors, tolerance=1e-4))
-    assert marks == {
-        "setting 0": "1 more alike",
-        "setting 3": "none is both cheaper and better; meets the tolerance; 2 more alike",
-        "setting 5": "none is both cheaper and better; meets the tolerance",
-    }
-
-
 def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
     """A run of more than LONGEST leaves no time for others, and is itself one of the settings."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
@@ -158,21 +142,6 @@ def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, s
     assert ("it still falls: the step explains it" in told) == falls
     assert ("it no longer falls: a smaller step is no help" in told) == (not falls)
     assert f"off the ideal motion by 0.008; at a step of {10 / 2 ** (len(sizes) - 1):.3g} ms" in told
-
-
-@pytest.mark.parametrize("falling", [True, False])
-def test_a_third_part_is_told_where_an_error_no_longer_falls(soft, falling):
-    told = source(replace(soft, parts=replace(soft.parts, falling=falling, rest=0.123)))
-    assert ("0.12 is left, and it still falls: there is no sign of a third part." in told) == falling
-    assert ("0.12 is left, and it no longer falls: this much neither softness nor step explains." in told) != falling
-    assert "No smaller step removes this; stiffer joints do." in told
-
-
-def test_joints_that_are_coordinates_are_not_called_soft(tmp_path):
-    hinged = re.sub(r"<equality>.*</equality>", "", FOUR_BAR)
-    found = found_in(tmp_path, hinged, duration=0.1)
-    assert "Softness: none. The joints are coordinates here, which can't part." in source(found)
-    assert found.parts.softness == 0
 
 
 def test_the_joint_that_opens_most_is_named_with_its_gap_and_time(soft):
@@ -298,3 +267,11 @@ def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
     weight = sum(body.mass for body in mechanism.bodies) * 9.81 * 1e-3
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1)).max()
     assert errors(mechanism, truth, lifted).worst("energy") == pytest.approx(weight / kinetic, rel=1e-6)
+
+
+@pytest.mark.parametrize("falling", [True, False])
+def test_a_third_part_is_told_where_an_error_no_longer_falls(soft, falling):
+    told = source(replace(soft, parts=replace(soft.parts, falling=falling, rest=0.123)))
+    assert ("0.12 is left, and it still falls: there is no sign of a third part." in told) == falling
+    assert ("0.12 is left, and it no longer falls: this much neither softness nor step explains." in told) != falling
+    assert "No smaller step removes this; stiffer joints do." in told

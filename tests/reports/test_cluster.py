@@ -15,7 +15,6 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -85,7 +84,7 @@ def untimed(row):
 
 
 def test_a_local_cluster_gives_the_same_rows_as_the_pool():
-    cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS]
+    cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS[::3]]
     cells += [Cell(Disc(), FailingToy(variant), 1) for variant in ("abort", "refuse", "raise")]
     with cluster("local:2") as own:
         there = {row.key: untimed(row) for row in run_cells(cells, supervised=own.supervise)}
@@ -128,7 +127,7 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(two_worke
     assert told == {1: "fine", 2: "fine"}
 
 
-@pytest.mark.parametrize("kills", [4, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
 def test_workers_killed_at_random_times_lose_no_row_and_double_none(two_workers, tmp_path, kills):
     cells = [Cell(Disc(), SlowToy(seconds=0.05), every) for every in range(1, 1 + 30 * kills)]
     chance, killed, rows, over = random.Random(kills), [], [], threading.Event()
@@ -231,14 +230,6 @@ def test_a_chunk_has_what_takes_its_time_together(monkeypatch):
     assert [len(chunk.items) for chunk in chunks([0.0] * 450)] == [200, 200, 50]
 
 
-def test_no_process_is_left_when_a_worker_is_closed(tmp_path, monkeypatch):
-    monkeypatch.setenv("CROSSCHECK_TEST", str(tmp_path))
-    with local_cluster(1) as there, cluster(there.scheduler_address) as own:
-        assert list(run_cells([Cell(Disc(), Toy(), 1)], supervised=own.supervise))
-        assert _marked(tmp_path)
-    assert _none_soon(lambda: _marked(tmp_path))
-
-
 def test_no_worker_is_left_when_a_local_cluster_is_closed_at_work():
     before = set(psutil.pids())
     slow = [Cell(Disc(), SlowToy(seconds=30.0, factor=float(number)), 1) for number in range(4)]
@@ -263,12 +254,3 @@ def _workers(before: set[int]) -> list[int]:
     """Of this process's new processes those that a fork server has started."""
     servers = [child for child in psutil.Process().children() if "forkserver" in " ".join(child.cmdline())]
     return [worker.pid for server in servers for worker in server.children() if worker.pid not in before]
-
-
-def _marked(mark: Path) -> list[int]:
-    """Processes, wherever they are now, that a fork server is or has started since this test began."""
-    found = []
-    for process in psutil.process_iter(["pid", "cmdline", "environ"]):
-        if (process.info["environ"] or {}).get("CROSSCHECK_TEST") == str(mark):
-            found += [process.info["pid"]] if "forkserver" in " ".join(process.info["cmdline"] or []) else []
-    return found

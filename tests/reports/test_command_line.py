@@ -228,31 +228,12 @@ def test_a_mistake_of_the_program_itself_is_not_hidden(monkeypatch):
         program.main(["list"])
 
 
-def test_a_command_s_own_status_is_the_program_s(monkeypatch):
-    def command():
-        raise commands.typer.Exit(7)
-
-    application = commands.typer.Typer()
-    application.command("one")(command)
-    application.command("other")(lambda: None)
-    monkeypatch.setattr(commands, "app", application)
-    assert call("one") == 7
-    assert call("other") == FINE
-
-
 def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
     assert call() == FINE
     out, err = capfd.readouterr()
     assert err == ""
     assert out.startswith("Usage: crosscheck")
     assert "Exit status: 0 fine" in " ".join(out.split())
-
-
-def test_a_word_in_capitals_gets_a_suggestion(capfd):
-    assert call("run", "FREE_FOUR_BAR") == REFUSED
-    assert "did you mean 'free_four_bar'?" in one_line(capfd.readouterr().err)
-    assert call("run", "--engine", "PyMunk") == REFUSED
-    assert "did you mean 'pymunk'?" in one_line(capfd.readouterr().err)
 
 
 def ended(words, **streams):

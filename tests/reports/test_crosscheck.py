@@ -25,7 +25,6 @@ from reports.model.catalogue import PAGES, page_of, untaught
 from reports.model.checks import CHECKS
 from reports.model.outcomes import Outcome
 from tests.conftest import GRID as FILE
-from tests.conftest import wants_the_grid_alone
 from tests.present import present
 from tests.toys import Disc
 
@@ -72,43 +71,16 @@ def test_what_an_engine_that_is_not_installed_leaves_out_is_skipped_by_its_extra
         test_the_grid_has_every_scene_and_method_of_the_baseline(request)
 
 
-def test_the_grid_has_every_scene_of_every_page():
-    assert {case.scene for case in GRID} == {scene for page in PAGES for scene in page.scenes}
-    assert GRID
-
-
 @pytest.mark.parametrize("scene", [pytest.param(scene, id=scene.name) for scene in SCENES])
 def test_every_scene_of_the_list_is_taught_by_one_page_with_its_own_numbers(scene: Scene):
     assert not untaught([scene])
     assert [page.name for page in PAGES if scene in page.scenes] == [present(page_of(scene)).name]
 
 
-def test_a_page_teaches_only_scenes_of_the_list():
-    assert {scene for page in PAGES for scene in page.scenes} == set(SCENES)
-
-
 def test_a_scene_that_no_page_teaches_is_named():
     assert untaught((*SCENES, Disc())) == ("disc",)
     assert untaught(SCENES, [page for page in PAGES if page.name != "wheels"]) == ("car_and_trailer", "cart")
     assert page_of(Disc()) is None
-
-
-@pytest.mark.parametrize(
-    ("expression", "alone"),
-    [
-        ("crosscheck", True),
-        ("crosscheck and not slow", True),
-        ("not slow and (crosscheck or crosscheck and browser)", True),
-        ("", False),
-        ("slow", False),
-        ("not crosscheck", False),
-        ("crosscheck or slow", False),
-        ("not (slow and crosscheck)", False),
-        ("crosscheck(level=", False),
-    ],
-)
-def test_other_files_are_left_out_only_where_no_test_of_theirs_can_be_meant(expression, alone):
-    assert wants_the_grid_alone(expression) is alone
 
 
 def test_no_other_file_has_tests_of_the_grid():

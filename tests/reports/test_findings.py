@@ -1,28 +1,34 @@
-"""Ten findings from the committed rows: each number is a row's, and a claim that its rows contradict is not made."""
+"""Ten findings and the guides from the committed rows: each number is a row's, what its rows contradict is not said."""
 
+# pyright: reportAttributeAccessIssue=false
 from __future__ import annotations
 
+import contextlib
+import io
+import math
 import re
-import xml.etree.ElementTree as xml
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings.finding import LOOKS, MILLISECOND, TENTH, WIDTH, Line, draw
-from reports.pages.findings.findings import FINDINGS, findings, pictures
+from reports.pages.findings.finding import LOOKS, MILLISECOND, TENTH, Line, draw
+from reports.pages.findings.findings import FINDINGS, findings
+from reports.pages.guides.page import EVERY, FOUR_BAR
+from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
-from reports.write.rows import Rows, own_rows
+from reports.pages.rendering import render_page
+from reports.write.rows import Rows, lookups, own_rows
 from reports.write.tables import number
 from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import MARK
 from tests.committed_rows import RESULTS, page_rows
-from tests.rows import falling, row_of
+from tests.rows import falling
 
 NAMES = [find.__name__ for find in FINDINGS]
 
@@ -99,23 +105,6 @@ def test_its_numbers_are_those_of_the_rows_that_it_names():
                 name,
                 number(value),
             )
-
-
-@pytest.mark.parametrize(
-    ("name", "scene", "method", "quantity"),
-    [
-        ("spring", "free_four_bar", "mujoco RK4 alone", "angle"),
-        ("luck", "spinning_four_bar", "mujoco default", "angle"),
-        ("contact", "rolling_ellipse", "pymunk tuned", "angle"),
-        ("contact", "rolling_ellipse", "mujoco default", "angle"),
-    ],
-)
-def test_the_limit_that_it_tells_is_near_the_finest_error(name, scene, method, quantity):
-    rows = own_rows(changed(lambda cell, row: row)).of(scene, method)
-    limit, finest = rows.sweep(quantity).plateau, rows[-1]
-    assert number(limit) in told()[name].text
-    # All of these end flat: half a decade changes them by less than a twentieth.
-    assert getattr(finest, quantity) == pytest.approx(limit, rel=0.05)
 
 
 def times(factor, *fields, scene, method, purpose="sweep", steps=lambda step: True):
@@ -208,29 +197,6 @@ def test_without_any_rows_or_with_failed_ones_alone_nothing_is_told():
     assert {found.name for found in failed} <= {"energy"}
 
 
-def test_without_timings_no_cost_is_told():
-    untimed = findings(changed(lambda cell, row: replace(row, cpu=0.0)))
-    assert "tuned" not in [found.name for found in untimed]
-
-
-def test_each_picture_is_legible_on_a_telephone_and_in_the_dark_and_has_every_line_with_its_label():
-    files = pictures(told().values())
-    assert sorted(files) == sorted(found.picture for found in told().values())
-    for found in told().values():
-        text = files[found.picture]
-        root = xml.fromstring(text)
-        assert float(root.attrib["width"].removesuffix("pt")) == 72 * WIDTH == 270  # 360 pixels
-        assert "prefers-color-scheme: dark" in text
-        assert found.title in text
-        figure = draw(found.lines, found.quantity)
-        (axes,) = figure.axes
-        assert [line.get_label() for line in axes.lines] == [line.label for line in found.lines]
-        assert all(np.size(line.get_xdata()) >= 2 for line in axes.lines), found.name
-        sizes: list[Any] = [text.get_fontsize() for text in (*figure.legends[0].get_texts(), *axes.get_xticklabels())]
-        assert min(sizes) >= 8  # points, at 360 pixels: nothing is scaled down
-        assert all(line.label in found.alternative for line in found.lines)
-
-
 def test_lines_differ_without_colours():
     assert len({(look["linestyle"], look["marker"]) for look in LOOKS}) == len(LOOKS)
     steps = [Line(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3)))) for name in "abcd"]
@@ -240,12 +206,6 @@ def test_lines_differ_without_colours():
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
         draw([*steps, Line("e", Rows())], "angle")
-
-
-def test_a_failed_run_stands_in_a_picture_and_an_unknown_error_does_not():
-    rows = [row_of("pymunk a", step=1e-2, angle=3.0, outcome=Outcome.SATURATED), row_of("pymunk a", angle=float("nan"))]
-    (axes,) = draw([Line("a", Rows(rows))], "angle").axes
-    assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[3.0]]
 
 
 # --- symptoms and links ---
@@ -261,13 +221,105 @@ def test_a_symptom_leads_to_a_section_that_is_there(symptom):
     assert not symptom.heading or place in {anchor(heading) for heading in headings(FILES[name])}
 
 
-def test_a_link_is_to_the_page_then_to_one_beside_it_then_to_the_page_without_a_place():
-    files = {"b_data.md": "## First\n\n### Second, with `code`!\n", "b.md": "# B\n\n## First\n", "c.md": "## Third\n"}
-    assert link("b", "First", files) == "b.md#first"
-    assert link("b", "Second, with `code`!", files) == "b_data.md#second-with-code"
-    assert link("b", "Third", files) == "b.md"
-    assert link("b", "", files) == "b.md"
+_, REACTIONS, INTEGRATORS, CLUSTER = GUIDES
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
+FOOT = re.compile(r"^---\n.*", re.DOTALL | re.MULTILINE)
+MEASURED = re.compile(r"\d\.\d|\de-\d")
+
+named = pytest.mark.parametrize("page", GUIDES, ids=lambda page: page.name)
 
 
-def test_a_comment_in_code_is_no_heading():
-    assert headings("# A\n\n```\n# no heading\n```\n\n## B\n") == ("A", "B")
+def text_of(page, rows) -> str:
+    (text,) = render_page(page, Material(rows), "the command").values()
+    return text
+
+
+def prose(text: str) -> str:
+    """A page without its programs, the addresses of its links, and its last line, which names versions."""
+    return FOOT.sub("", ADDRESS.sub("", BLOCK.sub("", text)))
+
+
+@named
+def test_without_rows_a_guide_has_no_number_that_was_measured(page):
+    text = prose(text_of(page, {}))
+    assert not MEASURED.search(text)
+    assert "not measured" not in text
+    assert not re.search(r"\b(nan|None|Unmeasured)\b", text)
+
+
+@pytest.mark.parametrize("page", [REACTIONS, INTEGRATORS], ids=lambda page: page.name)
+def test_every_number_of_a_guide_is_that_of_a_row(page):
+    """Rows with other errors make other numbers: none is typed."""
+    rows = page_rows(page)
+    shown = MEASURED.findall(prose(text_of(page, rows)))
+    assert len(shown) > 20
+    unknown = {cell: replace(row, angle=math.nan, reaction=math.nan, cpu=math.nan) for cell, row in rows.items()}
+    assert not MEASURED.search(prose(text_of(page, unknown)))
+
+
+def known(page) -> dict:
+    """What asks for single rows of a guide, from the committed ones."""
+    return lookups(Material(page_rows(page)), (FOUR_BAR,))
+
+
+def test_without_forces_that_depend_on_velocity_implicitfast_does_what_euler_does():
+    """The guide's sentence about a loop: both errors are the same to the digits that it prints, and of first order."""
+    euler, implicit = (("free_four_bar", "mujoco", f"stiff {name}") for name in ("Euler", "implicitfast"))
+    asked = known(INTEGRATORS)
+    for every in (1, EVERY):
+        assert asked["at"](*implicit, every).angle == pytest.approx(asked["at"](*euler, every).angle, rel=1e-2)
+    for method in (euler, implicit):
+        assert asked["sweep"](*method).order == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("integrator", "product", "stable"),
+    [("Euler", 1.8, True), ("Euler", 2.2, False), ("implicitfast", 2.2, True), ("implicitfast", 200.0, True)],
+)
+def test_euler_loses_a_servo_beyond_two_and_implicitfast_never(integrator, product, stable):
+    """The guide's bound on a servo of gain k on an inertia I: Euler multiplies its rate by 1 - h k / I in a step."""
+    step, inertia = 1e-3, 0.1
+    model = mujoco.MjModel.from_xml_string(f"""
+        <mujoco><option timestep="{step}" gravity="0 0 0" integrator="{integrator}"/>
+          <worldbody><body><joint name="turn" axis="0 0 1"/>
+            <inertial pos="0 0 0" mass="1" diaginertia="1 1 {inertia}"/></body></worldbody>
+          <actuator><velocity joint="turn" kv="{product * inertia / step}"/></actuator></mujoco>""")
+    data = mujoco.MjData(model)
+    data.qvel[:] = 1.0
+    mujoco.mj_step(model, data, 20)
+    # 0.8 to the twentieth is 0.01, 1.2 to the twentieth 38.
+    assert (abs(data.qvel[0]) < 0.1) == stable
+    assert (abs(data.qvel[0]) > 10.0) != stable
+
+
+def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits_are_lost():
+    asked = known(REACTIONS)
+    tuned = ("free_four_bar", "mujoco", "tuned")
+    assert asked["sweep"](*tuned).order == pytest.approx(2.0, abs=0.1)
+    assert not asked["sweep"](*tuned).plateau > 0
+    assert asked["sweep"](*tuned, "reaction").plateau > 10 * asked["at"](*tuned, EVERY).angle
+    extended = asked["at"]("free_four_bar", "pymunk", "extended", EVERY)
+    assert extended.reaction > 100 * extended.angle
+
+
+def test_one_change_alone_wins_little_and_both_win_much():
+    """The spring as shipped with RK4, and the stiff spring with Euler, against both changed."""
+    at = known(INTEGRATORS)["at"]
+    shipped, fourth, stiff, both = (
+        at("free_four_bar", "mujoco", variant, EVERY).angle
+        for variant in ("default", "RK4 alone", "stiff Euler", "tuned")
+    )
+    assert min(fourth, stiff) > 0.5 * shipped
+    assert both < 1e-3 * shipped
+
+
+@pytest.mark.parametrize("place", [0, 1], ids=["pymunk", "mujoco"])
+def test_a_program_of_the_page_prints_the_weight_of_the_hanging_body(place):
+    source = BLOCK.findall(text_of(REACTIONS, {}))[place]
+    assert source.count("\n") <= 20
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
+    assert said.getvalue().count("19.62") == 2  # 2 kg at 9.81 m/s^2: by Newton's law, and by what the engine says
+    assert "-19.62" not in said.getvalue()

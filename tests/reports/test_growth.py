@@ -1,4 +1,4 @@
-"""Small numbers with a name: growth laws, times, round trips, steps and costs of cells, by hand."""
+"""Growth laws, times, steps and costs of cells by hand, and the page of scaling, whose chain linear algebra knows."""
 
 from __future__ import annotations
 
@@ -10,24 +10,103 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import mujoco, pymunk
+from engines import Unsupported
+from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
 from reference.scenes.pendulum.link import BarPendulum
-from reference.scenes.pendulum.scenes import HundredLinks, TenLinks
-from reference.scenes.skates.sleigh import ChaplyginSleigh
+from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
-from reports.model.measure import repeated_stepping
+from reports.model.measure import measure, repeated_stepping
 from reports.model.outcomes import Outcome
+from reports.model.page import Material
 from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.pages.centrodes.page import returned
-from reports.pages.scaling.page import cost_table, crossing
+from reports.pages.rendering import render_page
+from reports.pages.scaling.experiments import BandedChain
+from reports.pages.scaling.page import CELLS, COSTLY, PAGE, STEP, cost_table, crossing
 from reports.pages.skate.page import constructions
 from reports.write.rows import Rows
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
+
+
+def links(cell: Cell) -> int:
+    assert isinstance(cell.scene, LongPendulum)
+    return cell.scene.links
+
+
+TINY = tuple(cell for cell in CELLS if links(cell) <= 3)
+
+
+@pytest.fixture(scope="module")
+def material():
+    return Material({cell: measure(cell, repeat=False) for cell in TINY})
+
+
+def test_what_the_long_chain_knows_is_what_linear_algebra_finds():
+    long, plain = LongPendulum(7, tip=3.0).mechanism(), LinkPendulum(7, tip=3.0).mechanism()
+    assert long.degrees_of_freedom() == plain.degrees_of_freedom()
+    truth = LongPendulum(7, tip=3.0)
+    angle, rate = truth.states([0.2, 0.5])
+    pose, _, acceleration = truth.chain.placement(angle, rate, truth.chain.accelerations(angle, rate))
+    # Forces of up to 1e3 N; the plain mechanism solves 14 rows of condition 1e3 for them.
+    assert long.reaction(pose, acceleration) == pytest.approx(plain.reaction(pose, acceleration), abs=1e-8)
+    assert long.reaction(pose, acceleration) == pytest.approx(truth.motion([0.2, 0.5]).reaction, abs=1e-8)
+
+
+def test_the_reference_as_a_method_is_of_order_four():
+    scene = LongPendulum(5)
+    errors = []
+    for steps in (100, 200):
+        run = BandedChain().build(scene.mechanism(), scene.duration / steps)(1, steps)
+        errors.append(np.abs(run.pose[-1] - scene.motion([scene.duration]).pose[0]).max())
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
+
+
+def test_the_reference_reads_reactions_of_the_same_sign_as_exact_multipliers():
+    mechanism = LongPendulum(3).mechanism()
+    ours, exact = (e.build(mechanism, 1e-3)(1, 10).reaction for e in (BandedChain(), Lagrange("rk4", "projection")))
+    assert ours == pytest.approx(exact, abs=1e-6)  # N of 30; both integrated with an error of 1e-10
+
+
+def test_the_reference_refuses_what_is_no_chain_of_uniform_bars():
+    chain = LongPendulum(3).mechanism()
+    heavy = replace(chain.bodies[1], inertia=1.01 * chain.bodies[1].inertia)
+    for mechanism, why in (
+        (FreeFourBar().mechanism(), "as many pins"),
+        (replace(chain, bodies=(chain.bodies[0], heavy, chain.bodies[2])), "not uniform"),
+        (replace(chain, gravity=(1.0, -9.81)), "gravity along y"),
+    ):
+        with pytest.raises(Unsupported, match=why):
+            BandedChain().build(mechanism, STEP)
+
+
+def test_every_cell_has_the_same_step_and_the_largest_are_run_for_their_cost_alone():
+    assert {round(cell.step / STEP, 9) for cell in CELLS} == {1.0}
+    assert all(cell.scene.duration < 0.5 for cell in CELLS if links(cell) in COSTLY)
+    assert len({cell.key for cell in CELLS}) == len(CELLS)
+
+
+def test_costs_are_of_a_step_and_errors_of_whole_runs_alone(material):
+    for series in series_of(material.rows, 0.5):
+        for point in series.points:
+            assert 1e-8 < point.step < 1  # s: a step, not a simulated second
+            assert point.error < 0.1
+    timed_only = series_of(material.rows, 0.6)
+    assert all(math.isnan(point.error) and point.step > 0 for series in timed_only for point in series.points)
+
+
+def test_the_page_is_whole_with_rows_and_without(material):
+    files = render_page(PAGE, material, "the command")
+    assert "scaling_cost.svg" in files
+    for method in {row.method for row in material.rows.values()}:
+        assert files["scaling.md"].count(f"| {method} |") == 3, method
+    assert "Nothing was run yet" in render_page(PAGE, Material({}), "the command")["scaling.md"]
 
 
 def test_a_power_law_is_found_at_the_large_end_only():
@@ -76,17 +155,6 @@ def test_a_point_of_a_series_is_its_own_cell():
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
-
-
-def test_a_cost_table_is_in_microseconds_with_the_law_at_its_end():
-    torn = replace(
-        SERIES, variant="torn", points=(Point(1, math.nan, math.nan, "torn"), Point(10, 3e-6, 0.1, "finished"))
-    )
-    assert table(cost_table((SERIES, torn))) == [
-        ["method", "1", "10", "100", "exponent (links)"],
-        ["pymunk tuned", "1", "100", "1.0e4", "2.0 (1 to 100)"],
-        ["pymunk torn", "**torn**", "3", "", "-"],
-    ]
 
 
 def test_a_crossing_is_where_the_first_becomes_the_dearer():
@@ -200,14 +268,6 @@ def test_a_step_costs_more_with_more_bodies(engine):
     assert 9 * costs[1] < costs[2]
 
 
-def test_a_step_costs_every_level_and_every_sweep():
-    mechanism, sleigh = TenLinks().mechanism(), ChaplyginSleigh().mechanism()
-    assert pymunk.DEFAULT.step_cost(mechanism) == pytest.approx(10 / 3 * 2e-6 + 10 * 10 * 13e-9)
-    assert pymunk.EXTENDED.step_cost(mechanism) == pytest.approx(23 * pymunk.LEAPFROG.step_cost(mechanism))
-    assert pymunk.EXTENDED.step_cost(sleigh) == pytest.approx(23 * (2e-6 + 40 * 13e-9))  # forty sweeps over one joint
-    assert mujoco.DEFAULT.step_cost(mechanism) == pytest.approx(10 / 3 * 12e-6)
-
-
 def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
     assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300, 1000))
     cells = sweep_cells((Disc(),), (Toy(),), FULL)
@@ -225,6 +285,17 @@ def test_the_row_of_a_step_is_the_nearest_by_ratio():
     near = {step: Rows(rows).near(step) for step in (1.9e-3, 5.1e-3, 2.9e-3, 3.3e-3)}
     assert [row.step if row else None for row in near.values()] == [1e-3, 1e-2, None, None]
     assert not Rows([]).near(1e-3)
+
+
+def test_a_cost_table_is_in_microseconds_with_the_law_at_its_end():
+    torn = replace(
+        SERIES, variant="torn", points=(Point(1, math.nan, math.nan, "torn"), Point(10, 3e-6, 0.1, "finished"))
+    )
+    assert table(cost_table((SERIES, torn))) == [
+        ["method", "1", "10", "100", "exponent (links)"],
+        ["pymunk tuned", "1", "100", "1.0e4", "2.0 (1 to 100)"],
+        ["pymunk torn", "**torn**", "3", "", "-"],
+    ]
 
 
 def test_constructions_are_told_at_the_compared_step_best_first():

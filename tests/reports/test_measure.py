@@ -1,27 +1,190 @@
-"""One cell measured: every field of its row, and each outcome by a toy that deserves it, the gravest first."""
+"""Errors and rows by hand: a motion with a known offset in every number, and what each field makes of it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from engines import Size
-from reference.joints import Skate
+from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
+from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
-from reports.model.measure import Measurement, blank, measure, sizes
+from reports.model.errors import (
+    branch_flips,
+    constraint_errors,
+    largest,
+    motion_errors,
+    reaction_error,
+    root_mean_square,
+    usable_samples,
+)
+from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
-from tests.reports.test_errors import SCENE
-from tests.rows import row, row_of
+from tests.rows import row
 from tests.toys import Disc, Plain, Toy
+
+TIMES = np.array([0.0, 0.1, 0.2, 0.3])
+
+
+@dataclass(frozen=True)
+class Pair(Scene):
+    """A driven disc and a free one, whose kinetic energy changes: rows x, y of a pin and a torque."""
+
+    name: ClassVar[str] = "pair"
+    source: ClassVar[str] = "invented"
+
+    duration: float = 0.3
+    horizon: float = 0.2
+
+    def mechanism(self) -> Mechanism:
+        first = Body("first", 2.0, 3.0, (0.0, 0.0, 0.0), (0.0, 0.0, 5.0))
+        second = Body("second", 7.0, 11.0, (1.0, 1.0, 0.0), (0.0, 0.0, 0.0))
+        joints = (Pin("axle", None, "first", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "first", 5.0, 0.0))
+        return Mechanism((first, second), joints, (0.0, -10.0))
+
+    def _motion(self, times: NDArray[np.float64]) -> Trajectory:
+        """The second disc moves along x at 6 t: not a motion of this mechanism, and no error knows that."""
+        t = times
+        pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
+        pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0
+        pose[:, 1], twist[:, 1, 0] = np.stack([3 * t**2, 0 * t + 1, 0 * t], axis=-1), 6 * t
+        reaction = np.column_stack([0 * t, 0 * t + 20.0, 0 * t + 8.0])
+        return Trajectory(t, pose, twist, reaction)
+
+
+SCENE = Pair()
+MECHANISM = SCENE.mechanism()
+TRUTH = SCENE.motion(TIMES)
+KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J, the truth's largest: at 0.3 s, beyond the horizon too
+
+
+def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
+    """The truth with `field=[(index, offset), ...]` added to single numbers."""
+    found = {name: getattr(TRUTH, name).copy() for name in ("pose", "twist", "reaction")}
+    for name, changes in offsets.items():
+        for index, offset in changes:
+            found[name][index] += offset
+    return replace(TRUTH, **found)
+
+
+def errors(trajectory: Trajectory) -> dict[str, float]:
+    return motion_errors(SCENE, MECHANISM, TRUTH, trajectory)
+
+
+# Two bodies at the three samples of the horizon: six distances and angles, one of them wrong.
+SIXTH = 1 / math.sqrt(6)
+MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
+    "the truth": ({}, {}),
+    "across": ({"pose": [((1, 1, 0), -0.25)]}, {"position": 0.25, "position_rms": 0.25 * SIXTH}),
+    "7 kg lifted": (
+        {"pose": [((1, 1, 1), -0.25)]},
+        {"position": 0.25, "position_rms": 0.25 * SIXTH, "energy": 7 * 10 * 0.25 / KINETIC},
+    ),
+    "a distance and no coordinate": (
+        {"pose": [((1, 1, 0), 0.3), ((1, 1, 1), 0.4)]},
+        {"position": 0.5, "position_rms": 0.5 * SIXTH, "energy": 7 * 10 * 0.4 / KINETIC},
+    ),
+    "an angle": ({"pose": [((2, 0, 2), -0.25)]}, {"angle": 0.25, "angle_rms": 0.25 * SIXTH, "angle_duration": 0.25}),
+    "beyond the horizon": (
+        {
+            "pose": [((3, 0, 2), 0.25), ((3, 1, 0), 9.0), ((3, 1, 1), 9.0)],
+            "twist": [((3, 1, 0), 9.0), ((3, 0, 2), 9.0)],
+            "reaction": [((3, 1), 9.0)],
+        },
+        {"angle_duration": 0.25},
+    ),
+    "a speed": (  # 1.2 m/s along x at 0.2 s, with (0.3, 0.4) m/s more
+        {"twist": [((2, 1, 0), 0.3), ((2, 1, 1), 0.4)]},
+        {"velocity": 0.5, "energy": 0.5 * 7 * (1.5**2 + 0.4**2 - 1.2**2) / KINETIC},
+    ),
+    "a rate": ({"twist": [((2, 1, 2), 0.25)]}, {"rate": 0.25, "energy": 0.5 * 11 * 0.25**2 / KINETIC}),
+    "energy of rotation": ({"twist": [((0, 0, 2), 1.0)]}, {"rate": 1.0, "energy": 0.5 * 3 * (36 - 25) / KINETIC}),
+    # A reaction is held against the largest of its kind: 20 N, 8 N m; the worse of the two counts.
+    "a force": ({"reaction": [((1, 0), -3.0)]}, {"reaction": 3 / 20}),
+    "another force": ({"reaction": [((1, 1), -3.0)]}, {"reaction": 3 / 20}),
+    "a torque": ({"reaction": [((1, 2), -3.0)]}, {"reaction": 3 / 8}),
+    "both": ({"reaction": [((1, 0), 1.0), ((2, 2), 1.0)]}, {"reaction": 1 / 8}),
+    "a torque that nobody tells": ({"reaction": [((1, 0), 1.0), ((slice(None), 2), math.nan)]}, {"reaction": 1 / 20}),
+}
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_each_offset_is_the_error_of_its_own_quantities_and_of_no_other(name):
+    offsets, expected = MOTIONS[name]
+    found = {name: value for name, value in errors(moved(**offsets)).items() if value != 0}
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_has_no_scale_or_is_told_nowhere_is_unknown():
+    still = replace(TRUTH, twist=np.zeros_like(TRUTH.twist))
+    assert math.isnan(motion_errors(SCENE, MECHANISM, still, TRUTH)["energy"])
+    assert math.isnan(errors(replace(TRUTH, reaction=np.full_like(TRUTH.reaction, math.nan)))["reaction"])
+    nothing = np.zeros((4, 3))
+    assert math.isnan(reaction_error(MECHANISM, nothing, nothing + 1))
+    disc = Disc().mechanism()
+    assert math.isnan(constraint_errors(disc, Disc().motion([0.0, 0.1]))["drive_gap"])
+
+
+def test_the_root_mean_square_is_that_of_all_numbers_and_the_largest_ignores_signs():
+    assert root_mean_square(np.array([[3.0, -4.0], [np.nan, 0.0]])) == pytest.approx(math.sqrt(25 / 3), rel=1e-15)
+    assert largest(np.array([[3.0, -4.0], [np.nan, 0.0]])) == 4.0
+    assert math.isnan(largest(np.array([np.nan])))
+    assert math.isnan(root_mean_square(np.array([])))
+    assert largest(np.array([1.0, -np.inf, np.nan])) == np.inf
+
+
+def test_gap_is_of_lengths_drive_gap_of_angles_and_slip_of_velocities():
+    for index, offset, expected in (
+        (("pose", (1, 0, 0)), 0.25, {"gap": 0.25}),
+        (("pose", (2, 0, 1)), -0.25, {"gap": 0.25}),
+        (("pose", (3, 0, 2)), -0.5, {"drive_gap": 0.5}),
+        (("twist", (1, 0, 1)), -0.75, {"slip": 0.75}),
+        (("twist", (1, 0, 2)), 0.5, {"slip": 0.5}),
+    ):
+        found = constraint_errors(MECHANISM, moved(**{index[0]: [(index[1], offset)]}))
+        assert set(found) == {"gap", "drive_gap", "slip"}
+        assert {name: value for name, value in found.items() if value > 1e-15} == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("name", ["pose", "twist"])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_samples_count_until_the_first_pose_or_twist_that_is_not_finite(name, value):
+    trajectory = moved(**{name: [((2, 1, 0), value)]})
+    assert usable_samples(trajectory) == 2
+    assert usable_samples(TRUTH) == 4
+    assert usable_samples(moved(reaction=[((0, 0), np.nan)])) == 4  # an unknown reaction is no failure
+
+
+def test_a_change_of_assembly_is_counted_each_time_and_one_of_the_truth_is_none():
+    scene = Disc()
+    truth = scene.motion(TIMES)
+
+    def flips(*sides: float) -> int:
+        trajectory = replace(truth, pose=truth.pose.copy())
+        trajectory.pose[:, 0, 2] = sides  # the toy's other assembly is beyond 2 rad
+        return branch_flips(scene, truth, trajectory)
+
+    assert flips(0, 0, 0, 0) == 0
+    assert flips(0, 3, 3, 3) == 1
+    assert flips(0, 3, 0, 0) == 2
+    assert flips(3, 3, 3, 3) == 1  # on the wrong side from the start
+    trajectory = replace(truth, pose=truth.pose.copy())
+    trajectory.pose[2:, 0, 2] = 3
+    assert branch_flips(scene, trajectory, trajectory) == 0
+    assert branch_flips(scene, trajectory, truth) == 1
+    assert branch_flips(SCENE, TRUTH, TRUTH) == 0  # a scene of one assembly
+
 
 DISC = Disc()
 LENGTH = DISC.mechanism().length_scale
-TIMES = np.linspace(0, 0.2, 21)
+INSTANTS = np.linspace(0, 0.2, 21)
 
 
 @dataclass(frozen=True, eq=False)  # its arrays can't be compared or hashed
@@ -48,7 +211,7 @@ class GivenRun:
 
 def disc(**changes) -> Trajectory:
     """The disc's true motion with other fields."""
-    return replace(DISC.motion(TIMES), **changes)
+    return replace(DISC.motion(INSTANTS), **changes)
 
 
 def shifted(column: int, offset, start: int = 0) -> Trajectory:
@@ -65,30 +228,6 @@ def test_no_two_fields_of_the_row_by_hand_share_a_number():
     assert len({f"{value:.1e}" for value in numbers if isinstance(value, float)}) == sum(
         isinstance(value, float) for value in numbers
     )
-
-
-def test_a_blank_row_says_what_its_cell_is():
-    cell = Cell(Disc(rate=3.0), Toy("tuned", factor=5.0), 7, "failure", 11)
-    found = blank(cell, Outcome.ABORTED, "a sentence")
-    said = {
-        "key": cell.key,
-        "purpose": "failure",
-        "scene": "disc",
-        "parameters": "Disc(rate=3.0, duration=0.2, horizon=0.2)",
-        "engine": "toy",
-        "variant": "tuned",
-        "settings": "Toy(variant='tuned', factor=5.0, power=2.0, plateau=0.0, name='toy')",
-        "every": 7,
-        "samples": 11,
-        "step": 0.2 / 11 / 7,
-        "outcome": "aborted",
-        "sentence": "a sentence",
-    }
-    found = found.as_dict()
-    assert {name: found.pop(name) for name in said} == said
-    # Nothing else is known: no number, no count.
-    assert all(value == 0 if isinstance(value, int) else math.isnan(value) for value in found.values())
-    assert row_of("toy tuned").method == "toy tuned"
 
 
 def test_every_field_of_a_measured_row_is_its_own():
@@ -160,33 +299,12 @@ def test_every_field_of_a_measured_row_is_its_own():
     assert told == pytest.approx({name: value for name, value in expected.items() if name not in words}, rel=1e-9)
 
 
-def test_the_freedoms_are_those_of_the_configuration_and_the_estimate_is_unknown_without_one():
-    found = measure(Cell(DISC, Given(disc()), 1), repeat=False)
-    assert (found.own_bodies, found.own_coordinates, found.own_rows, found.own_freedoms) == (1, 3, 2, 1)
-    assert math.isnan(found.estimate)
-    assert found.reaction_rows == 2
-
-
 def test_the_truth_is_at_an_engine_s_own_instants():
-    late = TIMES * (1 + 1e-9)  # as no rounding of steps makes them
+    late = INSTANTS * (1 + 1e-9)  # as no rounding of steps makes them
     found = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
-    assert found.position < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(TIMES).pose).max()
-    rounded = np.nextafter(TIMES, 1.0)
+    assert found.position < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
+    rounded = np.nextafter(INSTANTS, 1.0)
     assert measure(Cell(DISC, Given(replace(disc(), t=rounded)), 1), repeat=False).position == 0.0
-
-
-def test_sizes_are_the_engine_s_beside_the_mechanism_s_own():
-    sleigh = Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), (Skate("blade", None, "body", (0.0, 0.0)),))
-    assert sizes(sleigh, Size(113, 127, 131, 137), 3) == {
-        "bodies": 113,
-        "coordinates": 127,
-        "rows": 131,
-        "solver_rows": 137,
-        "own_bodies": 1,
-        "own_coordinates": 3,
-        "own_rows": 1,
-        "own_freedoms": 3,
-    }
 
 
 def test_rows_told_are_those_known_at_any_sample():

@@ -19,7 +19,7 @@ from engines.mujoco.reading import read as read_mjcf
 from engines.pymunk.reading import read as read_space
 from reference.checks import InvalidMechanism
 from reports.check.checked import check
-from reports.check.judging import often, refuse_disagreement
+from reports.check.judging import refuse_disagreement
 
 CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
 INERTIA = 0.5
@@ -118,15 +118,6 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
     assert check(without, "servo", 1.0, 1e-2).met
 
 
-def test_motors_that_exceed_their_joints_limit_only_together_are_refused_at_the_start():
-    motors = '<motor joint="a"/>' * 2
-    reading = mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.5, joint='actuatorfrcrange="-1.2 1.2"')
-    t, turn = judged_turn(reading)
-    np.testing.assert_allclose(np.abs(turn), 1.0 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match=r"^joint 'a' reaches the limit of its force: so it does at the start"):
-        mjcf(WHEEL, f"<actuator>{motors}</actuator>", control=0.7, joint='actuatorfrcrange="-1.2 1.2"')
-
-
 def test_a_constant_force_beyond_its_limit_is_read_with_the_limit():
     more = '<actuator><motor joint="a" gear="2" forcerange="-.5 .5"/></actuator>'
     t, turn = judged_turn(mjcf(WHEEL, more, control=3.0))
@@ -143,19 +134,6 @@ def test_a_limit_that_the_velocity_reaches_is_seen(rate, refused):
         return
     t, turn = judged_turn(mjcf(WHEEL, more, rate=rate))
     np.testing.assert_allclose(np.abs(turn), rate * INERTIA * (1 - np.exp(-t / INERTIA)), rtol=0, atol=CLOSE)
-
-
-TENDON = (
-    '<tendon><fixed name="t" {0}><joint joint="a" coef="3"/></fixed></tendon>'
-    '<actuator><motor name="pull" tendon="t" gear="2"/></actuator>'
-)
-
-
-def test_a_motor_of_a_tendon_has_its_coefficient_and_the_tendons_limit():
-    t, turn = judged_turn(mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.5))
-    np.testing.assert_allclose(np.abs(turn), 0.5 * 2 * 3 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
-    with pytest.raises(Unsupported, match=r"^actuator 'pull' reaches the limit of its force: so it does at the start"):
-        mjcf(WHEEL, TENDON.format('actuatorfrcrange="-.55 .55"'), control=0.6)
 
 
 def test_a_limit_is_seen_that_is_passed_between_two_samples():
@@ -181,25 +159,6 @@ def test_of_two_motors_the_one_whose_group_is_switched_off_does_not_act():
     np.testing.assert_allclose(np.abs(turn), 3 * 0.5 / INERTIA * t**2 / 2, rtol=0, atol=CLOSE)
 
 
-SPRUNG = 'stiffness="8" damping="0.5"'
-SPRUNG_TENDON = (
-    '<tendon><fixed stiffness="2" damping="0.125" springlength="0"><joint joint="a" coef="2"/></fixed></tendon>'
-)
-
-
-@pytest.mark.parametrize(("joint", "more"), [(SPRUNG, ""), ("", SPRUNG_TENDON)], ids=["a joint", "a tendon"])
-@pytest.mark.parametrize("off", ["spring", "damper", ""])
-def test_springs_and_dampers_act_unless_the_model_switches_them_off(joint, more, off):
-    """With both, a damped oscillation; a damper alone lets the rate fade, a spring alone is a sine."""
-    t, turn = judged_turn(mjcf(WHEEL, more, f'{off}="disable"' if off else "", rate=1.0, joint=joint))
-    decay = 0.0 if off == "damper" else 0.5 / (2 * INERTIA)
-    fast = sqrt(8 / INERTIA - decay**2)
-    wanted = np.exp(-decay * t) * np.sin(fast * t) / fast
-    if off == "spring":
-        wanted = (1 - np.exp(-2 * decay * t)) / (2 * decay)
-    np.testing.assert_allclose(np.abs(turn), np.abs(wanted), rtol=0, atol=CLOSE)
-
-
 @pytest.mark.parametrize("flag", ["", 'gravity="disable"'])
 def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
     """Forces and torques that stand in the data: on a free body off its frame, and on a hinge."""
@@ -217,33 +176,9 @@ def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
     np.testing.assert_allclose(gone[:, 1, 2], -0.4 / INERTIA * half, rtol=0, atol=CLOSE)
 
 
-@pytest.mark.parametrize("axis", ["0 1 0", "0 -1 0"])
-def test_a_hinge_driven_by_its_armature_turns_as_mujoco_turns_it(axis):
-    model = mujoco.MjModel.from_xml_string(
-        f"<mujoco><worldbody>{WHEEL.format('armature=' + chr(34) + '1e9' + chr(34)).replace('0 1 0', axis)}</worldbody>"
-        "</mujoco>"
-    )
-    data = mujoco.MjData(model)
-    data.qvel[0] = 2.0
-    t, turn = judged_turn(read_mjcf(model, data))
-    np.testing.assert_allclose(turn, -2.0 * t if axis == "0 1 0" else 2.0 * t, rtol=0, atol=CLOSE)
-
-
 def test_a_model_that_may_sleep_is_refused_by_name():
     with pytest.raises(Unsupported, match=r"^flag sleep: .* give --without sleep$"):
         mjcf(WHEEL, flags='sleep="enable"')
-
-
-def test_what_is_met_between_two_samples_is_seen():
-    """A pendulum turns back in the middle of two samples, a hair beyond its limit."""
-    t, height = np.array([0.0, 1.0]), np.array([[[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]]])
-    twist = np.array([[[0.0, 4.0, 0.0]], [[0.0, -4.0, 0.0]]])
-    from reference.trajectory import Trajectory
-
-    times, pose, rates = often(Trajectory(t, height, twist, np.zeros((2, 0)), 0.0), 10)
-    # The parabola 4 t - 4 t^2, with its rate.
-    np.testing.assert_allclose(pose[:, 0, 1], 4 * times - 4 * times**2, atol=1e-12)
-    np.testing.assert_allclose(rates[:, 0, 1], 4 - 8 * times, atol=1e-12)
 
 
 # ---------------------------------------------------------------------------------------------------------- pymunk

@@ -1,17 +1,25 @@
-"""The shape of each mechanism's page: its data page beside it, code that runs as it is printed."""
+"""The shape of the pages: links that lead somewhere, code that runs as it is printed, no two documents of one name."""
 
 from __future__ import annotations
 
 import contextlib
 import io
 import re
+from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reports.model.catalogue import PAGES
+from reports.cli.drawing import drawn, material_of
+from reports.cli.selection import shown_cells
+from reports.gate.pytest_plugin import _engines
+from reports.model.catalogue import PAGES, _without_doubles, generic_page, with_scenes
+from reports.model.measure import measure
 from reports.model.page import Page
+from reports.pages.rendering import render_page
+from reports.run.store import Store
 from reports.write.programs import PAGES as FOLDER
 from reports.write.programs import program, programs_of
 from reports.write.tables import number
@@ -20,6 +28,7 @@ from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole
 from tests.reports import test_any_rows as rendering
 from tests.reports.test_any_rows import FROM_ROWS, cheap, written
+from tests.toys import Disc, Toy
 
 undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
@@ -59,22 +68,6 @@ def test_a_page_and_its_data_page_link_to_each_other_and_every_link_has_its_head
         assert f"]({other})" in text
         for target, heading in re.findall(r"\]\((\w+\.md)?#([^)]*)\)", text):
             assert heading in anchors(target or name), (name, target, heading)
-
-
-@named
-def test_the_contents_of_a_data_page_name_each_of_its_headings(page, undrawn):
-    text = texts(page)[page.data_page]
-    contents = re.findall(r"^ *- \[.*\]\(#(.*)\)$", text, re.MULTILINE)
-    assert contents == [anchor(title) for title in re.findall(r"^##+ (.*)$", text, re.MULTILINE)]
-
-
-@named
-def test_the_page_says_for_the_scene_it_names_which_setting_gives_which_accuracy(page, undrawn):
-    assert page.advised in {"", *(scene.name for scene in page.scenes)}
-    text = texts(page)[f"{page.name}.md"]
-    assert text.index("## Which setting for which accuracy") < text.index("![")
-    assert page.advised_scene is not None
-    assert f"**{page.advised_scene.name}**" in text
 
 
 def run(source: str) -> tuple[dict, str]:
@@ -131,3 +124,62 @@ def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
     source = program(FOLDER / "four_bar" / "programs", "mujoco tuned")
     right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
     assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6
+
+
+def called(name: str) -> Disc:
+    """A disc in a scene of this name."""
+    return type("Named", (Disc,), {"name": name})()
+
+
+@pytest.mark.parametrize("names", [("x", "x_data"), ("x_data", "x"), ("x", "x_data", "x_data_data"), ("a/b", "a b")])
+def test_pages_of_scenes_whose_names_are_alike_share_no_document(names):
+    pages = with_scenes((), [called(name) for name in names], (Toy(),))
+    assert [page.scenes[0].name for page in pages] == list(names)
+    documents = [name for page in pages for name in page.documents]
+    assert len(documents) == len(set(documents)) == 2 * len(names)
+
+
+def test_a_scene_called_index_does_not_replace_the_index():
+    assert generic_page(called("index"), (Toy(),)).documents == {"index_2.md", "index_2_data.md"}
+
+
+def test_a_page_whose_document_is_another_pages_is_left_out_in_a_line():
+    first = Page("x", "X", "One.", (called("one"),), (Toy(),))
+    second = Page("x_data", "Y", "Two.", (called("two"),), (Toy(),))
+    kept, troubles = _without_doubles([first, second, replace(second, name="index")])
+    assert kept == (first,)
+    assert troubles == (
+        "crosscheck.pages: the page 'x_data' is left out, since it would have the file x_data.md, as 'x' has",
+        "crosscheck.pages: the page 'index' is left out, since it would have the file index.md, as the index of all "
+        "pages has",
+    )
+    alone = replace(second, scenes=())  # a page of words has no page of numbers
+    assert _without_doubles([alone, replace(first, name="y")])[1] == ()
+
+
+def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.path", [*__import__("sys").path])
+    assert _engines(["pymunk", "mujoco tuned"]) == ((), ("pymunk", "mujoco tuned"))
+    (tmp_path / "own_toy.py").write_text("from tests.toys import Toy\nOWN = (Toy('a'), Toy('b'))\n")
+    found = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
+    assert [engine.variant for engine in found[0]] == ["a", "b", "tuned"]
+    assert found[1] == ("toy a", "toy b", "pymunk tuned")
+    (tmp_path / "another.py").write_text("from tests.toys import Toy\nOTHER = Toy('tuned', name='pymunk')\n")
+    with pytest.raises(pytest.UsageError, match="another engine is called 'pymunk tuned'; give it another name"):
+        _engines([f"{tmp_path}/another.py"])
+    with pytest.raises(pytest.UsageError, match="there is no such file"):
+        _engines([f"{tmp_path}/missing.py"])
+
+
+def test_pages_of_workers_are_those_of_one_process(tmp_path: Path) -> None:
+    pages = [page for page in PAGES if page.name in ("reactions", "integrators")]
+    path = tmp_path / "cells.sqlite"
+    with Store(path) as store:
+        for cell in [next(c for c in shown_cells(page) if c.engine.name == "pymunk") for page in pages]:
+            store.put(measure(cell, repeat=False))
+    with Store.read(path) as store:
+        material = {page: material_of(page, store) for page in pages}
+    made = drawn(material, (), "make report", tmp_path)
+    alone = {page.name: render_page(page, given, "make report") for page, given in material.items()}
+    assert set(made) == {page.name for page in pages}
+    assert made == alone

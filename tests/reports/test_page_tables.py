@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import pytest
 
 from engines import Holder, Softness
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reference.scenes.pendulum.scenes import HundredLinks
-from reports.gate.prediction import COMPLIANCE, DAMPING, MOST_BODIES, STIFFNESS, Softened, declared_error, soft_tasks
+from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Answer, Task, answered
 from reports.write.experiments import compared_only, happened, told_experiment
 from reports.write.holders import holders
-from reports.write.page_tables import advice, advice_table, as_the_step_shrinks, reliable, scene_table
-from reports.write.programs import advised_settings, compact
+from reports.write.page_tables import advice, advice_table, reliable, scene_table
 from reports.write.tables import markdown, outcome_grid
-from reports.write.templates import anchor
 from tests.present import present
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
@@ -96,26 +93,6 @@ def test_a_plateau_above_what_is_declared_is_marked():
     assert "declared" not in scene_table(rows, "angle")
 
 
-@pytest.mark.parametrize(
-    ("errors", "outcome", "words"),
-    [
-        ((1e-2, 1e-4, 1e-6), Outcome.FINISHED, "order 2.0 (3 points)"),
-        ((1e-2, 1e-4), Outcome.FINISHED, "order 2.0 (2 points, unchecked)"),
-        ((1e-2, 1e-4, 1e-6, 1e-1), Outcome.FINISHED, "order 2.0 (3 points), **erratic**"),
-        ((1e-3, 1e-13), Outcome.FINISHED, "to rounding"),
-        ((1e-2, 1e-4, 1e-6, 1e-8), Outcome.TORN, "order 2.0 (3 points), at the finest step **torn**"),
-        ((1e-3,), Outcome.FINISHED, "-"),
-    ],
-)
-def test_what_a_smaller_step_brings_is_said_in_words(errors, outcome, words):
-    from reports.model.convergence import by_method, sweeps
-
-    rows = falling("a x", errors)
-    rows[-1] = replace(rows[-1], outcome=outcome)
-    (sweep,) = by_method(sweeps(rows), "angle").values()
-    assert as_the_step_shrinks(sweep, rows) == words
-
-
 def test_an_experiment_is_told_in_a_line():
     rows = [
         row_of("a x", angle=1e-5),
@@ -176,34 +153,6 @@ def test_who_holds_the_joints_stands_beside_each_method_and_changes_with_the_sce
     assert markdown(["method", "b"], [["x", "1"]], held={"y": "ours"}).splitlines()[-1] == "| x | - | 1 |"
 
 
-def test_settings_are_told_without_those_that_are_the_engines_own():
-    @dataclass(frozen=True)
-    class Inner:
-        count: int = 3
-        factor: float = 1.0
-
-    @dataclass(frozen=True)
-    class Outer:
-        variant: str
-        inner: Inner = field(default_factory=Inner)
-        levels: tuple[int, ...] = (1,)
-
-    assert compact(Outer("a")) == "Outer()"
-    assert compact(Outer("a", Inner(count=5), (2,))) == "Outer(inner=Inner(count=5), levels=(2,))"
-    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {"a x": Outer("x")})
-    assert (found.method, found.settings, found.program) == ("a x", "Outer()", "")
-    (found,) = advised_settings(Disc(), advice([row_of("a x", angle=1e-12)], "angle"), {})
-    assert found.settings == "Toy(order=2.0)"  # of an engine that is not here any more: as its row has them
-
-
-@pytest.mark.parametrize(
-    ("heading", "end"),
-    [("All errors", "all-errors"), ("How many, at which step?", "how-many-at-which-step"), ("A_b: c-d", "a_b-c-d")],
-)
-def test_a_heading_is_linked_as_github_links_it(heading, end):
-    assert anchor(heading) == end
-
-
 @dataclass(frozen=True)
 class Soft(Plain):
     name: str = "toy"
@@ -229,10 +178,3 @@ def test_what_is_declared_is_in_proportion_to_the_judges_own_softness():
     assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
     assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
     assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
-
-
-def test_the_judge_is_not_asked_where_it_would_take_minutes():
-
-    assert len(HundredLinks().mechanism().bodies) > MOST_BODIES
-    assert soft_tasks(HundredLinks(), (Soft(),)) == ()
-    assert all(isinstance(task, Softened) for task in soft_tasks(FreeFourBar(), (Soft(),)))

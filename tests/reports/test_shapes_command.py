@@ -8,7 +8,6 @@ import re
 import runpy
 import shlex
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -17,8 +16,6 @@ import pytest
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 
-from reference.chapter.centrodes import from_poses
-from reports.pages.centrodes.page import returned
 from reports.write.templates import TEMPLATES
 from tests.reports.test_command_line import call
 
@@ -81,12 +78,6 @@ def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_
     assert not (tmp_path / "nowhere").exists()
 
 
-def test_only_the_kinds_asked_for_are_written(tmp_path, capfd):
-    (tmp_path / "ladder.csv").write_text(as_text(ladder()))
-    assert call("shapes", tmp_path / "ladder.csv", "--folder", tmp_path, "--kind", "svg") == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"ladder.csv", "ladder_shapes.svg"}
-
-
 def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, capfd):
     for count, coarse in ((101, False), (17, True)):
         t = np.linspace(0, 1.2, count)
@@ -95,15 +86,6 @@ def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, cap
         (tmp_path / "motion.csv").write_text(as_text(table))
         assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path, "--force") == 0
         assert ("too far apart" in capfd.readouterr().out) is coarse
-
-
-def test_the_round_trip_catches_a_motion_that_the_curves_do_not_have():
-    table = ladder()
-    curves = from_poses(table[:, 0], table[:, 1:])
-    # The poses are met at the spline's own knots: rounding.
-    assert returned(curves)[0] < 1e-12
-    other = replace(curves, pose=curves.pose * [1.001, 1.0, 1.0])
-    assert returned(other)[0] > 1e-5
 
 
 def altered(row, column, value):

@@ -1,32 +1,35 @@
-"""The static site: what its pages carry is the reference's motion, its words are the pages', and no link is dead."""
+"""The static site and pictures that move: what they carry is the reference's motion, and no link is dead."""
 
 from __future__ import annotations
 
 import json
 import re
 import sys
-import tomllib
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 from urllib.parse import unquote, urlsplit
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
+from engines import mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.registry import trouble
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reports.model.ending import FileTrouble
+from reports.cli.commands import invoke
+from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
 from reports.site import markdown
+from reports.site.animated import PAUSE, animation, film
 from reports.site.build import MARKER, build, reference_pages, tasks
-from reports.site.embed import data, picture, shown
+from reports.site.embed import Shown, data, shown
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.lesson import Source, Take
-from reports.site.lessons import LESSONS
+from reports.site.lessons import LESSONS, take_like
 from reports.site.markdown import Formulas, html, section
 from reports.site.packages import NotFetched, Package, fetched
 from reports.site.rows import explored
@@ -151,14 +154,6 @@ def test_sections_that_lessons_quote_are_on_their_pages():
     assert section(page, "Nothing") is None
 
 
-def test_a_picture_stands_without_a_script():
-    drawing = picture(shown(take_of("rolling", "ellipse"), {}), "An ellipse")
-    assert drawing.startswith('<svg class="stage" viewBox="')
-    assert 'aria-label="An ellipse"' in drawing
-    assert drawing.count('class="body" transform="translate(') == 1
-    assert "nan" not in drawing
-
-
 def test_no_link_of_the_site_is_dead(files):
     pages = {name: Page(text.decode()) for name, text in files.items() if name.endswith(".html")}
     assert len(pages) > 30
@@ -193,24 +188,12 @@ def test_without_npm_the_site_says_what_is_missing(files):
     assert json.loads(files[MARKER])["troubles"]
 
 
-def test_data_of_a_page_are_json(files):
-    page = Page(files["lessons/four_bar.html"].decode())
-    for text in page.json.values():
-        assert json.loads(text)["bodies"]
-    assert {f"take-{name}" for name in LESSONS[0].takes} <= set(page.json)
-
-
 def test_formulas_are_found_outside_of_code_alone_and_keep_their_place():
     formulas = Formulas()
     html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n", formulas)
     assert set(formulas.found) == {("x^2", False), ("\\frac{a} {b}", True)}
     text = html("$b$ then $a$ then $b$", Formulas())
     assert markdown.with_formulas(text, ["(B)", "(A)"]) == "<p>(B) then (A) then (B)</p>\n"
-
-
-def test_headings_have_the_anchors_of_github():
-    text = html("# A b, `c`\n\n## Twice\n\n## Twice\n", Formulas())
-    assert re.findall('id="([^"]*)"', text) == ["a-b-c", "twice", "twice-1"]
 
 
 def test_a_package_of_another_digest_is_refused(tmp_path):
@@ -232,16 +215,6 @@ def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
     assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
     write_site(new, {MARKER: b"{}", "c.html": b"two"})
     assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
-
-
-def test_every_file_of_the_site_is_in_a_wheel():
-    globs = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-data"]["*"]
-    folder = ROOT / "reports" / "site"
-    for path in folder.rglob("*"):
-        if path.is_dir() or path.suffix in (".py", ".pyc") or path.name == "readme.svg":
-            continue
-        package = next(each for each in path.parents if (each / "__init__.py").is_file())
-        assert any(path in package.glob(pattern) for pattern in globs), path
 
 
 HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))
@@ -269,12 +242,6 @@ def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
         assert errors[0] > errors[1] > 0  # as shipped, and tuned
 
 
-def test_how_to_pages_quote_the_steps_of_contributing(files):
-    assert "crosscheck conform my_package.engine:TUNED" in files["howto/add_an_engine.html"].decode()
-    assert "reference.scene.Scene" in files["howto/add_a_scene.html"].decode()
-    assert len(HOWTOS) == 4
-
-
 def test_all_rows_are_told_with_their_cost_and_settings():
     texts = [(RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")]
     told = explored(*texts)
@@ -295,3 +262,94 @@ def test_the_reference_is_made_of_docstrings_and_needs_nothing_from_elsewhere():
     assert "Bodies, the joints between them" in pages["reference/reference/mechanism.html"].decode()
     fetched_from = re.compile(rb"<(?:script[^>]* src|link[^>]* rel=.stylesheet.[^>]* href)=.https?:")
     assert not [name for name, text in pages.items() if fetched_from.search(text)]
+
+
+ENGINES = (("pymunk default", pymunk.DEFAULT, 1), ("mujoco tuned", mujoco.TUNED, 1))
+
+
+@pytest.fixture(scope="module")
+def falling() -> Shown:
+    take = take_like(FreeFourBar(), ENGINES)
+    return shown(take, {motion: answered(motion) for motion in take.motions().values()})
+
+
+def keys(text: str, label: str) -> np.ndarray:
+    """(instants, 4): share of the round, x, y [m], angle [degrees] of a body."""
+    rule = re.search(rf"@keyframes {label}{{(.*?)}}}}", text)
+    assert rule is not None
+    pattern = r"([\d.]+)%{transform:translate\(([-\d.]+)px,([-\d.]+)px\) rotate\(([-\d.]+)deg\)"
+    return np.array(re.findall(pattern, rule[1] + "}"), dtype=float)
+
+
+def test_the_truth_and_each_method_pass_through_their_poses(falling):
+    text = animation(falling, "A title")
+    for index, pose in enumerate([*falling.motions.values(), falling.truth.pose]):
+        for body in range(3):
+            found = keys(text, f"m{index}b{body}")[:-1]
+            frames = np.interp(found[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
+            exact = pose[frames.round().astype(int), body] * (1, 1, 180 / np.pi)
+            # Instants are told to a hundredth of a percent, half a frame at worst: what moves in it is small.
+            assert np.abs(found[:, 1:] - exact).max() < 2.0
+            assert np.abs(found[:, 1:3] - exact[:, :2]).max() < 0.02
+
+
+def test_a_picture_is_xml_without_script_and_the_same_every_time(falling):
+    text = animation(falling, 'A <title> & "more"')
+    ElementTree.fromstring(text)
+    assert "<script" not in text
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
+    assert "prefers-reduced-motion" in text
+    assert text == animation(falling, 'A <title> & "more"')
+
+
+def test_a_method_that_gave_up_stays_where_it_was(falling):
+    pose = falling.motions["pymunk default"].copy()
+    pose[40:] = np.nan
+    text = animation(Shown(falling.take, falling.mechanism, falling.t, falling.truth, {"one": pose}, {}, {}), "Lost")
+    assert "nan" not in text
+    found = keys(text, "m0b0")
+    assert np.all(found[-5:, 1:] == found[-1, 1:])
+
+
+def test_a_film_is_written(falling, tmp_path, monkeypatch):
+    monkeypatch.setattr("reports.site.animated.FRAMES", 4)
+    film(falling, "A title", tmp_path / "one.gif")
+    from PIL import Image
+
+    with Image.open(tmp_path / "one.gif") as image:
+        assert getattr(image, "n_frames", 1) == 4
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)  # as if it were not installed
+    with pytest.raises(BadInput, match="needs the program ffmpeg"):
+        film(falling, "A title", tmp_path / "one.mp4")
+
+
+def test_the_picture_of_the_readme_is_small_and_moves():
+    (name,) = re.findall(r"!\[[^]]+\]\(([^)]+\.svg)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    text = (ROOT / name).read_text(encoding="utf-8")
+    assert len(text.encode()) < 500_000
+    ElementTree.fromstring(text)
+    take = take_like(FreeFourBar(), (("pymunk default", pymunk.DEFAULT, 1),))
+    again = animation(shown(take, {motion: answered(motion) for motion in take.motions().values()}), "")
+    # The truth is the last of its motions: it stands there as it would be drawn today.
+    last = len(re.findall(r"@keyframes m\d+b0{", text)) - 1
+    assert np.abs(keys(text, f"m{last}b0") - keys(again, "m1b0")).max() < 1e-2
+    assert np.abs(keys(text, "m0b0") - keys(again, "m0b0")).max() < 1e-2
+
+
+@pytest.mark.parametrize(
+    ("words", "refusal", "told"),
+    [
+        (["free_four_bar", "--to", "bmp"], BadInput, "--to is 'bmp'; there are svg, gif, mp4"),
+        (["free_four_bar", "--engines", "pymunk defautl"], BadInput, "did you mean 'pymunk default'"),
+        (["four_bar"], BadInput, "'four_bar' names 3 scenes; give one of"),
+        (["free_four_bar", "--output", "mine.svg"], FileTrouble, "is there already"),
+        (["free_four_bar", "--output", "mine.svg/x.svg"], FileTrouble, "give another --output"),
+    ],
+)
+def test_bad_words_are_refused_in_a_line_before_anything_is_run(words, refusal, told, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.svg").write_text("mine")
+    with pytest.raises(refusal, match=re.escape(told)):
+        invoke(["animate", *words])
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("mine.svg", "mine")]

@@ -12,14 +12,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import mujoco as mujoco_package
 import numpy as np
 import pytest
 
-from engines import Engine, Unsupported, mujoco, pymunk
+from engines import Engine, Unsupported, mujoco
 from engines.mujoco.stiffness import STIFFEST, TiedToStep
 from reference.scene import Scene
-from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.model.tasks import answered
 from reports.site.build import build
 from reports.site.drawn import measure_of
@@ -27,7 +25,6 @@ from reports.site.folder import compressed_size, server, write_site
 from reports.site.lesson import Source
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import BIASES, IMPEDANCES, INTEGRATORS, SWEEPS, TIME_CONSTANTS, TOLERANCES, Live
-from reports.site.packages import MUJOCO
 from tests import RESULTS
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -35,12 +32,18 @@ if BROWSER is None:
     pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
 
-native: Any = mujoco_package  # its bindings carry no types
 PHONE = {"width": 390, "height": 844}
 
 
+# A linkage, a skate and bodies that roll; the slow tests open the other lessons too.
+QUICK = ("four_bar", "skate", "rolling")
+
+
 @pytest.fixture(scope="module")
-def files(tmp_path_factory, request):
+def files(request):
+    """The site with the quick lessons and with those that a test that was selected asks for."""
+    given = (vars(item).get("callspec") for item in request.session.items)
+    wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
     four_bar = LESSONS[0]
     answers = {
@@ -48,7 +51,7 @@ def files(tmp_path_factory, request):
     } | {motion: answered(motion) for live in four_bar.live for motion in live.shipped().values()}
     cache = Path(request.config.cache.mkdir("site"))
     source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
-    return build(source)
+    return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
 
 
 SUFFIXES = (".md", ".svg", ".csv")
@@ -160,8 +163,20 @@ def python_of(live: Live, places: dict[str, int]) -> tuple[Scene, Engine, Engine
     return scene, munk, engine, step
 
 
-LIVE = [(lesson.name, index) for lesson in LESSONS for index, _ in enumerate(lesson.live) if lesson.name != "centrodes"]
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
+
+
+def marked(*asked: Any) -> Any:
+    """Parameters that begin with the name of a lesson: slow unless it is a quick one."""
+    return pytest.param(*asked, marks=() if asked[0] in QUICK else pytest.mark.slow)
+
+
+LIVE = [
+    marked(lesson.name, index)
+    for lesson in LESSONS
+    for index, _ in enumerate(lesson.live)
+    if lesson.name != "centrodes"
+]
 # By how much an engine in the page may differ from the same one in Python, relative to the motion's size. Both do the
 # same operations, though MuJoCo's releases differ, and compilers round some sums in another order: measured are 1e-17
 # to 1e-13. Coarse steps of a car that stands on contacts (5e-8), of a blade that does (2e-11), and of a crank with a
@@ -170,7 +185,7 @@ BY_NAME = {lesson.name: lesson for lesson in LESSONS}
 APART = {"gears": 1e-2, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["as shipped", "another place"])
+@pytest.mark.parametrize("other", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["moved", "as shipped"])
 @pytest.mark.parametrize(("lesson", "index"), LIVE)
 def test_the_engines_in_the_page_give_what_python_gives(running, lesson, index, other):
     live = BY_NAME[lesson].live[index]
@@ -212,27 +227,6 @@ def test_springs_of_mujoco_are_those_of_the_sliders(running):
     assert found["errors"]["mujoco"] < 0.5 * shipped["errors"]["mujoco"]
 
 
-def test_a_faster_motion_is_the_same_path_sooner(running):
-    live = BY_NAME["four_bar"].live[0]
-    found = choose(running("four_bar"), 0, {"tempo": 3})
-    assert found["tempo"] == 2
-    scene = DrivenFourBar(rate=2 * DrivenFourBar().rate)
-    samples = live.samples(found["steps"])
-    truth = scene.motion(np.arange(samples + 1) * (scene.duration / samples)).pose
-    assert np.abs(np.reshape(found["truth"], truth.shape) - truth).max() < 1e-12
-    python = pymunk.DEFAULT.build(scene.mechanism(), scene.duration / found["steps"])(samples, found["every"])
-    assert np.abs(np.reshape(found["munk"], truth.shape) - python.pose).max() < 1e-12
-
-
-def test_a_smaller_step_has_a_smaller_error_and_one_sweep_a_larger(running):
-    page = running("four_bar")
-    found = [choose(page, 0, {"steps": step})["errors"] for step in (1, 3, 6)]
-    assert found[0]["munk"] > 3 * found[1]["munk"] > 9 * found[2]["munk"]
-    assert found[0]["mujoco"] > found[1]["mujoco"] > found[2]["mujoco"]
-    many = choose(page, 0, {"bias": 3, "iterations": 5})["errors"]["munk"]
-    assert choose(page, 0, {"bias": 3, "iterations": 0})["errors"]["munk"] > 3 * many
-
-
 def test_a_link_holds_the_sliders(running, opened):
     page = running("skate")
     choose(page, 0, {"offset": 1, "steps": 1, "iterations": 6, "munk": 1})
@@ -253,7 +247,7 @@ def test_a_link_chooses_the_motion_and_a_wrong_one_does_no_harm(opened):
     assert page.evaluate("document.querySelector('[name=\"0.crank\"]').value") == "2"
 
 
-@pytest.mark.parametrize("lesson", [lesson.name for lesson in LESSONS if lesson.live])
+@pytest.mark.parametrize("lesson", [marked(lesson.name) for lesson in LESSONS if lesson.live])
 def test_buttons_move_the_sliders_and_say_what_should_happen(running, lesson):
     page = running(lesson)
     for index, live in enumerate(BY_NAME[lesson].live):
@@ -268,25 +262,12 @@ def test_buttons_move_the_sliders_and_say_what_should_happen(running, lesson):
         assert page.locator("#live .expected").inner_text() == ""
 
 
-def test_the_naive_skate_stays_wrong_at_every_step_and_the_groove_does_not(running):
-    page = running("skate")
-    naive = [choose(page, 0, {"munk": 0, "steps": step})["errors"]["munk"] for step in (3, 6)]
-    groove = [choose(page, 0, {"munk": 1, "steps": step})["errors"]["munk"] for step in (3, 6)]
-    assert naive[1] > 0.9 * naive[0] > 0.1
-    assert groove[1] < 0.2 * groove[0] < 0.1
-
-
-def test_the_page_names_by_how_much_its_engines_differ_from_pythons(running, files):
-    page = running("four_bar")
-    choose(page, 0, {})
-    told = page.inner_text("#live .apart")
-    assert f"MuJoCo {native.mj_versionString()} in Python" in told
-    assert f"MuJoCo {MUJOCO.version} in this page" in told
-    assert float(page.evaluate("document.getElementById('live').dataset.apart_mujoco")) < 1e-12
-
-
-def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened):
-    for name in sorted(each for each in files if each.endswith(".html") and not each.startswith("reference/")):
+@pytest.mark.parametrize("each", [4, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_page_loads_without_a_complaint_and_fits_a_phone(files, opened, each):
+    """Every lesson, and of the others each fourth: pages of one kind have one template; the slow test opens all."""
+    names = sorted(name for name in files if name.endswith(".html") and not name.startswith("reference/"))
+    lessons = [name for name in names if name.startswith("lessons/")]
+    for name in dict.fromkeys([*lessons, *names[::each]]):
         page = opened(name, viewport=PHONE)
         assert page.title()
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
@@ -318,14 +299,6 @@ def test_a_motion_is_played_dragged_and_switched_by_keys_alone(opened):
     page.keyboard.press("Enter")
 
 
-def test_a_trap_shows_another_motion(opened):
-    page = opened("lessons/four_bar.html", reduced_motion="reduce")
-    assert page.locator("#figure-5 .legend li").count() == 5
-    page.get_by_role("button", name="Driven towards a dead centre").click()
-    assert page.locator("#figure-5 .legend li").count() == 3  # the truth, and two that were not run
-    assert "not run" in page.inner_text("#figure-5 .legend")
-
-
 def test_without_a_script_words_pictures_and_tables_are_there(opened):
     page = opened("lessons/four_bar.html", java_script_enabled=False)
     assert "Three bars and four pins" in page.inner_text("main")
@@ -352,32 +325,6 @@ def test_a_table_is_sorted_and_filtered(opened):
     head.click()
     assert table.locator("tbody tr td:first-child").all_inner_texts() != first
     assert table.locator("th").first.get_attribute("aria-sort") == "descending"
-
-
-def test_dark_and_light_can_be_chosen_and_are_kept(opened):
-    page = opened("index.html", color_scheme="light", reduced_motion="reduce")
-    paper = "getComputedStyle(document.body).backgroundColor"
-    light = page.evaluate(paper)
-    page.get_by_role("button", name="between light and dark").click()
-    dark = page.evaluate(paper)
-    assert dark != light
-    page.reload()
-    assert page.evaluate(paper) == dark
-
-
-def test_words_stand_out_from_the_paper(opened):
-    ratio = """() => {
-      const level = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map(Number).map((v) => {
-        const u = v / 255; return u <= 0.03928 ? u / 12.92 : ((u + 0.055) / 1.055) ** 2.4; });
-        return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-      const paper = level(getComputedStyle(document.body).backgroundColor);
-      return [...document.querySelectorAll("p, a, h1, h2, li, button, figcaption, legend, output")].map((e) => {
-        const ink = level(getComputedStyle(e).color);
-        return (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05); });
-    }"""
-    for scheme in ("light", "dark"):
-        page = opened("lessons/four_bar.html", color_scheme=scheme)
-        assert min(page.evaluate(ratio)) > 4.5
 
 
 def test_the_site_is_small(files):

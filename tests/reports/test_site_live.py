@@ -24,12 +24,12 @@ from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
-from reports.site.drawn import demanded, loose, measure_of, opened, place_of
+from reports.site.drawn import demanded, loose, opened, place_of
 from reports.site.embed import forces
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
-from reports.site.live.data import packed, template
+from reports.site.live.data import template
 from reports.site.live.models import Part, changes, plan_of, text_of
 from reports.site.live.sliders import Live
 from reports.site.rows import stored_rows
@@ -151,11 +151,6 @@ def test_a_plan_says_what_each_shape_and_each_hand_is():
     assert parts(pymunk_engine.DEFAULT, DrivenSliderCrank()) == [Part.PIVOT, Part.PIVOT, Part.GROOVE]
 
 
-def test_doubles_of_a_page_are_the_same_to_the_last_bit():
-    values = np.array([[0.1, -1e-300], [np.inf, 2.0]])
-    assert np.array_equal(np.frombuffer(base64.b64decode(packed(values)), dtype="<f8"), values.ravel())
-
-
 def test_a_live_scene_holds_the_truth_of_every_place():
     whole = LIVE["skate: the sleigh"]
     live = replace(whole, sliders=whole.sliders[-1:])  # every place has a model of each engine, which takes its time
@@ -184,15 +179,6 @@ def test_slips_and_openings_are_those_of_the_mechanism():
     assert opened(mechanism, contact, lifted, motion.twist) == pytest.approx(np.array([[1e-3, 2e-3]] * 2), abs=1e-9)
 
 
-def test_a_contact_turns_with_the_body_on_which_something_rolls():
-    joint = Roll("roll", "first", "second", Rolling.at_arcs(Circle(0.3), Circle(0.5)))
-    first, second = np.array([[0.0, 0.0, 0.0]]), np.array([[0.8, 0.0, 0.4]])
-    place, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
-    second_turned = [*(shift + rotated(turn, second[0, :2])), 0.4 + turn]
-    turned = place_of(joint, np.array([[*shift, turn]]), np.array([second_turned]))
-    assert turned[0] == pytest.approx(shift + rotated(turn, place[0]), abs=1e-14)
-
-
 def test_friction_that_is_demanded_is_that_of_the_rolling_body():
     scene = RollingEllipse()
     t = np.linspace(0, scene.duration, 50)
@@ -202,11 +188,6 @@ def test_friction_that_is_demanded_is_that_of_the_rolling_body():
     pulled = demanded(np.array([[1.0, 2.0], [1.0, -1.0]]))
     assert pulled[0] == 0.5
     assert np.isnan(pulled[1])
-
-
-def test_the_error_of_a_mechanism_on_skates_is_that_of_its_place():
-    assert measure_of(ChaplyginSleigh().mechanism()) == "position"
-    assert measure_of(DrivenFourBar().mechanism()) == "angle"
 
 
 def test_stored_rows_are_series_of_steps_and_errors():
@@ -223,3 +204,12 @@ def test_stored_rows_are_series_of_steps_and_errors():
     for live in LIVE.values():
         methods = {each["method"] for each in stored_rows(published, [live.scene.name])}
         assert methods & {"pymunk default", "pymunk tuned", "mujoco default"}
+
+
+def test_a_contact_turns_with_the_body_on_which_something_rolls():
+    joint = Roll("roll", "first", "second", Rolling.at_arcs(Circle(0.3), Circle(0.5)))
+    first, second = np.array([[0.0, 0.0, 0.0]]), np.array([[0.8, 0.0, 0.4]])
+    place, turn, shift = place_of(joint, first, second), 0.7, np.array([1.0, 2.0])
+    second_turned = [*(shift + rotated(turn, second[0, :2])), 0.4 + turn]
+    turned = place_of(joint, np.array([[*shift, turn]]), np.array([second_turned]))
+    assert turned[0] == pytest.approx(shift + rotated(turn, place[0]), abs=1e-14)

@@ -1,4 +1,4 @@
-"""Supervised workers: whatever a job does to its process, or somebody else does to it, is told as what it is."""
+"""Supervised workers: whatever a job, a check of an engine or somebody else does to a process is told as what it is."""
 
 from __future__ import annotations
 
@@ -7,19 +7,30 @@ import signal
 import threading
 import time
 from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from engines.conformance import CHECKS, Case, Result, cases
+from engines.pymunk import LEAPFROG
+from reference.mechanism import Mechanism
+from reports.__main__ import main
+from reports.cli import supervised_checks
+from reports.cli.conform import verdicts
+from reports.cli.supervised_checks import Named, Question, ask, asked
 from reports.model.cells import Cell
 from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.run import supervisor, worker
 from reports.run.running import run_cells
 from reports.run.supervisor import WorkersLost, supervise
-from tests.reports.rough_toys import ACTIONS, RoughToy, act, dies, helpers, spoiled
+from tests.reports.rough_toys import RoughToy, act, dies, helpers, spoiled
 from tests.toys import Disc, Toy
+from tests.wrong.adapters import Wrong
 
-fcntl = pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
+pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
 # What becomes of each, and a part of its sentence.
 ENDS = {
@@ -221,11 +232,6 @@ def test_exit_codes_are_told_from_each_other(code, outside, words):
     assert describe_exit(code) == words
 
 
-def test_every_action_is_tried():
-    named = {"well", "short sleep", "nap", "kill once", "segfault once"}
-    assert set(ACTIONS) == set(ENDS) | LEAVES | named | {name for name in ACTIONS if name.startswith("held ")}
-
-
 def finest_tick(_):
     """The smallest step of the process's CPU clock that is seen within a few milliseconds of work [s]."""
     seen = set()
@@ -243,3 +249,84 @@ def test_a_limit_does_not_make_the_clock_coarse_by_which_stepping_is_timed():
     # of a thousand. Ten microseconds lie between.
     [(_, tick, _)] = supervise(finest_tick, [0], limit=60.0, workers=1)
     assert tick < 1e-5
+
+
+@dataclass(frozen=True)
+class Aborting(Wrong):
+    """As native code does for a step that it can't divide by."""
+
+    def build(self, mechanism: Mechanism, dt: Any) -> Any:
+        if dt == 0:
+            os.write(2, b"Aborting due to Wrong error: dt is zero\n")
+            os.abort()
+        return self.engine.build(mechanism, dt)
+
+
+ABORTING = Aborting("aborts where a step is zero")
+
+
+def test_an_abort_ends_one_check_and_not_the_program(capfd):
+    with pytest.raises(SystemExit) as ended:
+        main(["conform", "tests.reports.test_supervisor:ABORTING"])
+    captured = capfd.readouterr()
+    assert ended.value.code == 1
+    assert captured.err == "crosscheck: wrong aborts where a step is zero: not as the contract of an engine says\n"
+    lines = captured.out.splitlines()
+    (failed,) = [line for line in lines if line.startswith("  fails")]
+    assert "refuses_bad_steps: " in failed
+    assert "signal 6 (SIGABRT): Aborting due to Wrong error: dt is zero" in failed
+    told = [line.split()[1].rstrip(":") for line in lines if line.startswith(("  holds", "  fails"))]
+    assert told == [check.name for check in CHECKS]  # in their order, though this one was tried twice
+    assert lines[-1] == "  1 checks fail"
+
+
+def answered(monkeypatch, change) -> list[tuple[Case, Result]]:
+    """What is told of LEAPFROG's checks when every answer of a worker is what `change` makes of the question."""
+
+    def supervised(function, questions, limit, workers):
+        assert function is ask
+        yield from reversed([(question, *change(question)) for question in questions])
+
+    monkeypatch.setattr(supervised_checks, "supervise", supervised)
+    ((engine, results),) = asked(Named.here("pymunk", "leapfrog"))
+    assert engine == LEAPFROG
+    return list(results)
+
+
+def test_answers_are_told_in_the_order_of_the_checks_whenever_they_come(monkeypatch):
+    def right(question: Question):
+        return tuple(Result("holds") for case in cases(LEAPFROG) if case.check.name == question.check), ""
+
+    found = answered(monkeypatch, right)
+    every = list(cases(LEAPFROG))
+    assert [(case.check, case.world) for case, _ in found] == [(case.check, case.world) for case in every]
+
+
+def test_a_check_that_never_ends_fails_in_the_mechanism_in_which_it_was(monkeypatch):
+    def hanging(question: Question):
+        if question.check == "does_not_wrap_angles":
+            return Loss(Outcome.LOST, "killed from outside with signal 9 (SIGKILL)"), ""
+        number = min(1, sum(case.check.name == question.check for case in cases(LEAPFROG)) - 1)
+        Path(question.notes, question.check).write_text(str(number))
+        return Loss(Outcome.TIMED_OUT, "did not end within 60 s of CPU time"), ""
+
+    found = answered(monkeypatch, hanging)
+    assert [case.check for case, _ in found] == list(CHECKS)
+    assert {case.world for case, _ in found} >= {check.worlds[1] for check in CHECKS if len(check.worlds) > 1}
+    lines = dict.fromkeys(line for status, line in verdicts(iter(found)) if status == "fails")
+    ends = [line.rpartition(" It")[2] for line in lines]
+    assert ends.count(" did not end within 60 s of CPU time") == len(CHECKS) - 1
+    assert ends.count("s process was lost: killed from outside with signal 9 (SIGKILL)") == 1
+
+
+def test_an_abort_that_does_not_come_again_is_told_too(monkeypatch):
+    found = answered(monkeypatch, lambda question: ((), "aborted with signal 11 (SIGSEGV)"))
+    assert {result.status for _, result in found} == {"fails"}
+    assert "at the first try: aborted with signal 11 (SIGSEGV)" in found[0][1].sentence
+
+
+def test_a_worker_tells_in_which_mechanism_it_is(tmp_path):
+    question = Question(Named.here("pymunk", "leapfrog"), 0, "first_pose_is_the_start", str(tmp_path))
+    results = ask(question)
+    assert {result.status for result in results} == {"holds"}
+    assert (tmp_path / "first_pose_is_the_start").read_text() == str(len(results) - 1)

@@ -1,4 +1,4 @@
-"""Orders and plateaus of invented errors: the fit finds what was put in, and says when it can't."""
+"""Orders and plateaus of invented errors: the fit finds what was put in; and the steps that people use."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from reports.model.cells import FULL, Cell
-from reports.model.convergence import Verdict, by_method, fit, groups, judged, sweeps
+from reports.model.catalogue import PAGES
+from reports.model.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
+from reports.model.convergence import Verdict, by_method, fit, judged, sweeps
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
+from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_step, usual_cells, usual_variants
 from reports.write.rows import Rows
 from reports.write.unmeasured import UNMEASURED
-from tests.rows import falling, row, row_of
+from tests.rows import falling, row_of
 from tests.toys import Disc, Toy
 
 STEPS = np.array([1e-2 / every for every in FULL])
@@ -172,14 +174,6 @@ def test_each_quantity_has_its_own_rounding():
             assert by_method(found, q.name)["disc", "a", "x"].verdict is verdict, q.name
 
 
-def test_groups_go_from_coarse_to_fine_and_leave_out_what_is_no_sweep():
-    rows = [row_of("a x", step=1e-3), row_of("b x"), row_of("a x", step=1e-1), row_of("a x", purpose="map")]
-    assert {key: [r.step for r in members] for key, members in groups(rows).items()} == {
-        ("disc", "a", "x"): [1e-1, 1e-3],
-        ("disc", "b", "x"): [row().step],
-    }
-
-
 def judgements(*errors: float, quantity: str = "angle") -> list[str]:
     return [r.outcome for r in judged(falling("a x", errors, quantity), quantity)]
 
@@ -217,3 +211,47 @@ def test_the_best_row_has_the_least_error_of_those_that_can_be_compared():
     assert Rows(rows).of(method="a x").best("position").step == 1e-1
     assert Rows(rows).of(method="c x").best() is UNMEASURED
     assert Rows(rows[3:5]).best() is UNMEASURED
+
+
+# Samples 10, 9.97, 20 and 50 ms apart, and scenes of 0.3 to 10 s; chains are left out, whose costs take long to tell.
+NAMES = (
+    "driven_four_bar",
+    "free_four_bar",
+    "sleigh",
+    "pendulum_1",
+    "rolling_in_ring",
+    "elliptic_gears",
+    "person_two_feet",
+)
+SCENES = [(page, scene) for page in PAGES for scene in page.scenes if scene.name in NAMES]
+
+
+@pytest.mark.parametrize(("page", "scene"), SCENES, ids=[scene.name for _, scene in SCENES])
+def test_a_scene_is_run_at_each_usual_step_once_within_a_hundredth(page, scene):
+    engines = [engine for engine in page.engines_of(scene) if engine.variant in FEATURED]
+    swept = sweep_cells((scene,), engines, FULL)
+    cells = [*swept, *usual_cells((scene,), engines)]
+    for engine in engines:
+        for step in USUAL_STEPS.values():
+            own = [cell for cell in cells if cell.engine == engine and abs(cell.step / step - 1) < 0.01]
+            dear = estimated_cost(Cell(scene, engine, max(1, round(scene.spacing / step)))) > 0.9 * COST_LIMIT
+            assert len(own) == 1 or (dear and not own), (engine.name, engine.variant, step)
+    added = [cell for cell in cells if cell.purpose == "usual"]
+    assert all(any(is_step(cell.step, step) for step in USUAL_STEPS.values()) for cell in added)
+    assert all(cell.step * cell.every * cell.sample_count == pytest.approx(scene.duration) for cell in added)
+    assert all(estimated_cost(cell) <= COST_LIMIT for cell in added)
+
+
+def test_a_step_that_the_sweep_has_is_not_run_twice_and_one_that_it_left_out_for_its_cost_is_not_run():
+    # Samples 1e-2 s apart: ten steps between them are 1 ms, which the sweep has.
+    cells = usual_cells((Disc(),), (Toy("default"),))
+    assert [(cell.every, cell.samples) for cell in cells if is_step(cell.step, 1e-3)] == []
+    assert [round(cell.step, 6) for cell in cells] == [0.016667, 0.002]
+
+
+def test_the_usual_variants_are_the_three_words_in_their_order_or_the_first_of_others():
+    methods = [("a", "tuned"), ("a", "x"), ("a", "default"), ("b", "one"), ("b", "two"), ("b", "three"), ("b", "four")]
+    assert usual_variants(methods) == {"a": ("default", "tuned"), "b": ("one", "two", "three")}
+    engines = (Toy("default"), Toy("soft"), Toy("one", name="b"), Toy("two", name="b"))
+    chosen = {(cell.engine.name, cell.engine.variant) for cell in usual_cells((Disc(),), engines)}
+    assert chosen == {("toy", "default"), ("b", "one"), ("b", "two")}

@@ -11,9 +11,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engines import Unsupported, mujoco, pymunk
+from engines import Unsupported
 from reference.scenes.catalogue import SCENES
-from reference.trajectory import Trajectory
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.gate.prediction import all_tasks
 from reports.model import fingerprint
@@ -25,11 +24,12 @@ from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
 from reports.pages.rendering import render_page
 from reports.pages.skate.page import path_picture
 from reports.run import store as store_module
-from reports.run.running import missing, run_into, run_items
+from reports.run.running import missing, run_into
 from reports.run.store import Store
+from tests.committed_rows import answer_to
 from tests.present import present
 from tests.reports.rough_toys import RoughToy
-from tests.toys import Disc, FailingToy, Toy
+from tests.toys import Disc, FailingToy, Toy, in_process
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
     results = []
     with Store(tmp_path / "cells.sqlite") as store:
         assert missing([*tasks, cell], store) == (*tasks, cell)
-        assert run_into(store, [*tasks, cell], done=results.append) == len(results) == 4
+        assert run_into(store, [*tasks, cell], done=results.append, supervised=in_process) == len(results) == 4
         assert run_into(store, [*tasks, cell]) == 0
         assert store.get([cell])[cell].outcome == Outcome.FINISHED
         found = store.answers([*tasks, Sum((5.0,))])
@@ -169,7 +169,7 @@ def test_no_answer_is_stale_because_of_words_or_pictures():
 
 @cache
 def answers(page: Page) -> dict[Task, Answer]:
-    return {task: answered(task) for task in all_tasks(page)}
+    return {task: answer_to(task) for task in all_tasks(page)}
 
 
 def refusing(monkeypatch) -> list[str]:
@@ -219,22 +219,9 @@ def test_an_engine_that_is_built_while_a_page_is_written_is_noticed(monkeypatch)
     assert asked == ["Toy"]
 
 
-def test_motions_for_pictures_leave_out_what_was_not_run_or_failed():
-    sound, failed, never = (motion(variant).cell for variant in ("", "refuse", "raise"))
-    material = Material({}, {Motion(cell): answered(Motion(cell)) for cell in (sound, failed)})
-    found = material.motions([sound, failed, never])
-    assert set(found) == {sound}
-    assert isinstance(found[sound], Trajectory)
-
-
 def test_a_path_is_drawn_for_each_motion_that_was_kept():
     cell = next(task.cell for page in PAGES if page.name == "skate" for task in page.tasks if isinstance(task, Motion))
     empty = path_picture(Material({}))
     one = path_picture(Material({}, {Motion(cell): answered(Motion(cell))}))
     drawn = [sum(len(panel.get_lines()) for panel in picture.axes) for picture in (empty, one)]
     assert drawn[1] == drawn[0] + 2  # a path and the dot at its end
-
-
-def test_the_motion_of_an_engine_is_the_same_from_a_worker():
-    for task, answer in run_items([Motion(Cell(Disc(), engine, 3)) for engine in (pymunk.TUNED, mujoco.TUNED)]):
-        assert np.array_equal(answer.array("pose"), answered(task).array("pose"))

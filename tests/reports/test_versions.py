@@ -23,7 +23,7 @@ from reports.pages.versions import page
 from reports.versions.catalogue import RELEASES, changes_between
 from reports.versions.column import TreesRow
 from reports.versions.comparison import compared, steps
-from reports.versions.table import Entry, Table, as_csv, as_published, catalogued, entries, merged, read
+from reports.versions.table import Entry, Table, as_csv, as_published, entries, merged, read
 from reports.versions.trees import miss, trees
 from tests.toys import Disc
 
@@ -71,12 +71,6 @@ def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):
         read(path)
 
 
-def test_lines_of_releases_that_are_not_compared_any_more_go():
-    own = (entry("3.1.0", 1e-3), entry("4.0.1", 1e-3), entry("1.0", 1e-3, engine="toy"))
-    left = catalogued(Table(own, {("mujoco", "3.1.0"): "it is old"}))
-    assert (left.entries, left.marks) == (own[1:], {})
-
-
 def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
     made = blank(Cell(Disc(), Lagrange(), every), outcome)
     return replace(made, angle=angle, cpu=cpu)
@@ -84,23 +78,6 @@ def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
 
 def ended(outcome):
     return [row(float("nan"), outcome)]
-
-
-def test_a_cost_is_the_median_of_the_ratios_of_all_rows_and_of_each_methods():
-    before = [row(1e-3, every=every) for every in (1, 3, 10)]
-    after = [row(1e-3, every=every, cpu=cpu) for every, cpu in ((1, 1.0), (3, 2.0), (10, 9.0))]
-    found = compared(before, after)
-    assert found.cost == 2.0
-    assert dict(found.costs) == {before[0].method: 2.0}
-
-
-def test_what_grew_in_the_median_of_all_scenes_is_told_though_no_row_is_three_times_as_wrong():
-    def of_scenes(angle):
-        return [replace(row(angle), scene=f"scene {number}") for number in range(9)]
-
-    found = compared(of_scenes(1e-3), of_scenes(2.9e-3))
-    assert (found.differences, [check.quantity for check in found.grown]) == ((), ["angle"])
-    assert compared(of_scenes(1e-3), of_scenes(1.2e-3)).grown == ()
 
 
 def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():

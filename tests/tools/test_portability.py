@@ -1,12 +1,13 @@
-"""Windows and macOS, as far as they can be had here: what they lack is hidden, what they do otherwise is forced."""
+"""Windows and macOS as far as they can be had here, the oldest packages, and the layers of imports."""
 
 from __future__ import annotations
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
-import warnings
+from pathlib import Path
 
 import pytest
 
@@ -101,12 +102,9 @@ def is_mode(node: ast.expr) -> bool:
 @pytest.mark.parametrize(
     ("line", "found"),
     [
-        ("path.read_text()", [1]),
         ("path.write_text(text, newline='')", [1]),
         ("open(path, 'w')", [1]),
-        ("path.open()", [1]),
         ("path.read_text(encoding='utf-8')", []),
-        ("open(path, 'rb')", []),
         ("path.open(mode='wb')", []),
         ("os.open(path, os.O_RDONLY)", []),
     ],
@@ -115,23 +113,69 @@ def test_a_text_file_of_the_machine_s_encoding_is_found(line, found):
     assert unnamed_encodings(line) == found
 
 
-@pytest.mark.parametrize("kind", [DeprecationWarning, PendingDeprecationWarning, FutureWarning, UserWarning])
-def test_what_will_be_gone_is_an_error_in_our_own_code_alone_and_any_other_warning_everywhere(kind):
-    for module in ("engines.mujoco.engine", "reference.plane", "reports.cli.run", "tests.tools.test_portability"):
-        with pytest.raises(kind):
-            warnings.warn_explicit("it will be gone", kind, "file.py", 1, module)
-    with warnings.catch_warnings(record=True) as told:
-        if kind is UserWarning:
-            with pytest.raises(kind):
-                warnings.warn_explicit("it is odd", kind, "file.py", 1, "numpy")
-        else:
-            warnings.warn_explicit("it will be gone", kind, "file.py", 1, "numpy.random")
-    assert len(told) == (kind is not UserWarning)
-
-
 def test_every_dependency_has_a_lower_bound_that_can_be_tried():
     bounds = lower_bounds(PYPROJECT.read_text(encoding="utf-8"))
     assert "numpy==2.0" in bounds
     assert len(bounds) == len(set(bounds)) > 10
     with pytest.raises(ValueError, match="'loose' has no lower bound"):
         lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')
+
+
+def checked(folder: Path) -> subprocess.CompletedProcess[str]:
+    """What the import linter says of the packages in a folder."""
+    pytest.importorskip("importlinter", reason="import-linter comes with the extra `develop`")
+    command = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"
+    return subprocess.run(
+        [sys.executable, "-c", command, "--no-cache"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={"PYTHONPATH": str(folder), "PATH": ""},
+    )
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """The packages and the contract, to be spoiled."""
+    for package in ("reference", "engines", "reports"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("results", "__pycache__"))
+    (tmp_path / "tests" / "tools").mkdir(parents=True)
+    for name in ("__init__.py", "tools/__init__.py", "tools/import_contract.py"):
+        shutil.copy(ROOT / "tests" / name, tmp_path / "tests" / name)
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    return tmp_path
+
+
+def test_the_packages_keep_their_contracts(copy):
+    told = checked(copy)
+    assert told.returncode == 0, told.stdout
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from reference.scenes.four_bar.linkage import FourBar",
+        "from reference.scenes.pendulum.link import Pendulum",
+        "from reference.scenes.catalogue import SCENES",
+        "from engines.conformance.worlds import WORLDS",
+    ],
+)
+def test_a_closed_form_in_an_adapter_is_refused(copy, line):
+    (copy / "engines/extrapolated.py").write_text(f"{line}\n", encoding="utf-8")
+    told = checked(copy)
+    assert told.returncode == 1
+    assert line.split()[1] in told.stdout
+
+
+def test_a_closed_form_behind_another_module_is_refused(copy):
+    roll = copy / "reference/rolling/roll.py"
+    roll.write_text(f"import reference.scenes.rolling.body\n{roll.read_text(encoding='utf-8')}", encoding="utf-8")
+    told = checked(copy)
+    assert told.returncode == 1
+    assert "reference.scenes.rolling.body" in told.stdout
+
+
+def test_a_report_in_the_reference_breaks_the_layers(copy):
+    (copy / "reference/mechanism.py").write_text("import reports.model.page\n", encoding="utf-8")
+    assert checked(copy).returncode == 1

@@ -1,7 +1,9 @@
-"""The readme keeps its promises: its example runs, it is short, and its table has a place."""
+"""The readme and the lecture keep their promises: what they show runs and is so; help loads no more than it needs."""
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import re
 import shlex
@@ -9,11 +11,13 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from contextlib import redirect_stdout
+from types import ModuleType
+from typing import Any
 
+import matplotlib
 import pytest
 
-from reports.model.ending import STATUSES
-from reports.write.templates import marks
 from tests import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -26,14 +30,6 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     assert re.fullmatch(r"largest angle error \d\.\de-\d\d rad after 1 s\n", said)
     # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6.
     assert float(said.split()[3]) < 1e-4
-
-
-def test_both_parts_are_written_and_none_tells_a_time():
-    told = {name: README.split(marks(name)[0])[1].split(marks(name)[1])[0] for name in ("findings", "overview")}
-    assert len(re.findall("^- ", told["findings"], re.MULTILINE)) == 10
-    assert "pymunk default" in told["overview"]
-    assert "mujoco extended" in told["overview"]
-    assert not re.search(r"(?<!at )(?<![\d.])[\d.]+ ms\b(?!\*\*)", told["overview"])  # "at 0.33 ms" is a step
 
 
 def git(folder, *words):
@@ -90,11 +86,6 @@ def test_what_the_readme_says_runs_in_a_fresh_clone_and_changes_nothing_publishe
     assert missing == []
 
 
-def test_it_has_the_exit_statuses_of_the_help():
-    told = STATUSES.partition(": ")[2]
-    assert told in " ".join(README.split())
-
-
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
@@ -138,3 +129,72 @@ def test_make_test_runs_the_tests_and_the_grid_and_is_red_if_either_is(red, tmp_
     ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert (tmp_path / "notes").read_text().split() == ["tests", "grid"]
     assert (ended.returncode == 0) == (red == "none")
+
+
+NOTEBOOK = ROOT / "lecture.ipynb"
+CELLS = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+
+
+@pytest.fixture(scope="module")
+def given() -> Any:
+    """What the cells leave behind, and what they print."""
+    module = ModuleType("lecture")
+    printed = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
+        patch.setitem(sys.modules, "lecture", module)
+        matplotlib.use("agg")
+        import matplotlib.pyplot as plt
+
+        for number, cell in enumerate(CELLS):
+            if cell["cell_type"] == "code":
+                exec(compile("".join(cell["source"]), f"cell {number}", "exec"), vars(module))
+        plt.close("all")
+    return module, printed.getvalue()
+
+
+def test_every_cell_runs_and_the_two_ways_agree(given):
+    module, printed = given
+    assert "rows and coordinates: (8, 9)  freedoms of place and of velocity: (1, 1)" in printed
+    assert module.apart < 1e-9
+    assert len(module.figure.axes) == 1
+
+
+def test_what_it_says_of_orders_and_the_plateau_is_so(given):
+    module, _ = given
+    # The first order of the engine as shipped; tuned, MuJoCo's follows the square of the step.
+    assert module.slopes["pymunk default"] == pytest.approx(1.0, abs=0.35)
+    assert module.slopes["mujoco tuned"] == pytest.approx(2.0, abs=0.35)
+    # A plateau: thirty times as many steps, and hardly a smaller error.
+    plateau = module.swept["mujoco RK4"]
+    assert plateau.min() > plateau.max() / 2
+    # With the integrator as shipped the two errors cancel at one step: it is below the plateau, which no order makes.
+    assert module.swept["mujoco default"][-1] < plateau[-1]
+    # Documented settings win more than a step a tenth as large.
+    assert module.swept["mujoco tuned"][0] < plateau[2]
+
+
+def test_it_holds_no_results_and_uses_what_everybody_may_use():
+    text = "\n".join("".join(cell["source"]) for cell in CELLS if cell["cell_type"] == "code")
+    assert all(cell["outputs"] == [] for cell in CELLS if cell["cell_type"] == "code")
+    packages = set(re.findall(r"^\s*(?:from|import) ([\w.]+)", text, re.MULTILINE))
+    assert packages == {
+        "dataclasses",
+        "numpy",
+        "matplotlib.pyplot",
+        "reference.scenes.four_bar.scenes",
+        "engines.lagrange",
+        "engines",
+    }
+
+
+# numpy alone takes as long to load as all that help needs; what follows from it, ten times as long.
+HEAVY = ("numpy", "scipy", "matplotlib", "pymunk", "mujoco", "numba", "reference.joints", "engines")
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])
+def test_help_loads_nothing_that_a_run_needs(words):
+    code = f"import sys\nfrom reports.__main__ import main\nsys.argv = ['crosscheck', *{words!r}]\ntry:\n    main()\n"
+    code += f"except SystemExit:\n    print(*[name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "Usage" in done.stdout
+    assert done.stderr.split() == []

@@ -1,4 +1,4 @@
-"""Temporary folders: gone afterwards, after a signal, and swept by the next program after a kill."""
+"""Signals and Ctrl-C at any moment: no temporary folder and no word is left, and what a kill leaves is swept."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from pathlib import Path
 import pytest
 
 from reports.cli import interruption
+from reports.model.ending import FINE, INTERRUPTED, REFUSED
 from reports.run import files
 from reports.run.files import remove_all, temporary_folder
-from tests.reports.test_command_line import environment
+from reports.run.store import Store
+from tests.reports.test_command_line import ROOT, call, environment
 
 pytestmark = pytest.mark.skipif(files.fcntl is None, reason="nothing is locked or swept on Windows")
 
@@ -103,13 +105,6 @@ def test_a_folder_for_sockets_has_a_path_that_a_socket_can_have(tmp_path, monkey
     assert not folder.exists()
 
 
-def test_all_folders_of_a_process_go_at_once(tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "_own", {})  # of this process' own, its workers' stays
-    with temporary_folder(tmp_path), temporary_folder(tmp_path):
-        remove_all()
-        assert [*tmp_path.iterdir()] == []
-
-
 MODEL = """<mujoco><worldbody><body><joint axis="0 1 0"/><geom type="capsule" fromto="0 0 0 1 0 0" size=".02"/></body>
 </worldbody></mujoco>"""
 COMMANDS = [
@@ -165,3 +160,98 @@ def still_there(folder):
         except OSError:
             continue
     return found
+
+
+def test_ctrl_c_has_again_the_meaning_that_it_had(capfd):
+    before = signal.getsignal(signal.SIGINT)
+    assert call("--help") == FINE
+    assert call("nonsense") == REFUSED
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+# Sends Ctrl-C to itself when the given number of modules has been asked for after the program's first line.
+INTERRUPTS_ITSELF = """
+import runpy, signal, sys
+
+asked, count = 0, int(sys.argv[1])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever the tests' own parent did with it
+
+def hook(event, arguments):
+    global asked
+    if event == "import" and not arguments[0].startswith("encodings") and "reports.cli.interruption" in sys.modules:
+        asked += 1
+        if asked == count:
+            signal.raise_signal(signal.SIGINT)
+
+sys.addaudithook(hook)
+sys.argv = ["crosscheck", *sys.argv[2:]]
+runpy.run_module("reports", run_name="__main__", alter_sys=True)
+"""
+
+
+# Seeded. This command asks for more than 1400 modules: numpy, scipy, matplotlib and both engines are among them.
+MOMENTS = [1, 5, random.Random(16).randrange(6, 1300)]
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_ctrl_c_at_any_import_is_status_130_without_a_word(moment):
+    process = subprocess.run(
+        [sys.executable, "-c", INTERRUPTS_ITSELF, str(moment), "run", "no_scene"],
+        env=environment(),
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert (process.returncode, process.stdout, process.stderr) == (INTERRUPTED, "", "")
+
+
+def test_ctrl_c_in_a_run_says_what_is_stored_and_the_next_run_goes_on(tmp_path):
+    """To the whole group of processes, as a terminal does: workers must not complain either."""
+    words = ["run", "pendulum_100", "--engine", "lagrange", "--variant", "rk4 projection", "--results", str(tmp_path)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "reports", *words, "--every", "1", "--every", "2", "--every", "1000"],
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    store = tmp_path / "cells.sqlite"
+    while process.poll() is None and count_of_rows(store) == 0:
+        time.sleep(0.1)
+    assert process.poll() is None, process.communicate()  # it had ended before anything was stored
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate()
+    assert process.returncode == INTERRUPTED
+    assert err == ""
+    stored = count_of_rows(store)
+    assert 1 <= stored <= 2
+    assert f"Stopped: {stored} of 3 cells are stored; the next run goes on from there." in out
+
+
+def count_of_rows(path):
+    if not path.exists():
+        return 0
+    with Store.read(path) as store:
+        return store._connection.execute("select count(*) from results").fetchone()[0]
+
+
+def test_a_ctrl_c_that_is_kept_raises_when_asked_and_the_second_at_once():
+    before = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with interruption.kept() as check:
+            check()
+            signal.raise_signal(signal.SIGINT)
+            with pytest.raises(KeyboardInterrupt):
+                check()
+            with pytest.raises(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        with interruption.kept() as check, interruption.ending_at_once():
+            signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
+            check()
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,8 +1,9 @@
-"""The page of published problems: Newton's bounds and Acrobot's energy, each held against a second way."""
+"""Published problems, and a user's own model: each number is held against a second way or is what was found."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -11,12 +12,17 @@ from engines.lagrange import TRUTH
 from engines.mujoco import DEFAULT, TUNED
 from engines.pymunk import TUNED as PYMUNK
 from reports.model.page import Material
-from reports.model.tasks import answered
+from reports.model.tasks import Answer, answered
 from reports.pages.published.acrobot import PUBLISHED, START, STEPS, Acrobot, by_hand
 from reports.pages.published.newton import BOUNDS, FOUR_BAR, Newton, freudenstein
 from reports.pages.published.newton import STEPS as NEWTONS
 from reports.pages.published.page import PAGE, drifts, largest_step
 from reports.pages.rendering import render_page
+from reports.pages.your_model import page as others
+from reports.pages.your_model.experiments import CART, SWING, WALKS
+from reports.pages.your_model.experiments import FOUR_BAR as LOOP
+from reports.pages.your_model.page import PAGE as YOUR_MODEL
+from tests.reports.models_of_others import models, spaces, unpacked
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +92,83 @@ def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(ans
         (True,) * 2,
         (False,) * 2,
     ]
+
+
+@pytest.fixture(scope="module")
+def checks():
+    """The checks of shorter motions, which take a moment each, under the names of the page's own."""
+    return {walk: answered(replace(walk, duration=0.3)) for walk in WALKS}
+
+
+def found(answer: Answer):
+    return json.loads(str(answer.values["found"]))
+
+
+def page(checks) -> str:
+    """The page's text; each text is made once, since its pictures take their time."""
+    name = str(sorted(walk.key for walk in checks))
+    if name not in PAGES:
+        PAGES[name] = render_page(YOUR_MODEL, Material({}, checks), "the command")["your_model.md"]
+    return PAGES[name]
+
+
+PAGES: dict[str, str] = {}
+
+
+def test_the_page_tells_what_was_found(checks):
+    assert all(answer.finished for answer in checks.values())
+    text = page(checks)
+    for walk, answer in checks.items():
+        advised = found(answer)["advised"]
+        assert all(words in text for words in (walk.text.strip(), advised["words"], *advised["lines"]))
+    assert text.count(".svg)") == 6
+    assert page({}).count("was not checked yet") == 3
+
+
+def test_what_the_titles_claim_is_so(checks):
+    soft, hard, swing = (found(checks[walk]) for walk in (LOOP, CART, SWING))
+    assert soft["parts"]["softness"] > 1e-4
+    assert hard["parts"]["softness"] == 0
+    assert hard["parts"]["falling"]
+    assert not swing["parts"]["divided"]
+    assert {note["element"] for note in hard["notes"]} == {"actuator 'push'", "joint 'rail'"}
+
+
+def test_an_answer_is_the_same_at_every_run(checks):
+    again = answered(replace(CART, duration=0.3))
+    assert again.values == checks[CART].values
+
+
+def test_every_model_of_others_is_on_the_page_by_name(checks):
+    told = page(checks).partition("## Models that others ship")[2]
+    for row in others.rows():
+        assert f"`{row['model']}`" in told
+        assert row["reason"].replace("|", "\\|") in told
+    assert len({(row["source"], row["model"]) for row in others.rows()}) == len(others.rows()) >= 50
+
+
+@pytest.fixture(scope="module")
+def examples():
+    return list(spaces())
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory):
+    """The packages' own files, fetched by pip and unpacked; skipped where no registry answers."""
+    folder = tmp_path_factory.mktemp("packages")
+    if not unpacked(folder):
+        pytest.skip("pip finds no registry here")
+    return folder
+
+
+@pytest.mark.slow
+def test_every_space_of_pymunks_examples_is_read_or_refused_in_a_sentence_as_the_page_tells(examples):
+    assert len(examples) >= 10
+    for found in examples:
+        assert found.bodies or (20 < len(found.reason) < 400 and "\n" not in found.reason)
+    assert [asdict(found) for found in examples] == [row for row in others.rows() if row["source"] == "pymunk"]
+
+
+@pytest.mark.slow
+def test_the_table_of_the_page_has_every_model_of_the_packages(packages):
+    assert [asdict(found) for found in models(packages)] == [row for row in others.rows() if row["source"] != "pymunk"]

@@ -1,33 +1,36 @@
-"""The pages of pendulums, slider-crank, N-four-bar and person: scenes made for failures, pictures, words, and traps."""
+"""The pages of linkages, chains and engines: scenes made for failure, and each experiment ends as its words say."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
-from engines import mujoco, pymunk
+from engines import mujoco, pymunk, registry
 from engines.lagrange import Lagrange
 from reference.checks import InvalidMechanism
+from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram
 from reference.scenes.many_links import SpinningRing
 from reference.scenes.slider_crank.scenes import RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
 from reference.trajectory import energy, joint_gap, slip
 from reports.gate.prediction import all_tasks
 from reports.model.cells import Cell
-from reports.model.measure import measure
+from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.model.tasks import answered
+from reports.pages.engines.cells import CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG
+from reports.pages.engines.experiments import ASKED, Capabilities
+from reports.pages.four_bar import experiments as failures
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.pendulum import page as pendulum
-from reports.pages.pendulum.experiments import hardened
 from reports.pages.person import page as person
 from reports.pages.slider_crank import page as slider_crank
 from reports.pages.slider_crank.experiments import GROOVE, LEVER
-from tests.committed_rows import committed_rows
+from tests.committed_rows import answer_to, committed_rows
 
 PAGES = (pendulum.PAGE, slider_crank.PAGE, n_four_bar.PAGE, person.PAGE)
 LIMITS = (SpinningRing(links=7), RodEndInSlot(), RodEndInSlot(offset=0.3, branch=-1), SliderAtDeadCentre(angle=1e-2))
@@ -63,29 +66,9 @@ def test_a_wrong_ring_is_caught():
     assert np.abs(run.pose - scene.motion(t).pose).max() > 1e-3
 
 
-def test_the_rings_tension_is_that_of_a_rope():
-    """Each link is pulled inwards by both neighbours: 2 T sin(pi / n) = m w^2 r, r to the middle of the chord."""
-    scene = SpinningRing(links=9)
-    inner = scene.length / (2 * math.tan(math.pi / scene.links))
-    tension = scene.mass * scene.rate**2 * inner / (2 * math.sin(math.pi / scene.links))
-    reaction = scene.motion([0.0, 0.3]).reaction.reshape(2, -1, 2)
-    assert np.abs(np.linalg.norm(reaction, axis=-1) - tension).max() < 1e-13 * tension
-
-
 def test_two_links_are_no_ring():
     with pytest.raises(InvalidMechanism, match="links is 2"):
         SpinningRing(links=2)
-
-
-def test_a_ring_hardened_too_far_goes_wrong_with_its_joints_closed_and_without_a_word_of_the_engine():
-    scene = SpinningRing(duration=0.5, horizon=0.5)
-    wrong, right = (measured(scene, hardened("a", softening, "dense"), 1) for softening in (1e-8, 1e-6))
-    assert right.energy < 1e-9
-    # The energy is wrong by a large part of itself, the joint open by less than a thousandth of a link.
-    assert wrong.energy > 0.1
-    assert wrong.gap < 1e-3 * scene.length
-    said = [part for part in wrong.sentence.split("; ") if part]
-    assert all(part.startswith(("ours:", "its own estimate")) for part in said)
 
 
 def test_a_pushed_slider_keeps_its_energy_and_leaves_to_the_side_where_it_stood():
@@ -123,7 +106,7 @@ def test_a_groove_in_a_moving_lever_opens_at_every_step_and_is_right_with_the_ce
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_pages_observations_are_computed_and_say_something(page):
-    material = Material({}, {task: answered(task) for task in all_tasks(page)})
+    material = Material({}, {task: answer_to(task) for task in all_tasks(page)})
     told = [seen for failure in page.failures if failure.observations for seen in failure.observations(material)]
     assert all(seen.outcome and "nan" not in seen.outcome for seen in told)
     assert told
@@ -139,3 +122,84 @@ def test_the_hundred_links_of_a_tree_and_of_free_bodies_agree():
     # The same integrator at the same step: what differs is the coordinates, and errors of one size.
     assert free.angle < 10 * tree.angle
     assert (tree.coordinates, tree.rows, free.coordinates, free.rows) == (100, 0, 300, 200)
+
+
+BROKEN = {Outcome.TORN, Outcome.RESET, Outcome.DIVERGED, Outcome.BRANCH_FLIP, Outcome.SATURATED}
+
+
+def run(scene, engine, every: int, samples: int | None = None) -> Measurement:
+    return measure(Cell(scene, engine, every, "failure", samples), repeat=False)
+
+
+def test_integrated_rates_drift_in_one_revolution_and_are_lost_in_a_hundred():
+    scene = DrivenFourBar()
+    errors = {}
+    for revolutions in (1, 100):
+        t = [i * scene.duration / 50 for i in range(50 * revolutions + 1)]
+        run = scene.four_bar.integrate_rates(t, scene.rate, scene.start, rtol=failures.RATE_TOLERANCE)
+        beta, _ = scene.four_bar.angles([scene.start + scene.rate * at for at in t])
+        errors[revolutions] = abs(run.beta - beta)[run.beta == run.beta].max()
+    # rtol 1e-3 of angles of a radian, made anew some ten times in a revolution, with nothing that takes it back.
+    assert 1e-2 < errors[1] < 0.1
+    assert errors[100] > 1
+
+
+def test_where_few_sweeps_close_the_whole_gap_a_smaller_step_makes_the_change_point_worse():
+    """pymunk's tuned variant avoids it: sweeps, and the part that is closed, follow from how fast sweeps converge."""
+    few = replace(pymunk.TUNED, iterations=50, error_bias=0.0)
+    assert Outcome(run(Parallelogram(), few, 10).outcome).comparable
+    assert Outcome(run(Parallelogram(), few, 100).outcome) in BROKEN
+
+
+@pytest.mark.parametrize("engine", failures.ALL, ids=lambda engine: f"{engine.name} {engine.variant}")
+def test_no_engine_can_drive_a_crank_beyond_its_limit(engine):
+    assert Outcome(run(OverdrivenFourBar(), engine, 1).outcome) in BROKEN
+
+
+def test_the_reference_refuses_what_the_engines_try():
+    (refusal,) = failures._refusal(Material({}))
+    assert "can't close" in refusal.outcome
+
+
+FIRST, SECOND = 0.1, 0.02  # rad: above and below these the two families are told apart
+
+
+@cache
+def miss(cell: Cell) -> float:
+    """The largest angle error [rad]; a skip that names the package where it is missing."""
+    if cell.engine.missing:
+        pytest.skip(cell.engine.missing)
+    run = cell.engine.build(FREE.mechanism(), cell.step)(cell.sample_count, cell.every)
+    return float(np.abs(run.pose - FREE.motion(run.t).pose)[..., 2].max())
+
+
+@pytest.mark.parametrize(("name", "before", "after"), [(name, *cells) for name, _, *cells in MOVES])
+def test_one_setting_moves_each_engine(name, before, after):
+    assert miss(after) < SECOND
+    assert miss(before) > 2 * miss(after)
+    if "the loop's pin" not in name:  # all pins can open
+        assert miss(before) > FIRST
+
+
+def test_of_pins_that_are_coordinates_less_error_is_left():
+    assert miss(SPRUNG["tree", 20.0]) < 0.5 * miss(SPRUNG["free", 20.0])
+
+
+def test_it_is_the_frequency_of_box2ds_pins_and_not_its_sweeps():
+    """One sweep over the joints, in a step that is not divided: as shipped in the first family, else in the second."""
+    assert miss(CLOSED_AT[1, 0.0]) > FIRST
+    assert miss(CLOSED_AT[1, 0.25]) < SECOND
+
+
+def test_gains_explain_other_numbers_that_are_told_of_pinocchio():
+    """Gains of 100 and 20, and none: the numbers in engines/pinocchio."""
+    told = {("rk4", 0.0): 5.6e-9, ("rk4", 10.0): 1.55e-9, ("euler", 0.0): 0.0703, ("euler", 10.0): 0.0515}
+    for key, error in told.items():
+        assert miss(CORRECTED[key]) == pytest.approx(error, rel=0.02)
+
+
+def test_every_kind_is_asked_of_an_engine_that_builds_all_but_one():
+    told = Capabilities(next(engine for engine in registry.VARIANTS if engine.name == "lagrange")).run()
+    assert [told[what] for what in ASKED] == ["yes"] * len(ASKED)
+    for kind in ("rod", "weld", "gear", "spring", "damper", "torsion spring", "torsion damper", "force", "torque"):
+        assert kind in ASKED

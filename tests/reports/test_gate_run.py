@@ -1,0 +1,252 @@
+"""The grid as a suite of pytest, its judge beside the cells, and wrong engines that it is asked about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, cast
+
+import pytest
+
+from engines import Engine, Promise, mujoco, pymunk
+from reference.scenes.catalogue import SCENES
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reports.gate import grid_tests, walk
+from reports.gate.judge import _samples, integrate
+from reports.gate.prediction import prediction
+from reports.gate.theory import Case, checks, kinds
+from reports.gate.walk import JUDGE_LIMIT, Foretold, Judging
+from reports.model.cells import Cell
+from reports.model.checks import Check
+from reports.model.measure import measure
+from reports.model.outcomes import Outcome
+from reports.run.queue import kin_of
+from reports.run.running import run_cells
+from tests import ROOT
+from tests.reports.test_gate import row
+from tests.reports.test_gate_baseline import written
+from tests.toys import Disc, FailingToy, Toy
+from tests.wrong.adapters import MISTAKES, SMALL, Wrong
+
+
+@dataclass(frozen=True)
+class Absent(Toy):
+    """One whose package is not installed."""
+
+    @property
+    def missing(self) -> str:
+        return "needs what pip install brings"
+
+
+SUITE = """
+import pytest
+from reports.gate.theory import Case
+from engines import Promise
+from tests.toys import Disc, Toy
+
+CASES = [Case(Disc(), Toy(variant, factor=1e-4), Promise(2)) for variant in ("one", "two", "three")]
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.label) for case in CASES])
+def test_case(verdicts, case):
+    assert case in verdicts
+    print("ran", sorted(each.method for each in verdicts))
+"""
+
+
+@pytest.fixture
+def suite(pytester):
+    """A grid of three toys in a folder of its own."""
+    root = ROOT
+    pytester.makeini(f"[pytest]\npythonpath = {root}\n")
+    pytester.makeconftest('pytest_plugins = ["reports.gate.pytest_plugin"]')
+    pytester.makepyfile(SUITE)
+    written(pytester.path / "errors.csv", row())
+    return pytester
+
+
+def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite, at_home):
+    """A test of all verdicts is kept with it, and one of nothing is not."""
+    suite.makepyfile(
+        f"{SUITE}\ndef test_of_all(verdicts):\n    assert len(verdicts) == 1\n\ndef test_of_nothing(): pass\n"
+    )
+    chosen = ("--engine", "toy two", "--baseline", "errors.csv", "--crosscheck-report", "out.md")
+    found = suite.runpytest_inprocess("-s", *chosen)
+    found.assert_outcomes(passed=2, deselected=3)
+    found.stdout.fnmatch_lines(
+        ["*ran [[]'toy two'[]]*", "*crosscheck*", "scene *bound*", "disc *toy two*", "written to *"]
+    )
+    assert "| disc | toy two |" in (suite.path / "out.md").read_text()
+    assert "toy one" not in (suite.path / "out.md").read_text()
+
+
+def test_an_engine_that_is_not_there_is_skipped_with_its_extra():
+    with pytest.raises(pytest.skip.Exception, match="what pip install brings"):
+        grid_tests.verdict_of({}, Case(Disc(), Absent(), Promise(2)))
+
+
+def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
+    """As pytest-xdist marks the configuration of its workers."""
+    suite.makeconftest(
+        'pytest_plugins = ["reports.gate.pytest_plugin"]\ndef pytest_configure(config): config.workerinput = {}\n'
+    )
+    found = suite.runpytest_inprocess("-rs", "-p", "no:xdist", "--baseline", "errors.csv")
+    found.assert_outcomes(skipped=3)
+    found.stdout.fnmatch_lines(["*the grid has workers of its own: pytest -m crosscheck, without -n"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--baseline", "nothing.csv"], "baseline nothing.csv: No such file or directory"),
+        (["--crosscheck-report", "no/such/folder.md"], "there is no folder no/such"),
+        (["--scene", "moon"], "no case of --scene"),
+        (["--cost", "0"], "--cost 0.0: it must be a number above 0, such as 1.5"),
+        (["--cost", "nan"], "--cost nan: it must be a number above 0, such as 1.5"),
+    ],
+)
+def test_what_can_not_be_meant_is_one_line_before_anything_is_run(suite, arguments, told):
+    found = suite.runpytest_inprocess("--baseline", "errors.csv", *arguments)
+    assert found.ret == pytest.ExitCode.USAGE_ERROR
+    assert told in found.stderr.str()
+    assert "Traceback" not in found.stderr.str()
+
+
+NO_KINDS: frozenset[Any] = frozenset()
+
+
+class Cut(Disc):
+    """A scene whose motion can be compared for a part of its 0.2 s [s]."""
+
+    name = "cut disc"
+    until = 0.115
+
+    @property
+    def comparable_until(self) -> float:
+        return self.until
+
+
+class Brief(Cut):
+    """Less than a sample."""
+
+    until = 1e-4
+
+
+@pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.comparable_until >= scene.duration], ids=str)
+def test_the_judge_runs_to_the_end_of_a_scene(scene):
+    assert _samples(scene) == scene.samples
+
+
+class Rounded(Cut):
+    """27 samples of the 70 in 0.705 s: divided by their spacing a rounding below 27."""
+
+    until = 27 * (0.705 / 70)
+
+
+def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least():
+    scene = Cut()
+    assert _samples(scene) == 11
+    assert integrate(scene, 2, 1).t[-1] == pytest.approx(0.11, rel=1e-12)
+    assert _samples(Brief()) == 1
+    assert _samples(Rounded(duration=0.705)) == 27
+
+
+class Unknown(Disc):
+    """A scene without a truth."""
+
+    name = "unknown disc"
+
+    def _motion(self, times: Any) -> Any:
+        raise ValueError("nobody knows where it is")
+
+
+def test_the_judge_beside_the_cells_changes_no_row_and_says_what_it_says_alone():
+    cells = [Cell(Disc(), Toy(), 1), Cell(Disc(), Toy(), 2), Cell(Disc(), FailingToy("raise"), 1)]
+    judging = Judging((Foretold(Disc(), NO_KINDS),), {})
+    rows = {row.key: row for row in run_cells(cells, workers=2, timed=False, supervised=judging)}
+    plain = {row.key: row for row in run_cells(cells, workers=2, timed=False)}
+    assert rows.keys() == plain.keys() == {cell.key for cell in cells}
+    assert {key: (row.outcome, row.sentence) for key, row in rows.items()} == {
+        key: (row.outcome, row.sentence) for key, row in plain.items()
+    }
+    assert [rows[cell.key].angle for cell in cells[:2]] == [plain[cell.key].angle for cell in cells[:2]]
+    assert judging.found == {Disc(): prediction(Disc(), NO_KINDS)}
+
+
+def test_a_judge_that_fails_ends_the_gate_with_its_reason():
+    judging = Judging((Foretold(Unknown(), NO_KINDS),), {})
+    with pytest.raises(RuntimeError, match=r"no prediction for unknown disc: .*nobody knows where it is"):
+        list(run_cells([Cell(Disc(), Toy(), 1)], workers=1, timed=False, supervised=judging))
+    assert judging.found == {}
+
+
+def test_the_judge_follows_the_scenes_of_the_cells_before_any_of_them_and_has_its_own_time(monkeypatch):
+    given: list[tuple[list[Any], float, tuple[Any, ...]]] = []
+    foretold = object()
+
+    def supervise(function: Any, items: Any, limit: float, *terms: Any) -> Iterator[Any]:
+        given.append((list(items), limit, terms))
+        for item in given[0][0]:
+            yield item, foretold if isinstance(item, Foretold) else Outcome.FINISHED, "a note"
+
+    monkeypatch.setattr(walk, "supervise", supervise)
+    without, chain = LinkPendulum(links=1), LinkPendulum(links=5)  # no cell is of the first
+    asked = tuple(Foretold(scene, NO_KINDS) for scene in (without, Disc(), chain))
+    judging = Judging(asked, {})
+    cells = [Cell(chain, Toy(), 1), Cell(Disc(), Toy(), 1), Cell(chain, Toy(), 2)]
+    assert list(judging(str, cells, 60.0, 3, None)) == [(cell, Outcome.FINISHED, "a note") for cell in cells]
+    items, limit, terms = given[0]
+    assert items == [asked[2], asked[1], asked[0], *cells]
+    assert [kin_of(item) for item in items[:2]] == [chain, Disc()]  # each goes to the worker that has its cells
+    assert (limit, terms) == (JUDGE_LIMIT, (3, None))
+    assert judging.found == dict.fromkeys((without, Disc(), chain), foretold)
+    list(judging(str, [], 2 * JUDGE_LIMIT))
+    assert given[1][1] == 2 * JUDGE_LIMIT
+
+
+SCENE = DrivenFourBar()
+ENGINES: dict[str, Engine] = {"pymunk": pymunk.TUNED, "mujoco": mujoco.TUNED}
+ASKED = (
+    *SMALL,
+    "velocities are half a step late",
+    "velocities are of the step before",
+    "reactions are twice as large",
+    "reactions have the other sign",
+)
+
+# What can't be told from the method's own error there, in rad, m, rad/s or parts of the largest reaction.
+SYMMETRIC = (
+    "its own velocities are half a step early, so a step before they are half a step late: 7.6e-4 rad/s at 1e-5 s"
+)
+UNSEEN: dict[tuple[str, str], str] = {
+    ("pymunk", "velocities are of the step before"): SYMMETRIC,
+}
+
+
+@cache
+def found(name: str, mistake: str) -> tuple[Check, ...]:
+    """The checks that an engine with this mistake fails."""
+    engine = cast(Engine, Wrong(mistake, ENGINES[name]))
+    if ENGINES[name].missing:
+        pytest.skip(ENGINES[name].missing)
+    case = Case(SCENE, engine, engine.order(SCENE.mechanism()))
+    rows = [measure(cell, repeat=False) for cell in case.cells()]
+    judge = prediction(SCENE, kinds(SCENE, [engine]))
+    return tuple(check for check in checks(case, rows, judge) if not check.passed)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_right_engine_passes_under_another_name(name: str) -> None:
+    assert found(name, "nothing") == ()
+
+
+@pytest.mark.parametrize("mistake", ASKED)
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_wrong_engine_fails_unless_the_mistake_is_below_the_methods_own_error(name: str, mistake: str) -> None:
+    assert bool(found(name, mistake)) is ((name, mistake) not in UNSEEN), UNSEEN.get((name, mistake))
+
+
+def test_every_reason_is_of_a_mistake_that_is_made() -> None:
+    assert {mistake for _, mistake in UNSEEN} <= {*ASKED} <= {*SMALL, *MISTAKES}
+    assert {name for name, _ in UNSEEN} <= {*ENGINES}
