@@ -165,7 +165,7 @@ def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
         short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
         least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= QUICK_MOST]
         coarsest = [cell for cell in members if cell.purpose == "sweep" and cell.every == QUICK[0]]
-        chosen.update(short[-1:] or least if purpose == "beside" else (*short, *least, *coarsest))
+        chosen.update(short[-1:] if purpose == "beside" else (*short, *least, *coarsest))
     return tuple(cell for cell in cells if cell in chosen)
 
 

@@ -17,7 +17,7 @@ from reports.write.unmeasured import UNMEASURED
 from tests.rows import falling, row, row_of
 from tests.toys import Disc, Toy
 
-STEPS = np.array([1e-2 / every for every in FULL])
+STEPS = np.array([1e-2 / every for every in (*FULL, 1000)])
 ROUNDING = 1e-11
 
 

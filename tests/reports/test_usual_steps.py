@@ -6,7 +6,7 @@ import pytest
 
 from reports.model.catalogue import PAGES
 from reports.model.cells import COST_LIMIT, FULL, Cell, estimated_cost, sweep_cells
-from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_step, usual_cells, usual_variants
+from reports.model.usual_steps import FEATURED, USUAL_STEPS, is_run_at, is_step, usual_cells, usual_variants
 from tests.toys import Disc, Toy
 
 # Samples 10, 9.97, 20 and 50 ms apart, and scenes of 0.3 to 10 s; chains are left out, whose costs take long to tell.
@@ -28,10 +28,26 @@ def test_a_scene_is_run_at_each_usual_step_once_within_a_hundredth(page, scene):
     swept = sweep_cells((scene,), engines, FULL)
     cells = [*swept, *usual_cells((scene,), engines)]
     for engine in engines:
-        for step in USUAL_STEPS.values():
+        for name, step in USUAL_STEPS.items():
             own = [cell for cell in cells if cell.engine == engine and abs(cell.step / step - 1) < 0.01]
             dear = estimated_cost(Cell(scene, engine, max(1, round(scene.spacing / step)))) > 0.9 * COST_LIMIT
-            assert len(own) == 1 or (dear and not own), (engine.name, engine.variant, step)
+            may_lack = dear or not is_run_at(name, engine.name, engine.variant)
+            assert len(own) == 1 or (may_lack and not own), (engine.name, engine.variant, step)
+
+
+def test_a_habit_of_one_engines_users_is_no_step_of_another_engine_that_has_its_own_and_of_no_code_of_ours():
+    assert is_run_at("1/60 s", "pymunk", "default")
+    assert is_run_at("2 ms", "mujoco", "tuned")
+    others = (("1/60 s", "mujoco", "default"), ("2 ms", "pymunk", "tuned"), ("2 ms", "mujoco", "extended"))
+    assert not any(is_run_at(*other) for other in (*others, ("1/60 s", "lagrange", "rk4 projection")))
+    assert all(is_run_at(name, "theirs", "default") for name in USUAL_STEPS)
+    assert all(is_run_at("1 ms", *method) for method in (("pymunk", "extended"), ("lagrange", "rk4 projection")))
+
+
+def test_usual_cells_are_of_the_usual_steps_and_last_as_long_as_their_scene_and_are_cheap():
+    page, scene = SCENES[0]
+    engines = [engine for engine in page.engines_of(scene) if engine.variant in FEATURED]
+    cells = [*sweep_cells((scene,), engines, FULL), *usual_cells((scene,), engines)]
     added = [cell for cell in cells if cell.purpose == "usual"]
     assert all(any(is_step(cell.step, step) for step in USUAL_STEPS.values()) for cell in added)
     assert all(cell.step * cell.every * cell.sample_count == pytest.approx(scene.duration) for cell in added)

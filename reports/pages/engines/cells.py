@@ -45,7 +45,8 @@ COMPILED = tuple(
     for engine in registry.OTHERS
     if engine.building >= SLOW_TO_BUILD
 )
-BORROWED = (*sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL), *beside_cells(CHARTED_SCENES, registry.OTHERS))
+BORROWED = sweep_cells(CHARTED_SCENES, registry.VARIANTS, FULL)
+SWEPT = beside_cells(CHARTED_SCENES, registry.OTHERS, sweep=True)
 
 # The share of a gap that is closed in a step of a millisecond; the second is about pymunk's as shipped.
 SHARES = (0.002, 1 - SHIPPED_ERROR_BIAS**1e-3, 0.02, 0.06, 0.2, 0.6, 1.0)

@@ -24,6 +24,7 @@ from reports.pages.engines.cells import (
     SHARES,
     SPRUNG,
     SUBSTEPPED,
+    SWEPT,
 )
 from reports.pages.engines.experiments import Capabilities, OpenWork, VelocityTerm
 from reports.pages.engines.tables import (
@@ -192,6 +193,7 @@ PAGE = Page(
     engines=(),
     companions=(FREE,),
     borrowed=BORROWED,
+    cells=SWEPT,
     failures=EXPERIMENTS,
     figures=figures,
     words=words,
