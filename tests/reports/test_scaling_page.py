@@ -14,7 +14,7 @@ from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.many_links import LongPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
-from reports.cli.selection import QUICK_MOST, choose_cells
+from reports.cli.selection import QUICK_CELL, choose_cells
 from reports.model.cells import Cell, estimated_seconds
 from reports.model.measure import measure
 from reports.model.page import Material
@@ -88,7 +88,7 @@ def test_a_quick_run_has_the_small_chains_and_a_full_one_all():
     engines = tuple(dict.fromkeys(cell.engine for cell in CELLS))
     for full in (False, True):
         chosen = [c for c in choose_cells(pendulums, engines, (PAGE,), full) if isinstance(c.scene, LongPendulum)]
-        quick = [cell for cell in CELLS if links(cell) in SMALL and estimated_seconds(cell) <= QUICK_MOST]
+        quick = [cell for cell in CELLS if links(cell) in SMALL and estimated_seconds(cell) <= QUICK_CELL]
         assert chosen == (list(CELLS) if full else quick)
     others = tuple(scene for scene in SCENES if skate.PAGE.teaches(scene))
     assert not any(isinstance(c.scene, LongPendulum) for c in choose_cells(others, engines, (PAGE,), True))
