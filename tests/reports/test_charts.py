@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from engines import registry
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
-from reports.model.scaling_fit import Point, Series, cost_exponent
 from reports.pages.rolling import page as rolling_charts
+from reports.pages.scaling.experiments import Point, Series, cost_exponent
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import work_precision as charts

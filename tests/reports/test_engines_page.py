@@ -1,4 +1,4 @@
-"""The page of engines: what it claims of the two families is measured here, in the cells of its tables."""
+"""The page of engines: what it claims of the two families is measured here, in the cells of its page."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ import pytest
 from engines import registry
 from reports.model.cells import Cell
 from reports.model.page import Material
-from reports.pages.engines import page, tables
-from reports.pages.engines.cells import CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG
-from reports.pages.engines.experiments import ASKED, Capabilities
+from reports.pages.engines import page
+from reports.pages.engines.experiments import ASKED, CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG, Capabilities
 
 FIRST, SECOND = 0.1, 0.02  # rad: above and below these the two families are told apart
 
@@ -66,6 +65,6 @@ def test_every_kind_is_asked_of_an_engine_that_builds_all_but_one():
 
 def test_tables_are_empty_without_rows():
     nothing = Material({})
-    for table in (tables.moves_table, tables.frequency_table, tables.correction_table, tables.free_table):
+    for table in (page.moves_table, page.frequency_table, page.correction_table, page.free_table):
         assert table(nothing) == ""
-    assert tables.matrix({}) == ""
+    assert page.matrix({}) == ""

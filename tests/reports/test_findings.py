@@ -14,8 +14,7 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings.finding import LOOKS, MILLISECOND, TENTH, WIDTH, Line, draw
-from reports.pages.findings.findings import FINDINGS, findings, pictures
+from reports.pages.findings import FINDINGS, LOOKS, MILLISECOND, TENTH, WIDTH, Line, draw, findings, pictures
 from reports.pages.index import SYMPTOMS
 from reports.write.rows import Rows, own_rows
 from reports.write.tables import number

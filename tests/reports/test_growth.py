@@ -21,8 +21,8 @@ from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
-from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.pages.centrodes.page import returned
+from reports.pages.scaling.experiments import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.pages.scaling.page import cost_table, crossing
 from reports.pages.skate.page import constructions
 from reports.write.rows import Rows

@@ -20,7 +20,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Motion, answered, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
-from reports.pages.rolling.methods import absent_contact, parting
+from reports.pages.rolling.experiments import absent_contact, parting
 
 
 def row(scene, engine, every, samples=None):

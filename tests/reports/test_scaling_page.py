@@ -18,10 +18,9 @@ from reports.cli.selection import QUICK_CELL, choose_cells
 from reports.model.cells import Cell, estimated_seconds
 from reports.model.measure import measure
 from reports.model.page import Material
-from reports.model.scaling_fit import series_of
 from reports.pages.pendulum import page as pendulum
 from reports.pages.rendering import render_page
-from reports.pages.scaling.experiments import BandedChain
+from reports.pages.scaling.experiments import BandedChain, series_of
 from reports.pages.scaling.page import CELLS, COSTLY, PAGE, SMALL, STEP
 from reports.pages.skate import page as skate
 

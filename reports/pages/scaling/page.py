@@ -20,9 +20,8 @@ from engines.pymunk.contraction import LEFT, MOST
 from reference.scenes.many_links import LongPendulum
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
-from reports.model.scaling_fit import Series, cost_exponent, error_exponent, series_of
 from reports.pages.pendulum import page as pendulum
-from reports.pages.scaling.experiments import BandedChain, TruthError
+from reports.pages.scaling.experiments import BandedChain, Series, TruthError, cost_exponent, error_exponent, series_of
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.tables import NOTHING, markdown, number
