@@ -14,10 +14,10 @@ from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Motion, Task, answered
+from reports.pages.common import PUBLIC
 from reports.pages.four_bar import experiments as four_bar
 from reports.pages.pendulum import experiments as pendulum
 from reports.pages.rolling import experiments as rolling
-from reports.pages.rolling.experiments import CONTACTS
 from reports.pages.skate import experiments as skate
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
@@ -140,6 +140,6 @@ def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
 
 
 def test_contacts_part_from_the_ideal_motion_by_hundreds_of_times_their_error():
-    contacts = [Motion(cell) for cell in rolling.PARTINGS if cell.engine in CONTACTS]
+    contacts = [Motion(cell) for cell in rolling.PARTINGS if cell.engine in PUBLIC]
     assert len(contacts) == 4
     assert rolling.after_parting(Material({}, {task: answered(task) for task in contacts}))["least"] > 100

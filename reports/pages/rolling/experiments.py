@@ -14,7 +14,6 @@ from engines.lagrange import Lagrange
 from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.methods import CONTACT
 from engines.pymunk import methods as pymunk_methods
-from reference.scene import Scene
 from reference.scenes.rolling.scenes import (
     DiscInHole,
     RollingDisc,
@@ -27,19 +26,12 @@ from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
+from reports.pages.common import PUBLIC, cells
 from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
-CONTACTS: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
-
-
-def cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 ROLLER = 0  # the only body's index
@@ -56,7 +48,7 @@ STIFF = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.var
 PARTINGS = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
 
 
-CHATTERING = hill_cells((*CONTACTS, *STIFF))
+CHATTERING = hill_cells((*PUBLIC, *STIFF))
 
 
 def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
@@ -83,7 +75,7 @@ def after_parting(material: Material) -> dict[str, Any]:
     `slips`, `hops`: when a real contact does so [s].
     """
     scene = RollingOnCircle()
-    contacts = [cell for cell in PARTINGS if cell.engine in CONTACTS]
+    contacts = [cell for cell in PARTINGS if cell.engine in PUBLIC]
     found = [parting(cell, run) for cell, run in material.motions(contacts).items()]
     least = np.min([after / before for before, after in found]) if found else UNMEASURED
     return {"least": least, "slips": scene.comparable_until, "hops": scene.hop}
@@ -152,7 +144,7 @@ def finest_polygon(material: Material) -> dict[str, Any]:
     return {"coarse": coarse, "fine": fine}
 
 
-TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), CONTACTS, (1,), samples))
+TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), PUBLIC, (1,), samples))
 
 
 def least_opening(material: Material) -> dict[str, Any]:
@@ -280,7 +272,7 @@ FAILURES: tuple[Failure, ...] = (
             "{{ '%.4f' | format(hops) }} s it would have to pull. Ideal rolling goes on; a real contact slips "
             "and flies. From there on the comparison is invalid, and it stops."
         ),
-        cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
+        cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
         words=after_parting,

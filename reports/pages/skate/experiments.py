@@ -16,13 +16,13 @@ from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scene import Scene
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
+from reports.pages.common import ENGINES_ALONE, cells_to_rounding
 from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -198,28 +198,12 @@ Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
 
 
-def _cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    return tuple(
-        Cell(scene, engine, count, "failure", samples)
-        for engine in engines
-        for count in _affordable(engine, tuple(every))
-    )
-
-
-def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """What runs a cell at many steps is at rounding with the longest already."""
-    return every[:1] if engine.variant == "extended" else every
-
-
 NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
 LONG = 1000.0  # s
 CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
 COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
 LONG_SAMPLES = 1000
 STRAIGHT_BACK = SleighBackwards(turning_rate=0.0, start=(0.0, 0.0, 0.3), duration=60.0, horizon=60.0)
-ENGINES_ALONE = tuple(engine for engine in ORDINARY if engine.name != "lagrange")
 
 FAILURES: tuple[Failure, ...] = (
     Failure(
@@ -228,7 +212,9 @@ FAILURES: tuple[Failure, ...] = (
             "The blade's force turns the body too. Whoever takes away the velocity across the blade, but not the "
             "turning that goes with it, gets no slip, and the motion of another body."
         ),
-        cells=_cells(ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)),
+        cells=cells_to_rounding(
+            ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)
+        ),
         columns=MOTION,
         remark=(
             "No slip does not prove a right motion. To set the centre's velocity across the blade to zero is right "
@@ -255,7 +241,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Straight back, for a minute",
         expected="Without any turning the sleigh slides straight on, though unstable. Only rounding can turn it.",
-        cells=_cells(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600),
+        cells=cells_to_rounding(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600),
         columns=MOTION,
         remark=(
             "Rounding of 1e-17 rad/s grows to 1 rad/s in about "
@@ -269,7 +255,7 @@ FAILURES: tuple[Failure, ...] = (
         expected=(
             "The sleigh slides straight after some seconds; its heading and energy are the closed form's for ever."
         ),
-        cells=_cells(COASTING, ENGINES_ALONE, (20,), LONG_SAMPLES),
+        cells=cells_to_rounding(COASTING, ENGINES_ALONE, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
             "Once the sleigh slides straight, a projection loses nothing any more. Its heading keeps the error of the "
@@ -282,7 +268,7 @@ FAILURES: tuple[Failure, ...] = (
             "With the skate under the centre of mass the sleigh goes round a circle at an even rate for ever: "
             f"{CIRCLING.turning_rate * LONG:.0f} rad, and every centripetal force is the skate's."
         ),
-        cells=_cells(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES),
+        cells=cells_to_rounding(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
             r"In a step $h$ the blade turns by $\omega h$. The naive zeroing projects the velocity onto the blade's "
@@ -310,7 +296,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="At rest across a slope",
         expected="An ideal skate at zero speed holds as much as it must. Nothing turns it: it rests for ever.",
-        cells=_cells(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "reaction"),
         remark=(
             "A soft row creeps: its force needs a slip to exist. MuJoCo's friction is soft too and creeps, as its "
@@ -326,7 +312,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Turning on a slope",
         expected="The skate that turns evenly slides in cycloids, sideways and never down (the picture above).",
-        cells=_cells(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
         columns=MOTION,
     ),
     Failure(
@@ -347,7 +333,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Held by three skates on a slope",
         expected="No freedom of velocity is left: the body stays. The three rows are independent: forces are known.",
-        cells=_cells(HeldBySkates(), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(HeldBySkates(), ENGINES_ALONE, (1, 10)),
         columns=("position", "angle", "slip", "reaction"),
         remark=(
             "The skates constrain its velocity and not its place. So every slip that a method leaves adds up, and no "
