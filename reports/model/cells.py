@@ -130,8 +130,8 @@ def sweep_cells(
 ) -> tuple[Cell, ...]:
     """Every scene in every engine at every number of steps per sample, cheap steps first.
 
-    The coarsest step is always there; finer ones only while their estimated cost stays below the limit, and beyond
-    QUICK only while the promised order still has something to win (DIVIDED).
+    The coarsest step is always there, the other QUICK ones while their estimated cost stays below COST_LIMIT; finer
+    ones while it stays below `cost_limit`, and the promised order still has something to win (DIVIDED).
     """
     engines, scenes = tuple(engines), tuple(scenes)
     return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
@@ -164,8 +164,11 @@ def _sweep(
         for scene in scenes:
             for engine in engines:
                 cell = Cell(scene, engine, every)
-                needed = every <= max(QUICK) or every ** _promised_order(scene, engine) <= DIVIDED
-                if every == min(steps) or (needed and estimated_cost(cell) <= cost_limit):
+                if every <= max(QUICK):
+                    wanted = every == min(steps) or estimated_cost(cell) <= max(cost_limit, COST_LIMIT)
+                else:
+                    wanted = estimated_cost(cell) <= cost_limit and every ** _promised_order(scene, engine) <= DIVIDED
+                if wanted:
                     yield cell
 
 
