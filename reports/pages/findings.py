@@ -83,9 +83,7 @@ def draw(lines: Sequence[Line], name: str, theme: Theme = LIGHT) -> Figure:
             axis.set_minor_formatter(NullFormatter())
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.minorticks_off()
-        legend = figure.legend(loc="outside upper left", ncols=1, frameon=False, handlelength=3.2, fontsize=8.5)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(loc="outside upper left", ncols=1, handlelength=3.2, fontsize=8.5)
     return figure
 
 

@@ -183,7 +183,7 @@ def draw_shares(
         axes.set_ylabel("largest angle error [rad]")
         style_axes(axes, theme)
         axes.margins(0.08, 0.15)
-        axes.legend(frameon=False, labelcolor=theme.ink, loc="lower left")
+        axes.legend(loc="lower left")
     return figure
 
 

@@ -161,8 +161,7 @@ def _by_step(panel: Axes, rows: Sequence[tuple[float, Measurement]], theme: Them
     panel.set_xscale("log")
     panel.set_yscale("log")
     if panel.lines:
-        for text in panel.legend(frameon=False).get_texts():
-            text.set_color(theme.ink)
+        panel.legend()
 
 
 def _axes(panel: Axes, theme: Theme, title: str, across: str, up: str) -> None:

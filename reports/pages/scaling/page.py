@@ -58,9 +58,7 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
             _ticks(panel)
         _slopes(cost, found, looks, theme)
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in found]
-        legend = figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, handlelength=3.2)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
 
 

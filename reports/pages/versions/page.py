@@ -90,9 +90,7 @@ def _draw_lines(panel: Axes, entries: Sequence[Entry], versions: Sequence[str], 
         }
         _line(panel, found[scene], versions, look)
     if stepped:
-        legend = panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
 
 
 def _change(members: Sequence[Entry]) -> float:
@@ -163,9 +161,7 @@ def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
                 Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), hatch=HATCHES.get(outcome))
             )
             names.append(f"{outcome.letter}  {outcome}")
-    legend = figure.legend(patches, names, loc="outside lower center", ncols=3, frameon=False)
-    for text in legend.get_texts():
-        text.set_color(theme.ink)
+    figure.legend(patches, names, loc="outside lower center", ncols=3)
 
 
 def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:
@@ -197,9 +193,7 @@ def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT
         panel.set_xticks(range(len(versions)), versions, rotation=45, ha="right")
         panel.set_ylabel(f"CPU time over that of {versions[-1]} [1]")
         panel.set_xlabel("version")
-        legend = figure.legend(loc="outside lower center", ncols=4, frameon=False)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(loc="outside lower center", ncols=4)
     return figure
 
 
