@@ -13,7 +13,7 @@ import pytest
 
 from engines import registry
 from engines.lagrange import Lagrange
-from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports import __main__ as program
 from reports.cli import commands, selection
 from reports.cli import report as report_command
@@ -88,7 +88,7 @@ def test_reading_commands_make_no_store(words, here, capfd):
 def one_stored(folder):
     """As after a run of ONE_CELL."""
     with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
-        store.put(blank(Cell(DrivenFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
+        store.put(blank(Cell(FreeFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 
 
 def checkout(folder, monkeypatch):
