@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 
@@ -74,6 +73,8 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
     """Where a function of one number changes its sign between these, to rounding of the larger."""
+    from scipy.optimize import brentq  # half of the time that all engines take to be imported
+
     least = max(4 * np.finfo(float).eps * max(abs(low), abs(high)), np.finfo(float).tiny)
     return float(brentq(function, low, high, xtol=least, rtol=np.float64(1e-15)))  # type: ignore[arg-type]
 

@@ -15,11 +15,10 @@ from reports.model.page import Page
 from reports.model.tasks import Task
 from reports.model.usual_steps import usual_cells
 
-# A quick run over everything takes about a minute of two cores. For that no cell of it takes longer than this [s],
-# but for the shortest of each method in each scene: that one is left out only beyond QUICK_MOST [s].
+# A quick run over everything takes about twenty seconds of two cores. For that no cell of it takes longer than
+# QUICK_SECONDS, but for the shortest of each method in each scene: that one is left out only beyond QUICK_CELL, as
+# tasks and cells of many versions are. By the formulas of engines and tasks alone [s].
 QUICK_SECONDS = 0.02
-QUICK_MOST = 0.5
-# By the formulas of engines and tasks alone: what tasks of a quick run, and cells of many versions, take at most [s].
 QUICK_CELL = 0.1
 
 
@@ -163,9 +162,8 @@ def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
     for (_, _, purpose), members in alike.items():
         ordered = sorted(members, key=estimated_seconds)
         short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
-        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= QUICK_MOST]
-        coarsest = [cell for cell in members if cell.purpose == "sweep" and cell.every == QUICK[0]]
-        chosen.update(short[-1:] or least if purpose == "beside" else (*short, *least, *coarsest))
+        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= QUICK_CELL]
+        chosen.update(short[-1:] if purpose == "beside" else (*short, *least))
     return tuple(cell for cell in cells if cell in chosen)
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Literal
 
-from engines import Engine
+from engines import Engine, Promise
 from reference.checks import Count, Valid
 from reference.mechanism import Mechanism
 from reference.scene import Scene
@@ -18,29 +18,31 @@ from reports.model.fingerprint import digest_of, modules_behind, modules_of
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
 # Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
-# they are about 1e-2, 3e-3, 1e-3 ... 1e-5 s. Three points are the fewest that can tell a slope from a plateau.
+# they are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. Three points are the fewest that can tell a slope from a plateau.
 QUICK = (1, 3, 10)
-FULL = (1, 3, 10, 30, 100, 300, 1000)
+FULL = (1, 3, 10, 30, 100, 300)
 
-# A step of the full grid is left out when one run would take about this long [s]. The estimate is fixed, not measured,
-# so that the grid (and errors.csv) is the same on every machine.
-COST_LIMIT = 0.7
-# A step of the quick grid, the coarsest apart, is left out only when one run would take about this long [s].
-QUICK_LIMIT = 7.0
+# A step, the coarsest apart, is left out when one run would take about this long [s]. The estimate is fixed, not
+# measured, so that the grid (and errors.csv) is the same on every machine.
+COST_LIMIT = 0.8
+# Beyond QUICK, finer steps end where the promised order has divided the coarsest one's error by this: what is left then
+# is rounding, or no error of the step. So methods of order 4 get five steps, those of order 6 and more three.
+DIVIDED = 1e8
 
 
 @dataclass(frozen=True)
 class Cell(Valid):
     """A scene in an engine with `every` steps between samples; `samples` replaces the scene's own number if given.
 
-    Scenes and engines are frozen dataclasses, so a cell is data: it travels to a worker process as it is.
+    Scenes and engines are frozen dataclasses, so a cell is data: it travels to a worker process as it is. What it is
+    run for makes no other cell of it: an experiment at a step of the sweep takes the sweep's row.
     Raises ValueError unless both counts are whole numbers above zero.
     """
 
     scene: Scene
     engine: Engine
     every: Count
-    purpose: Purpose = "sweep"
+    purpose: Purpose = field(default="sweep", compare=False)
     samples: Count | None = None
 
     @property
@@ -73,7 +75,6 @@ class Cell(Valid):
             repr(self.engine),
             self.every,
             self.sample_count,
-            self.purpose,
             digest_of(_modules(self.scene, self.engine)),
         )
         return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
@@ -129,29 +130,31 @@ def sweep_cells(
 ) -> tuple[Cell, ...]:
     """Every scene in every engine at every number of steps per sample, cheap steps first.
 
-    The coarsest step is always there, the other QUICK ones but for very dear ones; finer steps only while their
-    estimated cost stays below the limit.
+    The coarsest step is always there, the other QUICK ones while their estimated cost stays below COST_LIMIT; finer
+    ones while it stays below `cost_limit`, and the promised order still has something to win (DIVIDED).
     """
     engines, scenes = tuple(engines), tuple(scenes)
     return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
 
 
-# Of engines that are extras: no finer step, and no cell that takes longer than this [s], building included.
+# Of engines that are extras: no cell that takes longer than this [s], building included.
 BESIDE_LIMIT = 0.5
 # A model that takes as long as this to build [s] is run where a page asks for it, and in no grid.
 SLOW_TO_BUILD = 1.0
 
 
-def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """The QUICK steps of engines that are no part of a scene's grid and stand beside it on its page."""
+def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
+    """Engines that are no part of a scene's grid and stand beside it on its page, each at the finest of the QUICK steps
+    that is cheap enough; at all of these with `sweep`.
+    """
     engines = tuple(engine for engine in engines if engine.building < SLOW_TO_BUILD)
-    return tuple(
-        cell
-        for scene in scenes
-        for engine in engines
-        for every in QUICK
-        if estimated_cost(cell := Cell(scene, engine, every, "beside")) <= BESIDE_LIMIT
-    )
+    found: list[Cell] = []
+    for scene in scenes:
+        for engine in engines:
+            cells = [Cell(scene, engine, every, "beside") for every in QUICK]
+            cheap = [cell for cell in cells if estimated_cost(cell) <= BESIDE_LIMIT]
+            found += cheap if sweep else cheap[-1:]
+    return tuple(found)
 
 
 def _sweep(
@@ -161,6 +164,19 @@ def _sweep(
         for scene in scenes:
             for engine in engines:
                 cell = Cell(scene, engine, every)
-                limit = max(cost_limit, QUICK_LIMIT) if every <= max(QUICK) else cost_limit
-                if every == min(steps) or estimated_cost(cell) <= limit:
+                if every <= max(QUICK):
+                    wanted = every == min(steps) or estimated_cost(cell) <= max(cost_limit, COST_LIMIT)
+                else:
+                    wanted = estimated_cost(cell) <= cost_limit and every ** _promised_order(scene, engine) <= DIVIDED
+                if wanted:
                     yield cell
+
+
+@lru_cache(maxsize=4096)
+def _promised_order(scene: Scene, engine: Engine) -> float:
+    """Of poses; 0 where none is promised."""
+    try:
+        promise = engine.order(mechanism_of(scene))
+    except Exception as error:  # whatever somebody else's engine does
+        raise BadInput(f"{engine.name} {engine.variant}: order of {scene.name}: {describe(error)}") from error
+    return promise.order if isinstance(promise, Promise) else 0.0

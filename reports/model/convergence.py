@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
+from reference.numerics.roots import root
 from reports.model.errors import NAN
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
@@ -173,7 +173,7 @@ def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
             return float((first - second) / (second - third) - wanted)
 
         if excess(POWERS[0]) <= 0 <= excess(POWERS[1]):
-            power = float(brentq(excess, *POWERS))  # type: ignore[arg-type]
+            power = root(excess, *POWERS)
             rest = last / ((steps[1] / steps[2]) ** power - 1)
             return float(errors[2] - rest), float(abs(rest)), True
     return float(errors[2]), float(np.max(np.abs(errors[:2] - errors[2]))), False

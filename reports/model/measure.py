@@ -34,9 +34,9 @@ SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
 # least of these runs was 0.7 % above the least of ten in the middle, and 3.3 % for one in ten; with 0.05 s, 0.6 and 3.
 BUDGET = 0.03
 MOST_RUNS = 5
-# s: not repeated from here on. The first of runs of 0.2 to 0.5 s took 1.00 times as long as the later ones (median of
-# ten; single runs scatter by more), of 0.1 to 0.2 s 1.04 times. They are two thirds of all stepping of the full grid.
-LONG = 0.1
+# s: not repeated from here on. The first of runs of 0.05 to 0.2 s took 1.01 times as long as the least of the next
+# three (median of 50), no more than single runs scatter by.
+LONG = 0.05
 
 Result = TypeVar("Result")
 

@@ -151,6 +151,7 @@ class Page:
     orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
     tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there
+    cells: tuple[Cell, ...] = ()  # beyond the grid and the experiments
 
     def teaches(self, scene: Scene) -> bool:
         """Whether the scene has its place here: by its name, so that it may have other numbers."""
@@ -180,5 +181,5 @@ class Page:
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
-        """The cells of failures, beyond the sweep."""
-        return tuple(cell for failure in self.failures for cell in failure.cells)
+        """The cells of failures and the page's own, beyond the sweep."""
+        return (*(cell for failure in self.failures for cell in failure.cells), *self.cells)

@@ -20,6 +20,10 @@ SAME = 0.01
 FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
 # Of an engine whose variants have other names, this many: more columns than the others have would be unreadable.
 SHOWN = 3
+# A step that is the habit of one engine's users: other engines that have such a step of their own are not run at it.
+HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
+# Variants that nobody has without code of ours, and so no habit.
+OURS = ("extended", "euler projection", "rk4 projection")
 
 
 def is_step(step: float, wanted: float) -> bool:
@@ -40,6 +44,13 @@ def usual_variants(methods: Iterable[tuple[str, str]]) -> dict[str, tuple[str, .
     }
 
 
+def is_run_at(name: str, engine: str, variant: str) -> bool:
+    """Whether a method is run at the usual step of this name."""
+    if name not in HABITS:
+        return True
+    return variant not in OURS and (HABITS[name] == engine or engine not in HABITS.values())
+
+
 def usual_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
     """The engines' usual variants at USUAL_STEPS, where the sweep has no such step and a run does not take too long."""
     engines = tuple(engines)
@@ -49,7 +60,9 @@ def usual_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cel
 
 
 def _cells(scene: Scene, engine: Engine) -> Iterator[Cell]:
-    for step in USUAL_STEPS.values():
+    for name, step in USUAL_STEPS.items():
+        if not is_run_at(name, engine.name, engine.variant):
+            continue
         every = max(1, round(scene.spacing / step))
         if not is_step(scene.spacing / every, step):  # then with samples at other times
             cell = Cell(scene, engine, every, "usual", samples=max(1, round(scene.duration / (every * step))))

@@ -13,7 +13,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.usual_steps import USUAL_STEPS
-from reports.pages.findings.findings import findings
+from reports.pages.findings import findings
 from reports.write import unmeasured
 from reports.write.page_tables import overviews
 from reports.write.provenance import machine, versions

@@ -16,7 +16,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS
-from reports.pages.findings.findings import findings, pictures
+from reports.pages.findings import findings, pictures
 from reports.pages.index import engines_of, foot, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg

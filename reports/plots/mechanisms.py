@@ -102,9 +102,7 @@ def configurations(
         for name, (_, colour, dashes) in others.items():
             label = name if name in drawn else f"{name}: not visibly off"
             handles.append(Line2D([], [], color=getattr(theme, colour), linewidth=1.4, linestyle=dashes, label=label))
-        legend = figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 

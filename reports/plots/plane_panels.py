@@ -106,11 +106,7 @@ def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None
         for spare in axes.ravel()[len(panels) :]:
             spare.set_visible(False)
         if handles:
-            legend = figure.legend(
-                handles=list(handles.values()), loc="outside lower center", ncols=3, frameon=False, handlelength=3.2
-            )
-            for text in legend.get_texts():
-                text.set_color(theme.ink)
+            figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
 
 

@@ -89,6 +89,8 @@ SETTINGS = {
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,
     "hatch.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.labelcolor": LIGHT.ink,
     # Titles stand on their axes. Left to itself, matplotlib looks at all ticks in search of some that stand above.
     "axes.titley": 1.0,
 }

@@ -92,9 +92,7 @@ def _finish(panel: Axes) -> None:
 def _legend(figure: Figure, handles: Sequence[Line2D], theme: Theme) -> None:
     longest = max((len(str(handle.get_label())) for handle in handles), default=0)
     columns = 4 if longest <= LONG_NAME else 3
-    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, handlelength=3.2)
-    for text in legend.get_texts():
-        text.set_color(theme.ink)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=3.2)
 
 
 def _handles(variants: dict[str, list[str]], theme: Theme) -> list[Line2D]:

@@ -13,7 +13,7 @@ import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
@@ -142,7 +142,7 @@ class Store:
         Cells that were never run, whose sources changed since, or whose row can't be read are left out.
         """
         rows = ((cell, row_of(cell.key, text)) for cell, text in self._texts(cells))
-        return {cell: row for cell, row in rows if row is not None}
+        return {cell: replace(row, purpose=cell.purpose) for cell, row in rows if row is not None}
 
     def answers(self, tasks: Iterable[Task]) -> dict[Task, Answer]:
         """The stored answers to these tasks; those not run, stale or unreadable are left out, as with rows."""

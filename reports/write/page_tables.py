@@ -11,7 +11,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
-from reports.model.usual_steps import USUAL_STEPS, is_step, usual_variants
+from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
 from reports.write.holders import held_in
 from reports.write.tables import NOTHING, markdown, milliseconds, number
 
@@ -236,7 +236,8 @@ def _cell(
         held = "" if Outcome.UNSUPPORTED in outcomes else _holder(page, scene, engine, variant)
         return "; ".join(filter(None, (", ".join(outcomes), held)))
     sweep = by_method(sweeps(members), page.quantity).get((scene, engine, variant))
-    at = [next((row for row in members if is_step(row.step, step)), None) for step in steps.values()]
+    asked = [step for name, step in steps.items() if is_run_at(name, engine, variant)]
+    at = [next((row for row in members if is_step(row.step, step)), None) for step in asked]
     errors = [getattr(row, page.quantity) for row in at if row is not None and Outcome(row.outcome).comparable]
     words = [_error(row, page.quantity) for row in at]
     told = words if len(set(words)) > 1 else words[:1]  # "saturated" once

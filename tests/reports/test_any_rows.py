@@ -30,13 +30,13 @@ from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, Vel
 from reports.pages.errata import experiments as referees
 from reports.pages.faults.experiments import Equalities, Grooves, Offsets
 from reports.pages.faults.page import Script
-from reports.pages.findings.findings import findings
+from reports.pages.findings import findings
 from reports.pages.index import render_index, render_readme
 from reports.pages.pendulum.experiments import Neighbours
-from reports.pages.published import acrobot, newton
+from reports.pages.published import experiments as published
 from reports.pages.rendering import render_page
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.skate import methods as turning_round
+from reports.pages.skate import experiments as turning_round
 from reports.pages.wheels.experiments import Folding
 from reports.pages.your_model.experiments import Walk
 from reports.plots import theme
@@ -282,10 +282,10 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
-        case newton.Newton():
-            values = {name: np.full(len(newton.STEPS), bound / 2) for name, bound in newton.BOUNDS.items()}
-        case acrobot.Acrobot():
-            values = dict.fromkeys(("drift", "rounded"), np.full(len(acrobot.STEPS), 1e-3))
+        case published.Newton():
+            values = {name: np.full(len(published.NEWTON_STEPS), bound / 2) for name, bound in published.BOUNDS.items()}
+        case published.Acrobot():
+            values = dict.fromkeys(("drift", "rounded"), np.full(len(published.ACROBOT_STEPS), 1e-3))
         case Walk():
             values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
         case OpenWork():

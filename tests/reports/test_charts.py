@@ -24,10 +24,10 @@ from reference.scenes.rolling.scenes import RollingEllipse, RollingOnCircle
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
-from reports.model.scaling_fit import Point, Series
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
 from reports.pages.rolling import drawings as rolling_drawings
 from reports.pages.rolling import page as rolling_charts
+from reports.pages.scaling.experiments import Point, Series
 from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings

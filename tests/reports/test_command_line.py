@@ -13,7 +13,7 @@ import pytest
 
 from engines import registry
 from engines.lagrange import Lagrange
-from reference.scenes.four_bar.scenes import DrivenFourBar
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports import __main__ as program
 from reports.cli import commands, selection
 from reports.cli import report as report_command
@@ -32,7 +32,7 @@ from tests.reports.test_reports import PAGE
 from tests.rows import row
 from tests.toys import Disc, Toy
 
-ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
+ONE_CELL = ("free_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
 
 
 def call(*words):
@@ -76,7 +76,7 @@ def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capf
     assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
 
 
-@pytest.mark.parametrize("words", [("show", "driven_four_bar"), ("report",), ("report", "--publish")])
+@pytest.mark.parametrize("words", [("show", "free_four_bar"), ("report",), ("report", "--publish")])
 def test_reading_commands_make_no_store(words, here, capfd):
     assert call(*words) == REFUSED
     assert "crosscheck run" in one_line(capfd.readouterr().err)
@@ -88,7 +88,7 @@ def test_reading_commands_make_no_store(words, here, capfd):
 def one_stored(folder):
     """As after a run of ONE_CELL."""
     with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
-        store.put(blank(Cell(DrivenFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
+        store.put(blank(Cell(FreeFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 
 
 def checkout(folder, monkeypatch):
@@ -160,7 +160,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     assert not (here / "crosscheck-results/index.md").exists()
 
 
-@pytest.mark.parametrize("command", [("run", *ONE_CELL), ("show", "driven_four_bar"), ("report",)])
+@pytest.mark.parametrize("command", [("run", *ONE_CELL), ("show", "free_four_bar"), ("report",)])
 def test_results_that_can_not_be_a_folder_are_one_line(command, here, capfd):
     (here / "file").write_text("mine")
     for results in ("file", "file/below", "x" * 300):

@@ -17,8 +17,7 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings.finding import LOOKS, MILLISECOND, TENTH, Line, draw
-from reports.pages.findings.findings import FINDINGS, findings
+from reports.pages.findings import FINDINGS, LOOKS, MILLISECOND, TENTH, Line, draw, findings
 from reports.pages.guides.page import EVERY, FOUR_BAR
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
@@ -70,8 +69,8 @@ def person(count, every, field):
     return stored("person_one_foot", f"pymunk {count} sweeps, all of the gap", every, field, "failure")
 
 
-def crank(variant, every):
-    return stored("driven_four_bar", f"mujoco {variant}", every, "angle", "failure")
+def crank(variant, every, purpose="failure"):
+    return stored("driven_four_bar", f"mujoco {variant}", every, "angle", purpose)
 
 
 def free(method, field="angle"):
@@ -94,7 +93,7 @@ def test_its_numbers_are_those_of_the_rows_that_it_names():
             crank(overwritten, 10),
             crank(overwritten, 100),
             crank("tuned, overwritten crank", 10),
-            crank("tuned", 10),
+            crank("tuned", 10, "sweep"),
         ],
         "contact": [stored("rolling_ellipse", "mujoco extended", 10, "angle")],
     }
@@ -160,7 +159,7 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
         ("skate", times(10.0, "position", scene="sleigh", method="pymunk tuned")),
         ("crank", times(0.1, "angle", **CRANK, method="mujoco default, overwritten crank", steps=at(TENTH))),
         ("crank", times(1e-3, "angle", **CRANK, method="mujoco tuned, overwritten crank")),
-        ("crank", times(100.0, "angle", **CRANK, method="mujoco tuned")),
+        ("crank", times(100.0, "angle", scene="driven_four_bar", method="mujoco tuned")),
         ("contact", falls("rolling_ellipse", "mujoco default", "angle")),
         ("contact", falls("rolling_ellipse", "pymunk tuned", "angle")),
         ("contact", times(1e3, "angle", scene="rolling_ellipse", method="mujoco extended")),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engines import Unsupported
+from engines import Promise, Unpromised, Unsupported
 from engines.lagrange import Lagrange
 from engines.registry import VARIANTS
 from reference.chapter.centrodes import Centrodes
@@ -24,10 +24,18 @@ from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, s
 from reports.model.measure import measure, repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.model.scaling_fit import LAST, Point, Series, cost_exponent, error_exponent, exponent, series_of
 from reports.pages.centrodes.page import returned
 from reports.pages.rendering import render_page
-from reports.pages.scaling.experiments import BandedChain
+from reports.pages.scaling.experiments import (
+    LAST,
+    BandedChain,
+    Point,
+    Series,
+    cost_exponent,
+    error_exponent,
+    exponent,
+    series_of,
+)
 from reports.pages.scaling.page import CELLS, COSTLY, PAGE, STEP, cost_table, crossing
 from reports.pages.skate.page import constructions
 from reports.write.rows import Rows
@@ -269,15 +277,22 @@ def test_a_step_costs_more_with_more_bodies(engine):
 
 
 def test_a_grid_has_every_step_that_can_be_afforded_and_the_coarsest_always():
-    assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300, 1000))
-    cells = sweep_cells((Disc(),), (Toy(),), FULL)
-    # 20 samples at 50 us a step: 0.7 s are 700 steps a sample.
-    assert [cell.every for cell in cells] == [1, 3, 10, 30, 100, 300]
-    assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Toy(), 1000))
+    assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300))
+    # 20 samples at 0.2 ms a step: 0.8 s are 200 steps a sample.
+    cells = sweep_cells((Disc(),), (Costly(cost=2e-4),), FULL)
+    assert [cell.every for cell in cells] == [1, 3, 10, 30, 100]
+    assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Costly(cost=2e-4), 300))
     dear = sweep_cells((Disc(),), (Costly(cost=10.0),), FULL)
     assert [cell.every for cell in dear] == [1]
-    # The quick steps may take ten times as long: 20 * 10 steps of 30 ms are 6 s.
-    assert [cell.every for cell in sweep_cells((Disc(),), (Costly(cost=3e-2),), FULL)] == [1, 3, 10]
+
+
+@pytest.mark.parametrize(
+    ("order", "finest"),
+    [(Promise(1), 300), (Promise(4), 100), (Promise(5), 30), (Promise(8), 10), (Unpromised("?"), 300)],
+)
+def test_steps_end_where_the_promised_order_has_divided_the_error_by_1e8(order, finest, monkeypatch):
+    monkeypatch.setattr(Toy, "order", lambda toy, mechanism: order)
+    assert max(cell.every for cell in sweep_cells((Disc(),), (Toy(f"of {order}"),), FULL)) == finest
 
 
 def test_the_row_of_a_step_is_the_nearest_by_ratio():

@@ -13,9 +13,18 @@ from engines.mujoco import DEFAULT, TUNED
 from engines.pymunk import TUNED as PYMUNK
 from reports.model.page import Material
 from reports.model.tasks import Answer, answered
-from reports.pages.published.acrobot import PUBLISHED, START, STEPS, Acrobot, by_hand
-from reports.pages.published.newton import BOUNDS, FOUR_BAR, Newton, freudenstein
-from reports.pages.published.newton import STEPS as NEWTONS
+from reports.pages.published.experiments import (
+    ACROBOT_STEPS,
+    BOUNDS,
+    FOUR_BAR,
+    NEWTON_STEPS,
+    PUBLISHED,
+    START,
+    Acrobot,
+    Newton,
+    by_hand,
+    freudenstein,
+)
 from reports.pages.published.page import PAGE, drifts, largest_step
 from reports.pages.rendering import render_page
 from reports.pages.your_model import page as others
@@ -34,8 +43,8 @@ def answers():
 
 
 def test_the_start_of_acrobot_is_the_one_that_loses_what_was_published():
-    assert by_hand(START, STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
-    assert by_hand(START + 1e-3, STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
+    assert by_hand(START, ACROBOT_STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
+    assert by_hand(START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
 
 
 def test_the_second_published_number_follows_and_the_third_is_rounding(answers):
@@ -62,7 +71,7 @@ def test_freudensteins_rocker_is_the_scenes():
 
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
     told = answered(Newton(TRUTH))
-    assert all(largest_step(told, name) == max(NEWTONS) for name in BOUNDS)
+    assert all(largest_step(told, name) == max(NEWTON_STEPS) for name in BOUNDS)
     # What is left of the period's measure is the cosine: a swing by 0.05 rad is slower by 0.05^2/16 than a small one.
     assert told.array("period") == pytest.approx(1.1e-3, rel=0.05)
     wrong = np.degrees(freudenstein(np.zeros(1)) - FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
@@ -71,9 +80,9 @@ def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none()
 
 def test_the_bounds_tell_the_default_from_the_tuned(answers):
     loose, tight = answers[Newton(DEFAULT)], answers[Newton(TUNED)]
-    assert largest_step(tight, "angle") == max(NEWTONS)
-    assert (largest_step(loose, "angle") or 0) < max(NEWTONS)
-    assert largest_step(replace(loose, values={"gap": np.full(len(NEWTONS), 1.0)}), "gap") is None
+    assert largest_step(tight, "angle") == max(NEWTON_STEPS)
+    assert (largest_step(loose, "angle") or 0) < max(NEWTON_STEPS)
+    assert largest_step(replace(loose, values={"gap": np.full(len(NEWTON_STEPS), 1.0)}), "gap") is None
 
 
 def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(answers):

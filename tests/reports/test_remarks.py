@@ -18,6 +18,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Motion, Task
 from reports.pages.atlas.page import lines as atlas_lines
+from reports.pages.common import PUBLIC
 from reports.pages.four_bar import experiments as four_bar
 from reports.pages.four_bar import experiments as four_bar_failures
 from reports.pages.n_four_bar import experiments as n_four_bar_failures
@@ -25,11 +26,8 @@ from reports.pages.pendulum import experiments as pendulum
 from reports.pages.pendulum import experiments as pendulum_failures
 from reports.pages.rolling import experiments as rolling
 from reports.pages.rolling import experiments as rolling_failures
-from reports.pages.rolling import methods as parting
 from reports.pages.rolling.experiments import polygon_cells, softness_cells
-from reports.pages.rolling.methods import CONTACTS
 from reports.pages.skate import experiments as skate_failures
-from reports.pages.skate import methods as slipping
 from reports.pages.slider_crank import experiments as slider_crank
 from reports.pages.wheels import experiments as wheels
 from reports.write.experiments import told_remark
@@ -126,8 +124,8 @@ def test_a_slider_that_starts_nearer_leaves_later_by_what_the_answers_say():
 
 
 def test_friction_slips_a_tenth_or_two_after_its_limit_is_passed():
-    tasks = [Motion(cell) for cells in slipping.LIMITED.values() for cell in cells]
-    found = slipping.delays(Material({}, {task: answer_to(task) for task in tasks}))
+    tasks = [Motion(cell) for cells in skate_failures.LIMITED.values() for cell in cells]
+    found = skate_failures.delays(Material({}, {task: answer_to(task) for task in tasks}))
     assert 0 < found["least"] <= found["most"] < 0.3
 
 
@@ -144,9 +142,9 @@ def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
 
 
 def test_contacts_part_from_the_ideal_motion_by_hundreds_of_times_their_error():
-    contacts = [Motion(cell) for cell in parting.PARTINGS if cell.engine in CONTACTS]
+    contacts = [Motion(cell) for cell in rolling.PARTINGS if cell.engine in PUBLIC]
     assert len(contacts) == 4
-    assert parting.after_parting(Material({}, {task: answer_to(task) for task in contacts}))["least"] > 100
+    assert rolling.after_parting(Material({}, {task: answer_to(task) for task in contacts}))["least"] > 100
 
 
 BROKEN = (Outcome.TORN, Outcome.RESET)

@@ -165,7 +165,7 @@ def test_bad_input_is_one_line_on_stderr_and_exit_status_2(words, telling, tmp_p
 def test_run_report_and_show_from_an_empty_folder(tmp_path, capfd, undrawn, at_home, monkeypatch):
     """One page of ours, without its pictures, which test_installations.py has drawn by an installation."""
     monkeypatch.setattr(catalogue, "PAGES", tuple(page for page in PAGES if page.name == "four_bar"))
-    chosen = ["driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte"]
+    chosen = ["free_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte"]
     for words in (["run", *chosen, "--every", "1"], ["report"], ["show", *chosen]):
         with pytest.raises(SystemExit) as ending:
             command_line.main([*words, "--results", str(tmp_path)])

@@ -26,8 +26,8 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Motion, trajectory_of
 from reports.pages.centrodes import page as centrodes_page
-from reports.pages.rolling.methods import absent_contact, parting
-from reports.pages.skate import methods
+from reports.pages.rolling.experiments import absent_contact, parting
+from reports.pages.skate import experiments
 from reports.pages.skate.experiments import counting
 from reports.pages.wheels import experiments as wheels_failures
 from reports.pages.wheels import page as wheels
@@ -99,24 +99,24 @@ def test_the_exact_sleigh_grows_at_its_linear_rate_and_a_wrong_rate_is_told_apar
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
     # The square of 0.04 over the largest rate 1.6 is what the linear motion leaves out.
-    assert methods.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
-    assert methods.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
-    assert math.isnan(methods.growth_of(t, np.full_like(t, 1e-3)))
+    assert experiments.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
+    assert experiments.growth_of(t, rate) != pytest.approx(1.01 * scene.growth_rate(), rel=1e-3)
+    assert math.isnan(experiments.growth_of(t, np.full_like(t, 1e-3)))
 
 
 def test_the_lateral_force_passes_a_limit_when_the_reference_says():
-    scene, limit = methods.BACKWARDS, list(methods.LIMITED)[1]
-    when = methods.first_beyond(scene, limit)
+    scene, limit = experiments.BACKWARDS, list(experiments.LIMITED)[1]
+    when = experiments.first_beyond(scene, limit)
     assert when is not None
     before, after = np.abs(scene.lateral_force([when - 2e-3, when]))
     assert before < limit <= after
-    assert methods.first_beyond(scene, 1.01 * methods.PEAK) is None
+    assert experiments.first_beyond(scene, 1.01 * experiments.PEAK) is None
 
 
 def test_friction_slips_soon_after_the_exact_force_passes_its_limit_and_not_before():
-    cells = [cell for own in methods.LIMITED.values() for cell in own]
-    told = {(o.method, o.setting): o.outcome for o in methods.slipping(kept(map(Motion, cells)))}
-    for limit in methods.LIMITED:
+    cells = [cell for own in experiments.LIMITED.values() for cell in own]
+    told = {(o.method, o.setting): o.outcome for o in experiments.slipping(kept(map(Motion, cells)))}
+    for limit in experiments.LIMITED:
         exact = told["exact lateral force", f"{limit:g} N"]
         for method in ("pymunk groove with max_force", "mujoco tendon with friction loss"):
             outcome = told[method, f"{limit:g} N"]

@@ -20,7 +20,7 @@ PAGES = ROOT / "reports" / "pages"
 RESULTS = PAGES.parent / "results"
 TEMPLATES = tuple(sorted(PAGES.rglob("*.md")))
 # What is drawn, or printed on the terminal too, has no mathematics of Markdown.
-DRAWN = ("centrodes/page.py", "atlas/page.py", "rolling/drawings.py", "rolling/page.py", "versions/chart.py")
+DRAWN = ("centrodes/page.py", "atlas/page.py", "rolling/drawings.py", "rolling/page.py", "versions/page.py")
 DRAWING = (*DRAWN, "errata/experiments.py")
 MODULES = tuple(path for path in sorted(PAGES.rglob("*.py")) if not {"programs", "snippets"} & set(path.parts))
 

@@ -218,9 +218,7 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             if name in drawn:
                 handles.append(Line2D([], [], color=getattr(theme, ROLES[name]), linestyle=DASHES[name], linewidth=1.8))
                 names.append(told)
-        legend = figure.legend(handles, names, loc="outside lower center", ncols=3, frameon=False)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(handles, names, loc="outside lower center", ncols=3)
     return figure
 
 

@@ -77,8 +77,7 @@ def draw_centrodes(
             Line2D([], [], color=theme.second, linewidth=2, linestyle="--", label="moving centrode"),
             Line2D([], [], color=theme.fourth, marker="o", linestyle="none", label="instant centre"),
         ]
-        for text in figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False).get_texts():
-            text.set_color(theme.ink)
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
@@ -111,8 +110,7 @@ def draw_rate(curves: Centrodes, theme: Theme = LIGHT) -> Figure:
         for panel, up in ((above, "m/rad"), (below, "relative\ndifference")):
             style_axes(panel, theme)
             panel.set_ylabel(up)
-        for text in above.legend(frameon=False).get_texts():
-            text.set_color(theme.ink)
+        above.legend()
         below.set_xlabel("angle of the coupler [degrees]")
     return figure
 

@@ -50,7 +50,7 @@ def draw_offsets(measured: np.ndarray, theme: Theme = LIGHT) -> Figure:
         axes.set_xlabel("anchor's distance from the centre of mass [m]")
         axes.set_ylabel("velocity across the groove\nafter a step, should be 0 [m/s]")
         style_axes(axes, theme)
-        axes.legend(frameon=False, labelcolor=theme.ink, loc="lower right")
+        axes.legend(loc="lower right")
     return figure
 
 

@@ -22,7 +22,8 @@ import numpy as np
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
 from reports.model.tasks import Task, Values
-from reports.run.installed import environment, installed
+from reports.run.installed import environment, installed, numbers
+from reports.versions import catalogue
 
 FOLDER = Path(__file__).parent / "snippets"
 # Printed by a process of its own behind a script's last line.
@@ -107,11 +108,21 @@ RECORDED = Path(__file__).parent / "versions.csv"
 FIELDS = ("script", "package", "version", "expected", "found")
 MUJOCO = ("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality")
 PYMUNK = ("pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy")
-# (distribution, version, scripts): the ends of what is offered, and both sides of every change.
+
+
+def _telling(engine: str) -> list[str]:
+    """Of the versions of an engine that are compared the first and the last, and both sides of every known change."""
+    own = [each for each in catalogue.RELEASES if each.engine == engine]
+    changes = [index for index, each in enumerate(own) if each.changed]
+    chosen = {0, len(own) - 1, *changes, *(index - 1 for index in changes)}
+    return [own[index].version for index in sorted(chosen)]
+
+
+# (distribution, version, scripts). MuJoCo's distribution of this name is a bundle from its fourth version on.
+BUNDLED = numbers("4")
 RELEASES = (
-    *(("mujoco", version, MUJOCO) for version in ("3.0.0", "3.6.0", "3.7.0", "3.17.0")),
-    *(("mujoco-core", version, MUJOCO) for version in ("4.0.0", "4.0.1")),
-    *(("pymunk", version, PYMUNK) for version in ("6.4.0", "7.0.0", "7.3.1")),
+    *(("mujoco-core" if numbers(each) >= BUNDLED else "mujoco", each, MUJOCO) for each in _telling("mujoco")),
+    *(("pymunk", each, PYMUNK) for each in _telling("pymunk")),
 )
 
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
-from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar, OverdrivenFourBar, Parallelogram, SpinningFourBar
-from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values
+from reports.pages.common import ALL, cells
 from reports.write.tables import number
 
 SAMPLES = 50  # a revolution
@@ -52,16 +50,8 @@ class PrintedRates(Task):
         }
 
 
-PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
+EVERY: tuple[Engine, ...] = (*ALL, Lagrange("rk4", "projection"))
 RATE_TOLERANCE = 1e-3  # what solve_ivp takes when nobody says otherwise
-
-
-def _cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 DRIFTS = tuple(
@@ -122,7 +112,7 @@ FAILURES: tuple[Failure, ...] = (
             "Twice a revolution all four bars lie in line. There the loop closes in two ways, parallel and crossed, "
             "and the rows lose rank. Only the inertia of the bars decides which way the motion goes on: parallel."
         ),
-        cells=_cells(Parallelogram(), ALL[:-1], (1, 10, 100)) + _cells(Parallelogram(), ALL[-1:], (1, 10)),
+        cells=cells(Parallelogram(), EVERY[:-1], (1, 10, 100)) + cells(Parallelogram(), EVERY[-1:], (1, 10)),
         remark=(
             "Methods differ here. pymunk, as shipped and tuned, and exact multipliers get through at each step. The "
             "errors of pymunk fall by a factor of five or more from step to step. MuJoCo as shipped gets through as "
@@ -137,7 +127,7 @@ FAILURES: tuple[Failure, ...] = (
             f"The bars of this triple-rocker can follow the crank for {OverdrivenFourBar().stopping_time:.4f} s. After "
             "that no position closes the loop; the reference refuses."
         ),
-        cells=_cells(OverdrivenFourBar(), ALL[:-1], (1, 10, 100)) + _cells(OverdrivenFourBar(), ALL[-1:], (1, 10)),
+        cells=cells(OverdrivenFourBar(), EVERY, (1, 10)),
         observations=_refusal,
         remark=(
             "No engine says that the task is impossible. The loop is torn, usually without a warning, or the engine "
@@ -148,7 +138,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Five ways to drive a crank",
         expected="The crank turns at 10 rad/s exactly, and the other bars follow: there is nothing to be simulated.",
-        cells=_cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),
+        cells=cells(DrivenFourBar(), (mujoco.TUNED, *mujoco.DRIVES, pymunk.TUNED, OVERWRITTEN), (1, 10, 100)),
         remark=(
             "The common trick is to overwrite the crank's state after every step. The solver still computes as if the "
             "loop's forces accelerated the crank, so it finds wrong forces. With the loop as shipped the error does "
@@ -164,7 +154,7 @@ FAILURES: tuple[Failure, ...] = (
             "At 10 rad/s the crank turns by a radian in a step of 0.1 s. No method is accurate here; an engine could "
             "warn."
         ),
-        cells=tuple(cell for samples in (20, 10, 5) for cell in _cells(SpinningFourBar(), ALL, (1,), samples)),
+        cells=tuple(cell for samples in (20, 10, 5) for cell in cells(SpinningFourBar(), EVERY, (1,), samples)),
         remark=(
             'A finite number is not an answer{% filter if_measured %}: {{ count("torn") }} of these {{ count() }} runs '
             "end with finite numbers, on a loop that is torn{% endfilter %}, and no engine says so."
@@ -173,7 +163,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Too few iterations",
         expected="Sweeps over the joints should go on until these agree. What they leave is closed in the next step.",
-        cells=_cells(SpinningFourBar(), SWEEPS, (1, 10, 100)),
+        cells=cells(SpinningFourBar(), SWEEPS, (1, 10, 100)),
         remark=(
             "Where the whole gap is closed in every step, the speed of the correction is the gap over the step. So "
             "what the sweeps leave grows as the step shrinks: two sweeps are enough at 1e-3 s, and tear the loop at "
@@ -183,7 +173,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Worse as the step shrinks",
         expected="Each step a tenth of the last: an error of first order should fall tenfold every time.",
-        cells=_cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
+        cells=cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
         remark=(
             "MuJoCo as shipped has two errors here: Euler's, which falls with the step, and that of a soft loop, "
             "which does not. At 1e-3 s they happen to cancel, so a user who takes a smaller step sees the answer "

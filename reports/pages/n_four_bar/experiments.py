@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
-from engines import Engine, mujoco, pymunk
+from engines import mujoco
 from engines.lagrange import Lagrange
-from reference.scene import Scene
 from reference.scenes.n_four_bar import NFourBar
-from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
+from reports.pages.common import ALL, cells
 from reports.write.tables import number
 
-PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
 
 
-def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
-
-
-SOFT = _cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
+SOFT = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
 ONCE = NFourBar(duration=1.2, horizon=1.2)  # one singular position, not yet the second
 
 
@@ -66,7 +58,7 @@ FAILURES: tuple[Failure, ...] = (
             r"where $\varphi$ is the angle from upright. The motion is smooth: the truth passes the line at finite "
             "speed."
         ),
-        cells=_cells(ONCE, (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED), (1, 10, 100)),
+        cells=cells(ONCE, ALL, (1, 10, 100)),
         observations=forces_without_a_limit,
         remark=(
             "A smaller step brings a sample closer to the line, where a larger force is needed. For that reason pymunk "
@@ -82,7 +74,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Exact multipliers at a singular position",
         expected="The rows lose rank there; between samples a step may land anywhere near it.",
-        cells=_cells(
+        cells=cells(
             ONCE,
             (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")),
             (1, 3, 10),

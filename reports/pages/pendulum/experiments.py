@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,13 +10,12 @@ import numpy as np
 from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco import Hardened
-from reference.scene import Scene
 from reference.scenes.many_links import SpinningRing
 from reference.scenes.pendulum.link import PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum
-from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values
+from reports.pages.common import ALL, PUBLIC, cells, sweeps
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
@@ -63,8 +61,6 @@ def divergence(material: Material) -> list[Observation]:
     ]
 
 
-PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
 FREE = replace(mujoco.EXTENDED, coordinates="free")
 # Its sweeps lose the motion at any step: runs at other steps would tell nothing of its error.
 SWEPT = replace(FREE, variant="extended, free, PGS, no estimate", solvers=("PGS",), estimates=False)
@@ -85,18 +81,6 @@ SOLVED = replace(
     tolerance=1e-20,
     jacobian="sparse",
 )
-
-
-def _cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
-
-
-def sweeps(count: int) -> Engine:
-    """pymunk closing every gap in one step, by this many sweeps."""
-    return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
 
 
 def hardened(variant: str, softening: float, factorisation: str) -> Engine:
@@ -128,16 +112,17 @@ def tip(ratio: float) -> LinkPendulum:
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 
-PHASE = _cells(PointPendulum(), (*ALL, SOLVED), (10, 50)) + _cells(
-    PointPendulum(), (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED), (150,)
+# Extrapolated, a smaller step takes up to six seconds, and is lost as the larger one is.
+PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
+    PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
 
-LATE = _cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
+LATE = cells(BEYOND, (*ALL, Lagrange("rk4", "projection")), (1, 10))
 HIGHER_ORDER = (mujoco.TUNED, pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4", "projection"))
 LARGE_STEPS = tuple(
     cell
     for samples in (20, 40, 100)
-    for cell in _cells(HundredLinks(), (*PUBLIC, Lagrange("euler", "projection")), (1,), samples)
+    for cell in cells(HundredLinks(), (*PUBLIC, Lagrange("euler", "projection")), (1,), samples)
 )
 
 
@@ -190,9 +175,9 @@ FAILURES: tuple[Failure, ...] = (
             f"{number(fastest(tip(1e4)))} rad/s."
         ),
         # A run of pymunk extended at the smaller steps takes half a minute and four minutes.
-        cells=_cells(tip(1e4), [engine for engine in HEAVY if engine != pymunk.EXTENDED], (1, 10, 100))
-        + _cells(tip(1e4), (pymunk.EXTENDED,), (1,))
-        + _cells(tip(1e4), (PATIENT,), (10,)),
+        cells=cells(tip(1e4), [engine for engine in HEAVY if engine != pymunk.EXTENDED], (1, 10, 100))
+        + cells(tip(1e4), (pymunk.EXTENDED,), (1,))
+        + cells(tip(1e4), (PATIENT,), (10,)),
         remark=(
             "The impulse of one joint moves the light link, and undoes what its neighbour's did. A sweep removes only "
             "about $1 / r$ of the error, where $r$ is the ratio of the masses, so even a thousand sweeps are too few. "
@@ -214,7 +199,7 @@ FAILURES: tuple[Failure, ...] = (
             "It turns like a rigid wheel. The chain is a tree. The hundredth joint closes it, by rows that reach "
             "through a hundred coordinates."
         ),
-        cells=_cells(SpinningRing(), RING, (1, 10)),
+        cells=cells(SpinningRing(), RING, (1, 10)),
         remark=(
             "As shipped the ring is soft: its error does not fall with the step. Made a million times harder, its "
             'angles are right{% filter if_measured %} to {{ at("mujoco Newton, softening 1e-6", 1e-2).angle | number '

@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import replace
 
-from engines import Engine, mujoco, pymunk
+from engines import pymunk
 from reference.checks import InvalidMechanism
-from reference.scene import Scene
 from reference.scenes.person import OneFoot, SwayingOnOneFoot, TwoFeet, modes_upright
-from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
+from reports.pages.common import ALL, cells, sweeps
 
-PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
 LONGER = SwayingOnOneFoot(duration=0.6, horizon=0.6)
-
-
-def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
 
 
 def growth(material: Material) -> list[Observation]:
@@ -46,11 +37,6 @@ def refusals(material: Material) -> list[Observation]:
     return found
 
 
-def sweeps(count: int) -> Engine:
-    """pymunk closing every gap in one step, by this many sweeps."""
-    return replace(pymunk.DEFAULT, variant=f"{count} sweeps, all of the gap", iterations=count, error_bias=0.0)
-
-
 FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Standing still",
@@ -59,7 +45,7 @@ FAILURES: tuple[Failure, ...] = (
             f"starts on one that swings, to six digits; after {SwayingOnOneFoot().duration:g} s what the digits left "
             "out has grown, and the knee buckles."
         ),
-        cells=_cells(LONGER, ALL, (1, 10, 100)),
+        cells=cells(LONGER, ALL, (1, 10, 100)),
         observations=growth,
         remark=(
             "The knee's mode makes a millionth of a radian a visible angle within half a second. Without muscles "
@@ -74,8 +60,8 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="A heavy trunk on light shanks, with too few sweeps",
         expected="A shank has a fifteenth of the trunk's mass and is two joints away from it.",
-        cells=_cells(OneFoot(), (pymunk.DEFAULT,), (1, 10))
-        + _cells(OneFoot(), map(sweeps, (5, 10, 20, 100)), (1, 3, 10, 30, 100)),
+        cells=cells(OneFoot(), (pymunk.DEFAULT,), (1, 10))
+        + cells(OneFoot(), map(sweeps, (5, 10, 20, 100)), (1, 3, 10, 30, 100)),
         remark=(
             "How many sweeps a chain needs depends on its masses as well as on its length. For a few equal links five "
             "sweeps would be enough. Here ten are too few, and with five or ten the smaller step is the worse one. "

@@ -27,9 +27,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Answer
 from reports.pages.pendulum.experiments import PHASE
-from reports.pages.published.acrobot import PUBLISHED, START, Acrobot
-from reports.pages.published.acrobot import STEPS as ACROBOT_STEPS
-from reports.pages.published.newton import BOUNDS, STEPS, Newton
+from reports.pages.published.experiments import ACROBOT_STEPS, BOUNDS, NEWTON_STEPS, PUBLISHED, START, Acrobot, Newton
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
 from reports.write.rows import lookups
@@ -134,7 +132,7 @@ def _wrong(row: Measurement) -> bool:
 def largest_step(answer: Answer, name: str) -> float | None:
     """The largest of Newton's steps [s] at which a bound is met, and at all smaller ones too; None for none."""
     passed = None
-    for step, measure in sorted(zip(STEPS, answer.array(name), strict=True)):
+    for step, measure in sorted(zip(NEWTON_STEPS, answer.array(name), strict=True)):
         if not measure < BOUNDS[name]:
             break
         passed = step

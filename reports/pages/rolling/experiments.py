@@ -1,16 +1,17 @@
-"""Where methods fail at rolling: experiments with a statement of what should happen."""
+"""Where methods fail at rolling: contacts and constraints apart, how discs part from a hill and chatter on it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
-from engines import Engine, mujoco
+from engines import Engine, mujoco, pymunk
 from engines.lagrange import Lagrange
+from engines.mujoco import methods as mujoco_methods
 from engines.mujoco.methods import CONTACT
 from engines.pymunk import methods as pymunk_methods
 from reference.scenes.rolling.scenes import (
@@ -21,20 +22,88 @@ from reference.scenes.rolling.scenes import (
     RollingScene,
     SquareOnCatenaries,
 )
+from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.rolling.methods import (
-    CHATTERING,
-    CONSTRAINTS,
-    CONTACTS,
-    PARTINGS,
-    after_parting,
-    cells,
-    chatter,
-    partings,
-)
+from reports.pages.common import PUBLIC, cells
+from reports.write.experiments import observe
+from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
+
+CONSTRAINTS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, mujoco.EXTENDED)
+
+
+ROLLER = 0  # the only body's index
+
+
+def hill_cells(engines: Iterable[Engine]) -> tuple[Cell, ...]:
+    """Whole motions on the hill, beyond where they may be compared."""
+    return tuple(Cell(RollingOnCircle(), engine, every) for engine in engines for every in (10, 100))
+
+
+STIFF = tuple(method for method in mujoco_methods.ROLLS if "stiff" in method.variant)
+
+
+PARTINGS = hill_cells((pymunk.TUNED, mujoco.TUNED, mujoco.EXTENDED))
+
+
+CHATTERING = hill_cells((*PUBLIC, *STIFF))
+
+
+def parting(cell: Cell, found: Trajectory) -> tuple[float, float]:
+    """How far a body is from the ideal motion [m]: largest up to the last comparable sample, and at the end."""
+    truth = cell.scene.motion(found.t)
+    apart = np.linalg.norm((found.pose - truth.pose)[:, ROLLER, :2], axis=-1)
+    within = found.t <= cell.scene.comparable_until * (1 + 1e-12)
+    return float(apart[within].max()), float(apart[-1])
+
+
+def partings(material: Material) -> list[Observation]:
+    """How far contact is from the ideal motion before and after the instant at which ideal rolling ends."""
+
+    def told(cell: Cell, run: Trajectory) -> str:
+        before, after = parting(cell, run)
+        until = cell.scene.comparable_until
+        return f"off by {number(before)} m up to {until:.3f} s, by {number(after)} m at {cell.scene.duration:g} s"
+
+    return observed(material, PARTINGS, told)
+
+
+def after_parting(material: Material) -> dict[str, Any]:
+    """`least`: how many times a contact's error at the end is its largest before they part, in the best of the runs;
+    `slips`, `hops`: when a real contact does so [s].
+    """
+    scene = RollingOnCircle()
+    contacts = [cell for cell in PARTINGS if cell.engine in PUBLIC]
+    found = [parting(cell, run) for cell, run in material.motions(contacts).items()]
+    least = np.min([after / before for before, after in found]) if found else UNMEASURED
+    return {"least": least, "slips": scene.comparable_until, "hops": scene.hop}
+
+
+def observed(material: Material, cells: Iterable[Cell], told: Callable[[Cell, Trajectory], str]) -> list[Observation]:
+    """A line for each cell whose motion was kept."""
+    found: list[Observation] = []
+    for cell in cells:
+        found += observe(material, cell, f"step {number(cell.step)} s", partial(told, cell))
+    return found
+
+
+def absent_contact(cell: Cell, found: Trajectory) -> float:
+    """The share of samples before the slip at which a contact carries nothing, though it must carry N (one roller)."""
+    # The first sample has no step before it.
+    within = (found.t <= cell.scene.comparable_until) & (found.t > 0)
+    mechanism = cell.scene.mechanism()
+    weight = mechanism.bodies[ROLLER].mass * float(np.hypot(*mechanism.gravity))
+    return float(np.mean(np.abs(found.reaction[within, 1]) < 1e-3 * weight))
+
+
+def chatter(material: Material) -> list[Observation]:
+    """How often the contact on the hill is absent while it should press."""
+    return observed(
+        material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
+    )
+
 
 # Time constants of a contact [s], and the steps at which each is run: MuJoCo's smallest is two steps.
 SOFTNESS = (2e-2, 6e-3, 2e-3, 6e-4, 2e-4)
@@ -75,7 +144,7 @@ def finest_polygon(material: Material) -> dict[str, Any]:
     return {"coarse": coarse, "fine": fine}
 
 
-TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), CONTACTS, (1,), samples))
+TOO_LARGE = tuple(c for samples in (20, 10, 5) for c in cells(RollingDisc(), PUBLIC, (1,), samples))
 
 
 def least_opening(material: Material) -> dict[str, Any]:
@@ -203,7 +272,7 @@ FAILURES: tuple[Failure, ...] = (
             "{{ '%.4f' | format(hops) }} s it would have to pull. Ideal rolling goes on; a real contact slips "
             "and flies. From there on the comparison is invalid, and it stops."
         ),
-        cells=cells(RollingOnCircle(), (*CONTACTS, mujoco.EXTENDED), (10, 100)),
+        cells=cells(RollingOnCircle(), (*PUBLIC, mujoco.EXTENDED), (10, 100)),
         tasks=tuple(map(Motion, PARTINGS)),
         observations=partings,
         words=after_parting,

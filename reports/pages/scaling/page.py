@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import ceil, log, pi, sqrt
 from typing import Any
@@ -20,9 +20,8 @@ from engines.pymunk.contraction import LEFT, MOST
 from reference.scenes.many_links import LongPendulum
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
-from reports.model.scaling_fit import Series, cost_exponent, error_exponent, series_of
 from reports.pages.pendulum import page as pendulum
-from reports.pages.scaling.experiments import BandedChain, TruthError
+from reports.pages.scaling.experiments import BandedChain, Series, TruthError, cost_exponent, error_exponent, series_of
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.tables import NOTHING, markdown, number
@@ -59,9 +58,7 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
             _ticks(panel)
         _slopes(cost, found, looks, theme)
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in found]
-        legend = figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, handlelength=3.2)
-        for text in legend.get_texts():
-            text.set_color(theme.ink)
+        figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
 
 
@@ -139,8 +136,8 @@ def _high(group: Sequence[float], apart: float) -> float:
 NAME = "scaling"
 
 STEP = 5e-3  # s, the same for all: about the longest at which a reduced-coordinate Euler step still follows 200 links
-SMALL = (1, 2, 3, 5, 10, 20)
-LARGE = (50, 100, 200)
+SMALL = (1, 3, 10, 20)
+LARGE = (50, 100)
 COSTLY = (300, 1000)  # a few steps only, for their cost
 SAMPLES = 5
 FEW, MORE = 4, 40  # steps; a cheap one would else show little but how the first step fills the caches
@@ -173,8 +170,6 @@ LARGEST: dict[Engine, int] = {
     RUNGE_KUTTA: 300,
     BandedChain(): 1000,
 }
-# These two are run to the end up to 100 links only, since more take seconds a step.
-LIMITED: tuple[Engine, ...] = (SWEPT, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE, SPARSE, BandedChain())
 
 # Equal links: a sweep leaves 1 - pi^2/(4 N^2) of the slowest mode, and the sweeps of a step shall leave LEFT of it.
@@ -209,7 +204,7 @@ def cells() -> tuple[Cell, ...]:
         for links in (*SMALL, *LARGE, *COSTLY):
             if links > largest:
                 continue
-            if links in COSTLY or (links > 100 and engine in LIMITED):
+            if links in COSTLY:
                 steps = MORE if engine in CHEAP else FEW
                 scene = LongPendulum(links, duration=steps * STEP, horizon=steps * STEP)
                 found.append(Cell(scene, engine, steps, "large", 1))
@@ -222,16 +217,6 @@ def cells() -> tuple[Cell, ...]:
 
 CELLS = cells()
 OWN = TruthError(LongPendulum(max(LARGE)))  # the longest chain that is run to the end
-
-
-@dataclass(frozen=True)
-class StudyPage(Page):
-    """A page about cells of its own instead of scenes, failures and maps."""
-
-    studied: tuple[Cell, ...] = ()
-
-    def extra_cells(self) -> tuple[Cell, ...]:
-        return self.studied
 
 
 def _found(material: Material) -> tuple[Series, ...]:
@@ -322,7 +307,7 @@ def crossing(one: Series | None, other: Series | None) -> tuple[int, int] | None
     return None
 
 
-PAGE = StudyPage(
+PAGE = Page(
     name=NAME,
     title="Cost and error as a chain grows",
     lesson="From one link to a thousand: what coordinates, sweeps and exact multipliers cost as the chain grows.",
@@ -331,6 +316,6 @@ PAGE = StudyPage(
     companions=pendulum.SCENES,
     figures=figures,
     words=words,
-    studied=CELLS,
+    cells=CELLS,
     tasks=(OWN,),
 )

@@ -1,32 +1,159 @@
-"""Where constructions of a skate fail: experiments with a statement of what should happen."""
+"""Where constructions of a skate fail: experiments with a statement of what should happen; the methods by name."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from engines import Engine
+from engines.mujoco import methods as mujoco_methods
+from engines.mujoco.methods import limited_tendon
+from engines.pymunk import methods as pymunk_methods
+from engines.pymunk.engine import limited_groove
+from engines.registry import VARIANTS
 from reference.chapter.integrability import freedoms_by_brackets, mechanism_is_integrable
 from reference.joints import Pin, Skate
 from reference.mechanism import Body, Mechanism
-from reference.scene import Scene
 from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
 from reference.scenes.skates.slopes import HeldBySkates, SkateOnSlope
+from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion
-from reports.pages.skate.methods import (
-    GROWING,
-    LIMITED,
-    ORDINARY,
-    PEAK,
-    TURNING_ROUND,
-    backwards,
-    delays,
-    method,
-    slipping,
+from reports.pages.common import ENGINES_ALONE, cells_to_rounding
+from reports.write.experiments import observe
+from reports.write.tables import number
+from reports.write.unmeasured import UNMEASURED
+
+CONSTRUCTIONS: tuple[Engine, ...] = (*pymunk_methods.SKATES, *mujoco_methods.SKATES)
+_KNOWN = {f"{engine.name} {engine.variant}": engine for engine in (*VARIANTS, *CONSTRUCTIONS)}
+
+
+def method(name: str) -> Engine:
+    """The engine called "pymunk groove"; raises KeyError for an unknown name."""
+    return _KNOWN[name]
+
+
+def known(names: Iterable[str]) -> dict[str, Engine]:
+    """The engines of these names; a name that is not registered here is left out."""
+    return {name: _KNOWN[name] for name in names if name in _KNOWN}
+
+
+def limited(limit: float) -> tuple[Engine, ...]:
+    """Skates that slip when they would have to give more than this side force [N]."""
+    return limited_groove(limit), limited_tendon(limit)
+
+
+# What a user would take, and the best of each kind.
+ORDINARY: tuple[Engine, ...] = tuple(
+    engine for engine in VARIANTS if engine.name != "lagrange" or engine.variant.startswith("rk4")
 )
+
+
+# Between these rates [rad/s] a turning on the straight run grows as the linearised motion says: far above where it
+# starts, and its square is still below a thousandth of that of the largest rate.
+GROWING = (2e-3, 4e-2)
+
+
+def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
+    """The slope of log |turning rate| over time [1/s] between the rates of GROWING; NaN when it never gets there."""
+    size = np.abs(rate)
+    late = int(np.argmax(size > GROWING[1])) if np.any(size > GROWING[1]) else 0
+    chosen = (np.arange(len(t)) < late) & (size > GROWING[0])
+    if chosen.sum() < 3:
+        return float("nan")
+    return float(np.polyfit(t[chosen], np.log(size[chosen]), 1)[0])
+
+
+def turned_at(t: np.ndarray, rate: np.ndarray) -> float:
+    """When it turns fastest [s], which is when the exact sleigh slides neither way."""
+    return float(t[int(np.argmax(np.abs(rate)))])
+
+
+BACKWARDS = SleighBackwards()
+
+
+TURNING_ROUND = tuple(Cell(BACKWARDS, engine, 1) for engine in (*ORDINARY, *CONSTRUCTIONS))
+
+
+def backwards(material: Material) -> list[Observation]:
+    """The growth of a small turning and the time of turning round, in each method."""
+    t = np.linspace(0, BACKWARDS.duration, BACKWARDS.samples + 1)
+    truth = BACKWARDS.motion(t).twist[:, 0, 2]
+    found = [
+        Observation("linearised exact motion", "", rf"grows as $e^{{{BACKWARDS.growth_rate():.4g}\,t}}$"),
+        Observation("exact motion", "", _grown(t, truth)),
+    ]
+    for cell in TURNING_ROUND:
+        setting = f"step {number(cell.step)} s"
+        found += observe(material, cell, setting, lambda run: _grown(run.t, run.twist[:, 0, 2]))
+    return found
+
+
+def _grown(t: np.ndarray, rate: np.ndarray) -> str:
+    grows = growth_of(t, rate)
+    if np.isnan(grows):
+        return f"does not turn round: at most {number(float(np.abs(rate).max()))} rad/s"
+    return f"{grows:.4f} per second; fastest, {np.abs(rate).max():.3f} rad/s, at {turned_at(t, rate):.2f} s"
+
+
+def first_beyond(scene: ChaplyginSleigh, limit: float) -> float | None:
+    """When the exact lateral force first exceeds a limit [N], to 1e-4 of the duration [s]; None if never."""
+    t = np.linspace(0, scene.duration, 10_001)
+    over = np.flatnonzero(np.abs(scene.lateral_force(t)) > limit)
+    return float(t[over[0]]) if over.size else None
+
+
+def slipping(material: Material) -> list[Observation]:
+    """When the exact lateral force exceeds a friction's limit, and when engines with that limit slip."""
+    found = []
+    for limit, cells in LIMITED.items():
+        exact = first_beyond(BACKWARDS, limit)
+        when = f"exceeds it at {exact:.3f} s" if exact is not None else f"never: at most {PEAK:.4f} N"
+        found.append(Observation("exact lateral force", f"{limit:g} N", when))
+        for cell in cells:
+            found += observe(material, cell, f"{limit:g} N", _slipped)
+    return found
+
+
+def _slipped(run: Trajectory) -> str:
+    when = slips_at(run)
+    if when is None:
+        return "holds"
+    return f"slips by {SLIPS:g} m/s at {when:.2f} s, at most {np.abs(slip_of(run)).max():.2g}"
+
+
+def slip_of(run: Trajectory) -> np.ndarray:
+    """The skate's sideways velocity (times,) [m/s]."""
+    return BACKWARDS.mechanism().slip(run.pose, run.twist)[:, 0]
+
+
+def slips_at(run: Trajectory) -> float | None:
+    """When it slips by more than SLIPS first [s]; None if it holds."""
+    over = np.flatnonzero(np.abs(slip_of(run)) > SLIPS)
+    return float(run.t[over[0]]) if over.size else None
+
+
+def delays(material: Material) -> dict[str, Any]:
+    """`least`, `most` [s]: how long after the exact force passes a limit an engine with that limit slips."""
+    found = []
+    for limit, cells in LIMITED.items():
+        exact = first_beyond(BACKWARDS, limit)
+        slipped = map(slips_at, material.motions(cells).values())
+        found += [when - exact for when in slipped if exact is not None and when is not None]
+    return {"least": min(found, default=UNMEASURED), "most": max(found, default=UNMEASURED)}
+
+
+PEAK = float(np.abs(BACKWARDS.lateral_force(np.linspace(0, BACKWARDS.duration, 10_001))).max())
+
+
+# A friction's limit [N] -> runs with it.
+LIMITED = {limit: tuple(Cell(BACKWARDS, engine, 10) for engine in limited(limit)) for limit in (0.1, 0.3, 0.5, 0.7)}
+
+
+SLIPS = 2e-3  # m/s: above what either method lets pass at this step while it holds
 
 
 def _body(*joints: Pin | Skate) -> Mechanism:
@@ -71,28 +198,12 @@ Columns = tuple[str, ...]
 MOTION: Columns = ("position", "angle", "slip", "energy")
 
 
-def _cells(
-    scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
-) -> tuple[Cell, ...]:
-    return tuple(
-        Cell(scene, engine, count, "failure", samples)
-        for engine in engines
-        for count in _affordable(engine, tuple(every))
-    )
-
-
-def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """What runs a cell at many steps is at rounding with the longest already."""
-    return every[:1] if engine.variant == "extended" else every
-
-
 NAIVE = tuple(method(f"pymunk skate: {name}") for name in ("centre's velocity zeroed", "point's velocity zeroed"))
 LONG = 1000.0  # s
 CIRCLING = ChaplyginSleigh(offset=0.0, duration=LONG, horizon=LONG)
 COASTING = ChaplyginSleigh(duration=LONG, horizon=LONG)
 LONG_SAMPLES = 1000
 STRAIGHT_BACK = SleighBackwards(turning_rate=0.0, start=(0.0, 0.0, 0.3), duration=60.0, horizon=60.0)
-ENGINES_ALONE = tuple(engine for engine in ORDINARY if engine.name != "lagrange")
 
 FAILURES: tuple[Failure, ...] = (
     Failure(
@@ -101,7 +212,9 @@ FAILURES: tuple[Failure, ...] = (
             "The blade's force turns the body too. Whoever takes away the velocity across the blade, but not the "
             "turning that goes with it, gets no slip, and the motion of another body."
         ),
-        cells=_cells(ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)),
+        cells=cells_to_rounding(
+            ChaplyginSleigh(), (*NAIVE, method("pymunk skate: impulse at the blade")), (1, 10, 100)
+        ),
         columns=MOTION,
         remark=(
             "No slip does not prove a right motion. To set the centre's velocity across the blade to zero is right "
@@ -128,7 +241,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Straight back, for a minute",
         expected="Without any turning the sleigh slides straight on, though unstable. Only rounding can turn it.",
-        cells=_cells(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600),
+        cells=cells_to_rounding(STRAIGHT_BACK, ENGINES_ALONE, (1,), 600),
         columns=MOTION,
         remark=(
             "Rounding of 1e-17 rad/s grows to 1 rad/s in about "
@@ -142,7 +255,7 @@ FAILURES: tuple[Failure, ...] = (
         expected=(
             "The sleigh slides straight after some seconds; its heading and energy are the closed form's for ever."
         ),
-        cells=_cells(COASTING, ENGINES_ALONE, (20,), LONG_SAMPLES),
+        cells=cells_to_rounding(COASTING, ENGINES_ALONE, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
             "Once the sleigh slides straight, a projection loses nothing any more. Its heading keeps the error of the "
@@ -155,7 +268,7 @@ FAILURES: tuple[Failure, ...] = (
             "With the skate under the centre of mass the sleigh goes round a circle at an even rate for ever: "
             f"{CIRCLING.turning_rate * LONG:.0f} rad, and every centripetal force is the skate's."
         ),
-        cells=_cells(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES),
+        cells=cells_to_rounding(CIRCLING, ENGINES_ALONE, (20,), LONG_SAMPLES),
         columns=MOTION,
         remark=(
             r"In a step $h$ the blade turns by $\omega h$. The naive zeroing projects the velocity onto the blade's "
@@ -183,7 +296,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="At rest across a slope",
         expected="An ideal skate at zero speed holds as much as it must. Nothing turns it: it rests for ever.",
-        cells=_cells(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(SkateOnSlope(), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "reaction"),
         remark=(
             "A soft row creeps: its force needs a slip to exist. MuJoCo's friction is soft too and creeps, as its "
@@ -199,7 +312,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Turning on a slope",
         expected="The skate that turns evenly slides in cycloids, sideways and never down (the picture above).",
-        cells=_cells(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(SkateOnSlope(turning_rate=2.0), ENGINES_ALONE, (1, 10)),
         columns=MOTION,
     ),
     Failure(
@@ -220,7 +333,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Held by three skates on a slope",
         expected="No freedom of velocity is left: the body stays. The three rows are independent: forces are known.",
-        cells=_cells(HeldBySkates(), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(HeldBySkates(), ENGINES_ALONE, (1, 10)),
         columns=("position", "angle", "slip", "reaction"),
         remark=(
             "The skates constrain its velocity and not its place. So every slip that a method leaves adds up, and no "

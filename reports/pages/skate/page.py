@@ -27,8 +27,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, usual_series
 from reports.model.tasks import Motion
-from reports.pages.skate.experiments import FAILURES
-from reports.pages.skate.methods import CONSTRUCTIONS, known
+from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
 from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from engines import Engine, mujoco, pymunk
+from engines import pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
 from reference.checks import InvalidMechanism
-from reference.scene import Scene
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, RodEndInSlot, SliderAtDeadCentre
 from reference.scenes.slider_crank.slotted_lever import SlottedLever
-from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Task, Values
+from reports.pages.common import ALL, cells
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
 
@@ -48,25 +46,16 @@ class Leaving(Task):
         return {"when": np.asarray(t[int(np.argmax(far))] if far.any() else np.nan)}
 
 
-PUBLIC: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, mujoco.DEFAULT, mujoco.TUNED)
-ALL: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
-
-
-def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
-    steps = tuple(every)
-    return tuple(Cell(scene, engine, count, "failure") for engine in engines for count in steps)
-
-
 GROOVE = (
     replace(pymunk.DEFAULT, variant="default, GrooveJoint at the rod's end", slot="groove"),
     replace(pymunk.TUNED, variant="tuned, GrooveJoint at the rod's end", slot="groove"),
 )
-GROOVES = _cells(RodEndInSlot(), GROOVE, (1, 10, 100))
+GROOVES = cells(RodEndInSlot(), GROOVE, (1, 10, 100))
 LEVER = (
     replace(pymunk.DEFAULT, variant="default, GrooveJoint in the lever", slot="groove"),
     replace(pymunk.TUNED, variant="tuned, GrooveJoint in the lever", slot="groove"),
 )
-LEVERS = _cells(SlottedLever(), LEVER, (1, 10, 100))
+LEVERS = cells(SlottedLever(), LEVER, (1, 10, 100))
 
 LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
@@ -107,7 +96,7 @@ FAILURES: tuple[Failure, ...] = (
             "Without a sliding block the rod's own end runs in the slot. Crank and rod move as before: the crank is "
             "driven, and mass does not enter."
         ),
-        cells=GROOVES + _cells(RodEndInSlot(), ALL, (1, 10, 100)),
+        cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100)),
         remark=(
             "Use a `GrooveJoint` only at a centre of mass, on a body that can't turn, or where the arm from the centre "
             "of mass to the anchor lies along or across the groove. The joint solves for the impulse that would stop "
@@ -127,7 +116,7 @@ FAILURES: tuple[Failure, ...] = (
             "slot passes the lever's centre of mass at a distance. The lever follows the pin exactly; mass does not "
             "enter."
         ),
-        cells=LEVERS + _cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100)),
+        cells=LEVERS + cells(SlottedLever(), (*ALL, *SLOTS), (1, 10, 100)),
         remark=(
             "The same joint with the same fault, here by the arm from the lever's centre of mass to the pin. As "
             "shipped pymunk lets the slot open at every step"
@@ -150,7 +139,7 @@ FAILURES: tuple[Failure, ...] = (
             "Everything is pushed along the slot, from rest, a millionth of a radian beside the outer dead centre. The "
             "slider has almost no lever, but the motion is exact: the crank leaves, always to the side where it stood."
         ),
-        cells=_cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
+        cells=cells(SliderAtDeadCentre(), (*ALL, Lagrange("rk4", "projection")), (1, 10)),
         tasks=LEAVING,
         words=delay,
         observations=leaving,
@@ -164,7 +153,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="A slider in its dead centre",
         expected="Exactly in line it has no lever at all, and stays for ever, in an equilibrium that can't be kept.",
-        cells=_cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10)),
+        cells=cells(SliderAtDeadCentre(angle=0.0), ALL, (1, 10)),
         remark=(
             "Symmetry keeps it there: all forces lie along one line, and so does all rounding. If the crank never "
             "starts in a simulation, a real machine may start all the same."

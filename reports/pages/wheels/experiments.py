@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from engines import Engine, pymunk
-from engines.registry import VARIANTS
-from reference.scene import Scene
+from engines import pymunk
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.scenes.wheels.cart import Cart
 from reference.scenes.wheels.tractrix import Tow
@@ -19,6 +16,7 @@ from reference.scenes.wheels.trailers import CarWithTrailers
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Motion, Task, Values
+from reports.pages.common import ENGINES_ALONE, cells_to_rounding, steps_for
 from reports.write.experiments import observe
 from reports.write.tables import number
 from reports.write.unmeasured import UNMEASURED
@@ -49,23 +47,11 @@ class Folding(Task):
         return {"jackknifed": np.asarray(when), "t": t, "pose": scene.motion(t).pose}
 
 
-ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 MOTION = ("position", "angle", "gap", "slip", "energy")
 
 BACKING = CarAndTrailer(speed=-1.0, steering=0.0, bend=0.05, hitch=0.0)
 PUSHED = Cart(speed=-1.0, turning_rate=0.0, angles=(0.05, -1e-3))
 FOLDED = math.pi / 2  # rad
-
-
-def _cells(scene: Scene, engines: Iterable[Engine], every: Iterable[int]) -> tuple[Cell, ...]:
-    return tuple(
-        Cell(scene, engine, count, "failure") for engine in engines for count in _affordable(engine, tuple(every))
-    )
-
-
-def _affordable(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """What runs a cell at many steps is at rounding with the longest already."""
-    return every[:1] if engine.variant == "extended" else every
 
 
 def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
@@ -81,7 +67,7 @@ def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
 # Straight back the bend b obeys b' = (v/L) sin b: tan(b/2) grows as exp(v t/L).
 FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s
 REFERENCE = Folding(BACKING, FOLDS + 1)
-RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in _affordable(engine, (1, 10)))
+RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in steps_for(engine, (1, 10)))
 
 
 def folding(material: Material) -> list[Observation]:
@@ -133,7 +119,7 @@ FAILURES: tuple[Failure, ...] = (
             f"{abs(BACKING.speed) / BACKING.length:g} per second, and passes a right angle. A coasting car slows down "
             "by what it gives to the trailer."
         ),
-        cells=_cells(BACKING, ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(BACKING, ENGINES_ALONE, (1, 10)),
         columns=MOTION,
         tasks=(REFERENCE, *map(Motion, RUNS)),
         observations=folding,
@@ -151,7 +137,7 @@ FAILURES: tuple[Failure, ...] = (
             "A caster that stands straight behind its kingpin is unstable as soon as the cart goes back, and swings "
             "round by half a turn: the left one first, which stood less straight."
         ),
-        cells=_cells(PUSHED, ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(PUSHED, ENGINES_ALONE, (1, 10)),
         columns=MOTION,
     ),
     Failure(
@@ -160,7 +146,7 @@ FAILURES: tuple[Failure, ...] = (
             "The two wheels of an axle stop the same motion, so the second one changes only the number of rows. How "
             "the two share the force is not determined; the reference gives each half."
         ),
-        cells=_cells(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(CarAndTrailer(redundant=True), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "energy", "reaction"),
         remark=(
             "Compare with the same vehicle with one row an axle, in the tables above: each method has the same "
@@ -171,7 +157,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure(
         title="Both wheels of the fixed axle: the cart",
         expected="As above: one row would do.",
-        cells=_cells(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
+        cells=cells_to_rounding(Cart(redundant=True), ENGINES_ALONE, (1, 10)),
         columns=("position", "slip", "energy", "reaction"),
     ),
 )

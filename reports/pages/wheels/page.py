@@ -19,7 +19,7 @@ from reports.model.checks import Deviation
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
-from reports.pages.skate.methods import known
+from reports.pages.skate.experiments import known
 from reports.pages.skate.page import counted
 from reports.pages.wheels.experiments import FAILURES
 from reports.plots.plane_panels import Blades, Panel, Path, paths
