@@ -69,3 +69,32 @@ def test_tables_are_empty_without_rows():
     for table in (tables.moves_table, tables.frequency_table, tables.correction_table, tables.free_table):
         assert table(nothing) == ""
     assert tables.matrix({}) == ""
+
+
+@pytest.mark.parametrize("task", [task for task in page.MATRIX if task.of.building < 1], ids=lambda task: task.of.name)
+def test_a_lack_is_the_engines_only_where_its_documentation_is_named(task):
+    if task.of.missing:
+        pytest.skip(task.of.missing)
+    told = task.run()
+    for what in ASKED:
+        word, sentence = tables.verdict(str(told[what])), str(told[what])
+        assert (word == "not built") == ("our adapter" in sentence and "https://" not in sentence), sentence
+        assert (word == "**has none**") == ("https://" in sentence), sentence
+    contacts = {what for what in ASKED if told[what] == "by contact"}
+    assert contacts <= {"skate", "disc rolls on a line", "disc rolls in a ring"}
+    assert (task.of.name in ("pymunk", "mujoco")) == bool(contacts)
+
+
+def test_a_release_without_what_the_adapter_calls_is_told_as_such(monkeypatch):
+    engine = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
+    build = type(engine).build
+
+    def old(self, mechanism, dt):
+        if len(mechanism.joints) == 1 and mechanism.forces:
+            raise AttributeError("no such member")
+        return build(self, mechanism, dt)
+
+    monkeypatch.setattr(type(engine), "build", old)
+    told = Capabilities(engine).run()
+    assert tables.verdict(str(told["spring"])) == "too old"
+    assert tables.verdict(str(told["hinge"])) == "yes"
