@@ -23,6 +23,7 @@ from tests.committed_rows import page_rows
 
 GLOSSARY, REACTIONS, INTEGRATORS, CLUSTER = PAGES
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+SETTING = re.compile(r"`[^`\n]*`")  # to be pasted, or a release
 ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
 FOOT = re.compile(r"^---\n.*", re.DOTALL | re.MULTILINE)
 MEASURED = re.compile(r"\d\.\d|\de-\d")
@@ -36,8 +37,8 @@ def text_of(page, rows) -> str:
 
 
 def prose(text: str) -> str:
-    """A page without its programs, the addresses of its links, and its last line, which names versions."""
-    return FOOT.sub("", ADDRESS.sub("", BLOCK.sub("", text)))
+    """A page without its programs and settings, the addresses of its links, and its last line, which names versions."""
+    return FOOT.sub("", ADDRESS.sub("", SETTING.sub("", BLOCK.sub("", text))))
 
 
 @named
