@@ -1,5 +1,7 @@
 """Rows of several versions of an engine: tables, what is worse or dearer between two, and the page of them."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 from dataclasses import replace

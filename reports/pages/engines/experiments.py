@@ -104,7 +104,7 @@ class Capabilities(Asked):
                     told[what] = told[what] if held == {"engine"} else CODE
         run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
         known = [bool(np.isfinite(each).all()) for each in run.reaction]
-        told["reactions"] = "yes" if all(known) else "but at the start" if all(known[1:]) else "no"
+        told["reactions"] = "yes" if all(known) else "not at the start" if all(known[1:]) else "no"
         velocity = run.twist[1:]
         # Velocities are the engine's own numbers, which poses of a tree or of angles are not.
         told["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
