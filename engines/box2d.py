@@ -3,26 +3,28 @@
 A body is a dynamic body whose mass, centre and inertia are set directly; it may not sleep, and no shape is made, since
 no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
 without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
-angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Gears are
-gone since version 3, there is no joint that holds a velocity across a blade, and rolling is contact with friction. Its
-springs are given a frequency, and their stiffness is that of the mass which they feel, pose by pose; so what springs,
-dampers, forces and torques do to bodies is worked out by our code before a step and applied as forces, as users do.
+angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Version 3
+has no gears and no joint that holds a velocity across a blade; rolling is contact with friction, and no contact is
+built here. Its springs are given a frequency, and their stiffness is that of the mass which they feel, pose by pose; so
+what springs, dampers, forces and torques do to bodies is worked out by our code before a step and applied as forces, as
+users do.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
 So a state is read at its instant, and the motion is that of a semi-implicit Euler method of step h.
 
 Joints are springs of 60 Hz, or of a quarter of the rate of sub-steps where that is less, with a damping ratio of 2,
-solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and
-ratio z give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push
-is taken back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower,
-while what opens it falls with h too. So no order can be promised. pyb2d3 sets the frequency of contacts, which is
-another; that of joints stays as shipped. But a weld joint has frequencies of its own, which stay in the correction
-after the drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (1e-6 Hz) keeps from turning,
-whose points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine
-allows its contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single
-precision rounds off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the
-two, frequency and sub-steps, does.
+solved implicitly (b2MakeSoft in its solver.h; `crosscheck search` holds single joints to it): frequency w and ratio z
+give a push of a share h w (2 z + h w) / (1 + h w (2 z + h w)) of w / (2 z + h w) times the gap. Since the push is taken
+back after the drift, a gap closes at about w^2 h = 1.4e5 / s^2 times h: the shorter the sub-step, the slower, while
+what opens it falls with h too. So no order can be promised. Box2D 3.1.0 can set the frequency of all joints
+(`b2World_SetJointTuning`), 3.1.1 and later that of one (`b2Joint_SetConstraintTuning`). pyb2d3 0.11.1 has neither, so
+that it stays as shipped here. But a weld joint has frequencies of its own, which stay in the correction after the
+drift. With `closing`, a Pin without a drive is a weld joint that nearly nothing (1e-6 Hz) keeps from turning, whose
+points are held at the frequency closing / h; Rods and Welds are held at it too. A quarter is what the engine allows its
+contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes forces of what single precision rounds
+off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the two, frequency
+and sub-steps, does.
 
 Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
 speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and
@@ -57,10 +59,11 @@ ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
 FASTEST = 1e6  # m/s, which the engine would cut to 400
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
 SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would be the stiffest
+JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
 LACKS = {
-    Gear: "box2d has no gears since version 3",
-    Skate: "in box2d nothing stops a slip across a line, there is no joint for it",
-    Roll: "in box2d a disc rolls by contact and friction, there is no joint for it",
+    Gear: f"box2d has no gears since version 3 ({JOINTS})",
+    Skate: f"none of box2d's joints stops a slip across a line ({JOINTS})",
+    Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
 }
 
 

@@ -1,15 +1,16 @@
 """Bullet under test, by its binding PyBullet: a tree in reduced coordinates, loops closed by impulses at points.
 
 PyBullet and not ODE: it is what people use (the binding alone is asked about more than ODE is), and pip installs it
-whole, while ode-python needs a library of the system. It costs 290 MB, and there is a wheel for Python 3.11 alone.
+whole, while ode-python needs a library of the system. It costs 290 MB. Its wheels end with Python 3.11.
 
 The tree is that of `engines.tree`, written as a URDF file, because nothing else takes a link's inertia, and read back:
 continuous joints, prismatic ones for slots whose angle is kept, fixed ones for welds. A Pin that closes a loop is a
 JOINT_POINT2POINT of enough force, a Weld a JOINT_FIXED, a Drive the velocity motor of a joint, a Gear a JOINT_GEAR
-between two joints of the tree. No link without a mass stands between two joints, so a body that slides and turns, or
-that hangs on nothing, is refused, as are slots in loops, rods, skates and rolling contact. There are no springs: what
-force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
-external forces. All damping and the limit on joint velocities are off; the wheel is built in double precision.
+between two joints of the tree. This adapter makes no link of mass zero, so a body that slides and turns, or that hangs
+on nothing, is refused; Bullet itself would take one. Refused are slots in loops, rods, skates and rolling contact too.
+What force elements do to bodies is worked out by our code before every step, as users do, and given to the engine as
+external forces; for a torsion damper on the ground Bullet has `jointDamping`, which is not used. All damping and the
+limit on joint velocities are off; the wheel is built in double precision.
 
 One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
 a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
@@ -47,9 +48,9 @@ FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
 SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
 LACKS = {
-    Rod: "bullet's trees have no constraint of a distance",
-    Skate: "bullet stops slip by friction at a contact alone, and has no joint for it",
-    Roll: "in bullet a disc rolls by contact and friction, there is no joint for it",
+    Rod: "our adapter of bullet builds no distance between points",
+    Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
+    Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
 }
 
 
@@ -110,8 +111,8 @@ def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
     for link in tree.links:
         if len(link.columns) > 1:
             raise Unsupported(
-                f"body {mechanism.bodies[link.body].name!r}: bullet's tree has no link without a mass, "
-                "which a body that slides and turns, or hangs on nothing, would need"
+                f"body {mechanism.bodies[link.body].name!r}: it slides and turns, or hangs on nothing; that needs a "
+                "link of mass zero in bullet's tree, and our adapter makes none"
             )
     rates: dict[int, float] = {}
     for joint in mechanism.joints:

@@ -9,6 +9,9 @@ of a circle on a straight line is the same joint lying in the plane, with the ro
 the line's normal held; the engine has no contact of other shapes that is an equation. Springs, dampers, forces and
 torques are the engine's own too.
 
+Every variant has steps of one length, the one as shipped too: Exudyn's own `timeIntegration.adaptiveStep` is True, and
+halves a step in which Newton's method fails.
+
 The joints are exact up to the tolerance of Newton's method. "GeneralizedAlpha" holds them in positions (index 3),
 "TrapezoidalIndex2" in velocities (index 2); both are of second order. The engine's explicit integrators take only
 equations between single coordinates and the ground, which no joint of ours is.
@@ -273,7 +276,9 @@ class System:
         ground, body, arc = joint.rolling.ground, joint.rolling.body, joint.rolling.body_arc
         low, high = body.curvature_range
         if ground.curvature_range != (0.0, 0.0) or not 0 < low == high:
-            raise Unsupported(f"joint {joint.name!r}: exudyn's rolling joint is a disc on a plane, and this is another")
+            raise Unsupported(
+                f"joint {joint.name!r}: exudyn's rolling joint is a disc on a plane, and our adapter builds no other"
+            )
         # The material lies to the left of a boundary: the disc rolls on the line's other side, its centre on its left.
         heading, inward = float(ground.angle(joint.rolling.ground_arc)), float(body.angle(arc)) + math.pi / 2
         (x, y), radius = joint.second_point, 1 / low

@@ -1,14 +1,16 @@
 """MJX under test: MuJoCo's model, stepped by JAX instead of C, here on the processor and in double precision.
 
 The model is the MjModel that our MuJoCo adapter compiles with the same settings, put on the device as it is, so that
-what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C, skates and rolling
-contacts among it, has no place in a compiled program and is refused; so is what MJX itself does not run, in its words.
+what differs from `mujoco` is the other implementation. What MuJoCo's adapter does by callbacks in C has no place in a
+compiled program and is refused. So are skates and rolling, for which this adapter builds no contact, though MJX has
+contacts; and what MJX itself does not run, in its words.
 
-MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. A loop is then pulled off its
-path by J-dot v at any step; runs with loops say so in a warning, and `reports/pages/engines` shows it by force. How far
-it is pulled is J-dot v over the row's stiffness, the inverse square of its time constant. So where that is tied to the
-step, the error falls with its square, though none is MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad
-off with two steps, as MuJoCo before 3.7 is, and 4.58e-3 rad with the five of our tuned variant.
+MJX leaves out the velocity term of loops: C MuJoCo has it since 3.7, MJX 3.17.0 has not. It is known: MJX's own tests
+say "Jdotv effect (not in MJX)". A loop is then pulled off its path by J-dot v at any step; runs with loops say so in a
+warning, and `reports/pages/engines` shows it by force. How far it is pulled is J-dot v over the row's stiffness, the
+inverse square of its time constant. So where that is tied to the step, the error falls with its square, though none is
+MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad off with two steps, as MuJoCo before 3.7 is, and
+4.58e-3 rad with the five of our tuned variant.
 
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
 of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
@@ -103,8 +105,8 @@ class Mjx(Optional):
         """MuJoCo's model, and the same on the device; raises Unsupported."""
         for joint in mechanism.joints:
             if isinstance(joint, Skate | Roll):
-                what = f"a {type(joint).__name__.lower()} is held by contacts or callbacks of MuJoCo's C code"
-                raise Unsupported(f"joint {joint.name!r}: {what}, which MJX does not run")
+                what = f"a {type(joint).__name__.lower()} needs a contact, and our adapter of MJX builds none"
+                raise Unsupported(f"joint {joint.name!r}: {what}")
         self.require()
         model = self.settings.model(mechanism, dt)
         if model.hooks.control or model.hooks.before:

@@ -10,8 +10,9 @@ holds their accelerations exactly, and what opens is the integrator's error. The
 proximal solver takes care of that. A Drive has no counterpart: the torque that keeps its rate is worked out in every
 evaluation from the engine's own answer to a unit torque. Neither have springs, dampers and the like: what they do to
 bodies is worked out by our code, as users do, and given to the engine as external forces. Accelerations are the
-engine's at the sampled instant, so reactions are too. A Slot that closes a loop, a Rod, a Gear, a Skate and a Roll
-would need a constraint of a kind that the engine does not have.
+engine's at the sampled instant, so reactions are too. A Slot that closes a loop, a Rod, a Gear, a Skate and a Roll are
+refused: this adapter builds none. A gear would be the engine's JointModelMimic, which `crba` takes and
+`constraintDynamics` refuses.
 
 As shipped nothing pulls an open loop back. With a `correction` c [1/s] the engine's corrector gains are c^2 and 2 c.
 They change the errors of both integrators by a factor, up or down with the motion and the step, so no variant sets
@@ -48,10 +49,10 @@ REGULARISATION, ACCURACY, ITERATIONS = 1e-10, 1e-14, 20
 EVALUATION_COST = 6e-6  # s, with three bodies
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 LACKS = {
-    Rod: "pinocchio holds points and frames together, and no distance between points",
-    Gear: "pinocchio's dynamics with loops has no coordinates that follow others by a ratio",
-    Skate: "pinocchio holds accelerations of whole points, and no velocity across a blade",
-    Roll: "pinocchio has no rolling contact between curves",
+    Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
+    Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
+    Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
+    Roll: "our adapter of pinocchio builds no contact",
 }
 
 

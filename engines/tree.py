@@ -283,4 +283,4 @@ def refuse_slots_in_loops(tree: Tree, engine: str) -> None:
     """Raises Unsupported for slots that no coordinate of the tree stands for."""
     for joint in tree.loops:
         if isinstance(joint, Slot):
-            raise Unsupported(f"joint {joint.name!r}: a slot closes a loop, and {engine} closes loops at points alone")
+            raise Unsupported(f"joint {joint.name!r}: our adapter of {engine} builds no slot that closes a loop")

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MARK = "known to be wrong"  # what rows and pages know such a release by
-# The flag that solves all rows as one. Before 3.3.1 there was none, and islands had to be asked for.
+# The flag that solves all rows as one. Before 3.3.6 there was none, and islands had to be asked for.
 NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))
 
 

@@ -84,7 +84,7 @@ MEANINGS = {
     Outcome.DIVERGED: "a number stopped being finite, or a joint opened by a thousand lengths",
     Outcome.RESET: "the engine started anew by itself",
     Outcome.REFUSED: "these numbers can't be, and a sentence says why",
-    Outcome.UNSUPPORTED: "the engine has no such constraint",
+    Outcome.UNSUPPORTED: "the engine has no such constraint, or our adapter builds none; a sentence says which",
     Outcome.ABORTED: "native code ended the process",
     Outcome.TIMED_OUT: "did not end within its time limit",
     Outcome.FAILED: "an unexpected exception, or an answer that is no motion at the instants asked for",

@@ -35,7 +35,7 @@ class Symptom:
 SYMPTOMS: tuple[Symptom, ...] = (
     Symptom(
         "My closed loop opens, or is off at every step (MuJoCo).",
-        "A loop's pin is a spring. Make it stiffer with `solref` and `solimp`; a smaller step does not help.",
+        "As shipped its pin is a spring of 20 ms. Tie `solref` to the step and raise `solimp`, in MuJoCo 3.7 or later.",
         "four_bar",
         "Why the engine's pin is not the ideal one",
     ),
@@ -89,7 +89,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My wheel or blade creeps down a slope.",
-        "MuJoCo's friction always creeps; how fast depends on its regularisation.",
+        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` takes nearly all of it away.",
         "skate",
         "At rest across a slope",
     ),
@@ -107,7 +107,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My groove joint comes apart (pymunk).",
-        "A `GrooveJoint` is right only at a centre of mass, or where the grooved body can't turn.",
+        "A `GrooveJoint` is right only if its anchor is a centre of mass and the grooved body can't turn.",
         "slider_crank",
         "The rod's end in a groove",
     ),
@@ -119,7 +119,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "Gears, cams or ellipses roll wrongly.",
-        "An engine's contact leaves out the motion of the contact itself; polygons roll over corners.",
+        "MuJoCo's contact leaves out the motion of the contact itself; pymunk's polygons roll over corners.",
         "rolling",
         "Polygons",
     ),
@@ -131,7 +131,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My chain of hundreds of bodies is too slow.",
-        "Trees of coordinates cost more than free bodies beyond a hundred links or so.",
+        "In MuJoCo a tree costs more than free bodies with sparse rows beyond a hundred links or so.",
         "scaling",
         "Cost of a step",
     ),

@@ -210,10 +210,14 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
 
 
-def test_the_largest_safe_step_is_safe_at_every_value():
-    assert page.largest_safe([line(1.0, "·S··"), line(2.0, "TTS·")]) == "0.013"
-    assert page.largest_safe([line(1.0, "·S··")]) == "0.025"
-    assert page.largest_safe([line(1.0, "···T")]) == "-"
+def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
+    inf = float("inf")
+    assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "0.013"
+    assert page.largest_step([line(1.0, "·S··")], inf) == "0.025"
+    assert page.largest_step([line(1.0, "···T")], inf) == "-"
+    # 0.1 and 0.01 rad, one that was not run and counts as the one before, 0.001 rad.
+    own = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
+    assert [page.largest_step([own], bound) for bound in (inf, 0.011, 0.01, 1e-4)] == ["0.1", "0.05", "0.013", "-"]
     assert page.agreement(
         [line(1.0, "TT··", gives=0.1), line(2.0, "TT··", gives=0.3), line(3.0, "····", gives=0.1)]
     ) == (

@@ -110,9 +110,14 @@ def test_the_missing_term_written_by_a_callback_mends_the_bead() -> None:
 
 
 def test_no_smaller_step_brings_the_bead_back_to_its_wire() -> None:
-    coarse, fine = (float(np.asarray(Bead(step).run()["gap"], dtype=float)) for step in (1e-2, 1e-3))
-    assert fine == pytest.approx(coarse, rel=1e-2)
-    assert fine > 1e-4
+    def gap(step: float, tied: bool = False) -> float:
+        return float(np.asarray(Bead(step, tied).run()["gap"], dtype=float))
+
+    assert gap(1e-3) == pytest.approx(gap(1e-2), rel=1e-2)
+    assert gap(1e-3) > 1e-4
+    # A spring of two steps pulls it back as the square of the step.
+    assert gap(1e-3, tied=True) == pytest.approx(100 * gap(1e-4, tied=True), rel=0.02)
+    assert gap(1e-3, tied=True) < 0.02 * gap(1e-3)
 
 
 def test_the_page_tells_what_was_run(material: Material) -> None:
@@ -122,6 +127,8 @@ def test_the_page_tells_what_was_run(material: Material) -> None:
         answer = material.answers[task]
         told = f"found **{answer.number('found')!r}**" if not not_here(name) else not_here(name)
         assert told in text, name
+    for release, found in (("3.6.0", "0.0"), ("4.0.0", "-5.24161734893932")):  # the faulty one first
+        assert re.search(rf"^{release}: expected \S+, found \*\*{found}\*\*. Mended, here in ", text, re.MULTILINE)
     assert text.count("100 of 100") == 3
     assert "Not run yet" not in text
 

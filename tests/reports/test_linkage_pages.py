@@ -23,6 +23,7 @@ from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.pages.engines.experiments import ASKED, CLOSED_AT, CORRECTED, FREE, MOVES, SPRUNG, Capabilities
+from reports.pages.engines.page import MATRIX, verdict
 from reports.pages.four_bar import experiments as failures
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.pendulum import page as pendulum
@@ -202,3 +203,32 @@ def test_every_kind_is_asked_of_an_engine_that_builds_all_but_one():
     assert [told[what] for what in ASKED] == ["yes"] * len(ASKED)
     for kind in ("rod", "weld", "gear", "spring", "damper", "torsion spring", "torsion damper", "force", "torque"):
         assert kind in ASKED
+
+
+@pytest.mark.parametrize("task", [task for task in MATRIX if task.of.building < 1], ids=lambda task: task.of.name)
+def test_a_lack_is_the_engines_only_where_its_documentation_is_named(task):
+    if task.of.missing:
+        pytest.skip(task.of.missing)
+    told = task.run()
+    for what in ASKED:
+        word, sentence = verdict(str(told[what])), str(told[what])
+        assert (word == "not built") == ("our adapter" in sentence and "https://" not in sentence), sentence
+        assert (word == "**has none**") == ("https://" in sentence), sentence
+    contacts = {what for what in ASKED if told[what] == "by contact"}
+    assert contacts <= {"skate", "disc rolls on a line", "disc rolls in a ring"}
+    assert (task.of.name in ("pymunk", "mujoco")) == bool(contacts)
+
+
+def test_a_release_without_what_the_adapter_calls_is_told_as_such(monkeypatch):
+    engine = next(engine for engine in registry.VARIANTS if engine.name == "lagrange")
+    build = type(engine).build
+
+    def old(self, mechanism, dt):
+        if len(mechanism.joints) == 1 and mechanism.forces:
+            raise AttributeError("no such member")
+        return build(self, mechanism, dt)
+
+    monkeypatch.setattr(type(engine), "build", old)
+    told = Capabilities(engine).run()
+    assert verdict(str(told["spring"])) == "too old"
+    assert verdict(str(told["hinge"])) == "yes"

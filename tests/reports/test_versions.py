@@ -1,16 +1,20 @@
 """Rows of several versions of an engine: tables, what is worse or dearer between two, and the page of them."""
 
+# pyright: reportAttributeAccessIssue=false
+# MuJoCo's module has no list of its names.
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
 from engines.lagrange import Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco import model as mujoco_model
+from engines.mujoco.releases import full_inertia
 from engines.mujoco.written_model import Written
 from reference.scenes.catalogue import SCENES
 from reports.cli import compare
@@ -177,3 +181,36 @@ def test_the_published_rows_show_the_velocity_term_and_the_sparse_factor():
     sparse = [(s.after.version, s.worse) for s in found if s.after.variant == "extended, sparse"]
     assert sparse == [("3.7.0", False), ("4.0.0", True), ("4.0.1", False)]
     assert all("known to be wrong" in own.marks["mujoco", version] for version in ("3.6.0", "4.0.0"))
+
+
+def test_a_line_that_goes_to_and_fro_is_a_change_only_if_it_is_known_by_name(monkeypatch):
+    nan = float("nan")
+    edge = [("3.8.1", 0.015, "finished"), ("3.10.0", nan, "torn"), ("3.12.0", 0.015, "finished")]
+    known = [("3.17.0", 1e-5, "finished"), ("4.0.0", 2.4, "finished"), ("4.0.1", 1e-5, "finished")]
+    own = [entry(v, e, "edge", o) for v, e, o in edge] + [entry(v, e, "trees", o) for v, e, o in known]
+    monkeypatch.setattr(page, "table", lambda: Table(tuple(own), {}))
+    told = page.words(Material({}))["engines"][0]
+    assert told["edges"] == ["edge, tuned"]
+    assert "edge" not in told["steps"]
+    assert "3.17.0 to 4.0.0" in told["steps"]
+    assert "4.0.0 to 4.0.1" in told["steps"]
+
+
+def test_tuned_mujoco_solves_the_softer_problem_of_the_worst_random_tree():
+    """The numbers below the list of trees on the page: what solimp adds to nearly dependent loops, and no fault."""
+    worst = max(trees(12, 4, 40), key=lambda tree: miss(TUNED, tree))
+    assert miss(TUNED, worst) == pytest.approx(0.233, abs=1e-3)
+    model = TUNED.model(worst, 1e-5 * worst.time_scale)
+    compiled, data = model.compiled, model.start()
+    mujoco.mj_forward(compiled, data)
+    rows = data.efc_J.reshape(data.nefc, compiled.nv)
+    held = np.abs(rows).sum(axis=1) > 0  # those in the plane
+    rows, soft = rows[held], data.efc_R[held]
+    mass = full_inertia(compiled, data)
+    felt = rows @ np.linalg.solve(mass, rows.T)
+    assert np.linalg.eigvalsh(felt)[0] == pytest.approx(0.0046, abs=5e-5)
+    assert soft.max() == pytest.approx(0.0033, abs=5e-5)
+    fall = np.linalg.solve(mass, data.qfrc_smooth)
+    force = np.linalg.solve(felt + np.diag(soft), data.efc_aref[held] - rows @ fall)
+    wanted = fall + np.linalg.solve(mass, rows.T @ force)
+    assert np.abs(wanted - data.qacc).max() < 1e-11 * np.abs(wanted).max()

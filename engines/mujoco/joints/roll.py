@@ -131,7 +131,8 @@ def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, 
             return add(mujoco.mjtGeom.mjGEOM_PLANE, complex(*curve.through), upright, [1.0, 1.0, 1.0])
         case Line():
             raise Unsupported(
-                f"roll {roll.name!r}: {owner!r} has a straight side, and MuJoCo's planes are fixed to the ground"
+                f"roll {roll.name!r}: {owner!r} has a straight side; MuJoCo's planes are fixed to the ground, and our "
+                "adapter builds no box"
             )
         case Circle():
             if round_shape == "cylinder":
@@ -143,12 +144,12 @@ def _add_shape(building: Building, roll: Roll, owner: str | None, curve: Curve, 
             return add(mujoco.mjtGeom.mjGEOM_ELLIPSOID, 0j, turned, [curve.along_x, curve.along_y, depth])
         case Ring():
             raise Unsupported(
-                f"roll {roll.name!r}: MuJoCo's shapes have no hollow side, so nothing can roll inside a ring by contact"
+                f"roll {roll.name!r}: our adapter builds no hollow side; a height field or a plugin of MuJoCo has one"
             )
         case _:
             raise Unsupported(
-                f"roll {roll.name!r}: MuJoCo has no shape like a {type(curve).__name__.lower()}; it has planes, "
-                "circles and ellipses"
+                f"roll {roll.name!r}: our adapter builds no shape like a {type(curve).__name__.lower()} in MuJoCo, but "
+                "planes, circles and ellipses"
             )
 
 

@@ -111,8 +111,8 @@ def _shape(
         return pymunk.Segment(body, back, front, thickness)
     if curve.curvature_range[0] < 0:
         raise Unsupported(
-            f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: a hole of "
-            "many segments would be another ground"
+            f"joint {joint.name!r}: pymunk's shapes are convex, and a {type(inner).__name__} is hollow: our adapter "
+            "builds no hole of segments"
         )
     if not math.isfinite(curve.length):
         raise Unsupported(f"joint {joint.name!r}: a {type(inner).__name__} has no end, and a polygon closes")

@@ -33,6 +33,7 @@ from reports.write.tables import markdown, number
 FOLDER = Path(__file__).parents[2] / "results"
 MANY = 1_000_000  # cells whose cost is told
 CORES = (1, 64, 1024)
+BOUNDS = (math.inf, 1e-2, 1e-4)  # rad: what a step may miss at most, at all values of a map
 HALF = 0.5  # of the slowest mode: from here on, what sweeps leave grows from step to step
 WIDE = 2.2  # decades
 DASHES = {"fastest": (0, (5, 2)), "gives": (0, (1, 1.2)), "left": (0, (6, 2, 1, 2))}
@@ -68,19 +69,35 @@ def outcome_table(own: Sequence[Line]) -> str:
     for name in methods:
         told = [outcome for line in own if line.method == name for outcome in line.told]
         shares = [f"{100 * told.count(outcome) / len(told):.0f} %" for outcome in met]
-        body.append([name, *shares, str(largest_safe([line for line in own if line.method == name]))])
-    header = ["method", *map(str, met), "largest step that is safe at every value [s]"]
+        lines_of = [line for line in own if line.method == name]
+        body.append([name, *shares, *(largest_step(lines_of, bound) for bound in BOUNDS)])
+    header = ["method", *map(str, met), "step [s] at which all finish", *(f"all below {b:g} rad" for b in BOUNDS[1:])]
     return markdown(header, body)
 
 
-def largest_safe(own: Sequence[Line]) -> str:
-    """The largest step from which on downwards every cell of a method finished, at all values; '-' if there is none."""
-    safe = ""
+def largest_step(own: Sequence[Line], bound: float) -> str:
+    """The largest step from which on downwards every cell of a method finished with an angle error below `bound` [rad].
+
+    At all values; '-' if there is none. A cell that was not run counts with the error of the next larger step's.
+    """
+    found = ""
+    worst = [_carried(line) for line in own]
     for place, step in reversed(list(enumerate(own[0].steps))):
-        if not all(line.told[place].comparable for line in own):
+        if not all(
+            line.told[place].comparable and errors[place] < bound for line, errors in zip(own, worst, strict=True)
+        ):
             break
-        safe = number(step)
-    return safe or "-"
+        found = number(step)
+    return found or "-"
+
+
+def _carried(line: Line) -> list[float]:
+    """The error [rad] at each step; of cells that were not run that of the last one before which was, 0 before any."""
+    found, last = [], 0.0
+    for error in line.errors:
+        last = last if math.isnan(error) else 10**error
+        found.append(last)
+    return found
 
 
 def agreement(own: Sequence[Line]) -> tuple[int, int]:
@@ -159,7 +176,14 @@ def words(material: Material) -> Mapping[str, Any]:
             )
     found = costs()
     missing = [subject.title for subject in SUBJECTS if not of(subject)]
-    return {"subjects": told, "missing": missing, "scaling": scaling(found) if found and found.lines else None}
+    near, tearing = (sum(each[name] for each in told) for name in ("near", "tearing"))
+    return {
+        "near": near,
+        "tearing": tearing,
+        "subjects": told,
+        "missing": missing,
+        "scaling": scaling(found) if found and found.lines else None,
+    }
 
 
 def figures(material: Material) -> Mapping[str, str]:
@@ -285,7 +309,7 @@ def _explained(panel: Axes, lines: Sequence[Line], subject: Subject, theme: Them
 PAGE = Page(
     name="atlas",
     title="Failure atlas",
-    lesson="Where methods fail: step against the parameter that breaks a scene, and what explains the borders.",
+    lesson="Where methods fail: step against the parameter that breaks a scene, and where borders could be expected.",
     scenes=(),
     engines=(),
     words=words,

@@ -29,13 +29,15 @@ from engines.pymunk.contraction import Sweeping
 from engines.pymunk.engine import SHIPPED_ERROR_BIAS, Pymunk
 from engines.pymunk.model import Model
 from engines.tree import spanning_tree
-from reference.joints import Gear, Pin, Rod, Weld
+from reference.joints import Gear, Pin, Rod, Skate, Weld
 from reference.mechanism import Body, Mechanism
+from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.trajectory import energy
 from reports.model.cells import FULL, SLOW_TO_BUILD, Cell, beside_cells, sweep_cells
+from reports.model.ending import describe
 from reports.model.tasks import Task, Values
 
 
@@ -82,9 +84,15 @@ ASKED = {
 }
 
 
+# Engines with a joint that holds velocities across a blade or at a rim. All others do it by contact, if at all.
+ROLLING_JOINTS = {"lagrange", "exudyn"}
+YES, CONTACT, CODE = "yes", "by contact", "with code of ours"
+TOO_OLD = "this release lacks what our adapter calls"
+
+
 @dataclass(frozen=True)
 class Capabilities(Asked):
-    """By the names in ASKED: "yes, by whom it is held", or the engine's sentence; `reaction` and `width` of a run."""
+    """By the names in ASKED: YES, CONTACT, CODE, or a sentence that says why not; `reactions` and `width` of a run."""
 
     what: ClassVar[str] = "what it builds"
 
@@ -95,16 +103,19 @@ class Capabilities(Asked):
                 self.of.build(mechanism, STEP)
             except Unsupported as reason:
                 told[what] = str(reason)
+            except (AttributeError, ImportError, TypeError) as error:
+                told[what] = f"{TOO_OLD}: {describe(error)}"
             else:
-                told[what] = "yes"
+                touching = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
+                told[what] = CONTACT if touching and self.of.name not in ROLLING_JOINTS else YES
                 with suppress(ValueError):
                     held = {self.of.holder(joint, mechanism) for joint in mechanism.joints}
                     if mechanism.forces:
                         held.add(self.of.forces_by)
-                    told[what] = "yes" if held == {"engine"} else "with code of ours"
+                    told[what] = told[what] if held == {"engine"} else CODE
         run = self.of.build(WORLD["swinging bar"], STEP)(4, 1)
         known = [bool(np.isfinite(each).all()) for each in run.reaction]
-        told["reactions"] = "yes" if all(known) else "but at the start" if all(known[1:]) else "no"
+        told["reactions"] = "yes" if all(known) else "not at the start" if all(known[1:]) else "no"
         velocity = run.twist[1:]
         # Velocities are the engine's own numbers, which poses of a tree or of angles are not.
         told["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"

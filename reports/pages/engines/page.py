@@ -23,7 +23,9 @@ from reports.pages.engines.experiments import (
     CLOSED_AT,
     CLOSED_BY,
     CLOSING,
+    CODE,
     COMPILED,
+    CONTACT,
     CORRECTED,
     CORRECTIONS,
     FEW,
@@ -37,6 +39,8 @@ from reports.pages.engines.experiments import (
     SPRUNG,
     SUBSTEPPED,
     SWEPT,
+    TOO_OLD,
+    YES,
     Capabilities,
     OpenWork,
     VelocityTerm,
@@ -45,8 +49,6 @@ from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, 
 from reports.plots.work_precision import work_precision
 from reports.write.provenance import told_versions
 from reports.write.tables import NOTHING, markdown, milliseconds, number
-
-LONGEST_WORD = len("with code of ours")  # what is longer is the sentence of a refusal
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
@@ -71,23 +73,28 @@ def line_of(material: Material, cells: Mapping[float, Any]) -> list[tuple[float,
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A column an engine, from what it built; empty where nothing was asked yet."""
     engines = [task.of for task in answers]
-    asked = [*ASKED, "reactions", "width"]
-    body = [[what, *(_short(str(answer.values[what])) for answer in answers.values())] for what in asked]
+    body = [[what, *(verdict(str(answer.values[what])) for answer in answers.values())] for what in ASKED]
+    body += [[what, *(str(answer.values[what]) for answer in answers.values())] for what in ("reactions", "width")]
     body.append(["version", *(told_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
 
 
-def _short(told: str) -> str:
-    return told if len(told) <= LONGEST_WORD else "no"
+def verdict(told: str) -> str:
+    """The word of a cell. The engine lacks a thing only where the sentence names a place in its documentation."""
+    if told in (YES, CONTACT, CODE):
+        return told
+    if told.startswith(TOO_OLD):
+        return "too old"
+    return "**has none**" if "https://" in told else "not built"
 
 
-def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str]]:
-    """(engine, what, its own sentence) of what it refuses."""
+def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
+    """(engine, what, the word, the sentence) of what is not built."""
     return [
-        (task.of.name, what, told)
+        (task.of.name, what, verdict(told), told)
         for task, answer in answers.items()
         for what in ASKED
-        if _short(told := str(answer.values[what])) == "no"
+        if (told := str(answer.values[what])) not in (YES, CONTACT, CODE)
     ]
 
 

@@ -32,7 +32,7 @@ SNIPPETS = "faults/snippets"
 SCRIPTS: Mapping[str, Script] = {name: script(name) for name in (*MUJOCO, *PYMUNK, *MJX)}
 GROOVES = tuple(map(Grooves, CASES))
 EQUALITIES = tuple(map(Equalities, KINDS))
-BEADS = (Bead(1e-2), Bead(1e-4))
+BEADS = (Bead(1e-2), Bead(1e-4), Bead(1e-3, tied=True), Bead(1e-4, tied=True))
 OFFSETS = Offsets(tuple(np.geomspace(0.05, 5.0, 13).round(6).tolist()))
 # Beyond this an equality counts as wrong, of its accelerations: rows with 1e-4 of softness agree far better.
 OFF = 1e-4
@@ -121,6 +121,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "mujoco_versions": versions_table(MUJOCO),
         "pymunk_versions": versions_table(PYMUNK),
         "beads": [(task.step, answer.number("gap")) for task in BEADS if (answer := material.finished(task))],
+        "faulty": {row.script: row for row in recorded() if not row.right},  # the last release of each
         "wrong": WRONG,
         "off": OFF,
     }

@@ -82,11 +82,10 @@ class Script(Task):
         if self.name in MJX:
             return self._apart()
         import mujoco
-        import pymunk
 
         expected, found = said(self.name)
-        # pymunk's own word is wrong in some releases, MuJoCo's is not; neither distribution has one name for good.
-        release = mujoco.__version__ if self.name.startswith("mujoco") else pymunk.version
+        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0), and MuJoCo's distribution has two names.
+        release = mujoco.__version__ if self.name.startswith("mujoco") else version("pymunk")
         return {"expected": np.asarray(expected), "found": np.asarray(found), "version": release}
 
     def _apart(self) -> Values:

@@ -16,9 +16,11 @@ from reports.model.checks import Deviation
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion
 from reports.pages.four_bar.experiments import FAILURES
+from reports.pages.versions.page import table
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.unmeasured import UNMEASURED
 
 NAME = "four_bar"
 SCENES = (DrivenFourBar(), FreeFourBar(), SpinningFourBar())
@@ -55,10 +57,14 @@ def figures(material: Material) -> dict[str, str]:
 def words(material: Material) -> Mapping[str, Any]:
     """Rows and sweeps by method, for sentences; what MuJoCo's regularisation yields, and how pymunk closes a gap."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
+    before = [
+        e.error for e in table().entries if (e.version, e.scene, e.variant) == ("3.6.0", "free_four_bar", "tuned")
+    ]
     return {
         **lookups(material, SCENES),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # with a closed gap, and with one of a millimetre or more
         "stiff_share": 1 / hard[0] - 1,
+        "before_term": before[0] if before else UNMEASURED,  # rad, of the last release without the loops' velocity term
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
     }
 

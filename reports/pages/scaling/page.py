@@ -182,7 +182,7 @@ LAWS = {
         rf"${number(SWEEPS_OVER_SQUARE)} \, N^2$ sweeps over $N$ joints: $O(N^3)$; from {CAPPED} links on there are "
         f"{MOST} sweeps: $O(N)$"
     ),
-    "pymunk extended": "the same, 23 steps for one",
+    "pymunk extended": "23 steps for one, each swept until the joints agree: $O(N^3)$",
     "mujoco default": r"reduced coordinates, a dense $N \times N$ mass matrix: $O(N^2)$ to fill, $O(N^3)$ to factorise",
     "mujoco tuned": "the same four times a step",
     f"mujoco {FREE.variant}": "$3 N$ coordinates and $3 N$ rows, each of two bodies: banded, sparse Newton is $O(N)$",
@@ -280,7 +280,7 @@ def words(material: Material) -> Mapping[str, Any]:
         "costs": cost_table(found),
         "errors": error_table(found),
         "laws": markdown(
-            ["method", "measured", "what explains it"],
+            ["method", "measured", "what the algorithm lets expect"],
             [[s.method, _law(cost_exponent(s)), LAWS[s.method]] for s in found],
             left=3,
         ),

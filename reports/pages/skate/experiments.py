@@ -305,8 +305,8 @@ FAILURES: tuple[Failure, ...] = (
             "the maintainers' example for skating ([mujoco#67](https://github.com/google-deepmind/mujoco/issues/67)). "
             "MuJoCo scales the softness of the row across by the square of their ratio, 1e-12 "
             "([engine_core_constraint.c](https://github.com/google-deepmind/mujoco/blob/main/src/engine/"
-            "engine_core_constraint.c)). With equal coefficients it creeps. The naive zeroing (`pymunk default`) is "
-            "right here, where nothing turns."
+            "engine_core_constraint.c)). With equal coefficients it creeps; `noslip_iterations` takes nearly all of "
+            "that away. The naive zeroing (`pymunk default`) is right here, where nothing turns."
         ),
     ),
     Failure(

@@ -98,11 +98,13 @@ FAILURES: tuple[Failure, ...] = (
         ),
         cells=GROOVES + cells(RodEndInSlot(), ALL, (1, 10, 100)),
         remark=(
-            "Use a `GrooveJoint` only at a centre of mass, on a body that can't turn, or where the arm from the centre "
-            "of mass to the anchor lies along or across the groove. The joint solves for the impulse that would stop "
-            "its anchor in both directions, and then keeps the part along the normal ([cpGrooveJoint.c, line 76]"
+            "Use a `GrooveJoint` only where turning moves neither the groove nor the anchor: a groove in the ground or "
+            "in a body that can't turn, and an anchor at a centre of mass or on such a body. Right too are arms, from "
+            "a centre of mass to the anchor, that lie along or across the groove. The joint solves for "
+            "the impulse that would stop its anchor in both directions, and then keeps the part along the "
+            "normal ([cpGrooveJoint.c, line 76]"
             "(https://github.com/viblo/Munk2D/blob/2.0.1/src/cpGrooveJoint.c#L76)). This is the right impulse only if "
-            "the normal is an eigenvector of the inverse mass at the anchor, as in the three cases named. "
+            "the normal is an eigenvector of the inverse mass at the anchor, as in the cases named. "
             "At a rod's end the joint settles at a wrong impulse, so the error as shipped is the same at every step. "
             "Only the gap shows it. If all of the gap is closed, the error falls with the step, at order 1. In the "
             "other methods a pin joint from far away across the slot holds it (pymunk), or a row or a slide (MuJoCo). "

@@ -19,7 +19,7 @@ from reports.plots.looks import HATCHES, outcome_colour
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import changes_between
 from reports.versions.comparison import Step, by_version, lines, size, steps
-from reports.versions.table import Entry, Table, catalogued, read
+from reports.versions.table import ACCELERATION, Entry, Table, catalogued, read
 from reports.write.tables import markdown, number
 
 # Shades of errors in the heat table: below each bound, from exact to useless; the numbers say which.
@@ -241,11 +241,29 @@ def _example(found: Sequence[Step]) -> str:
     )
 
 
+def on_edge(found: Sequence[Step]) -> tuple[tuple[str, str], ...]:
+    """(scene, variant) of lines with steps for the better and for the worse, none of which is known by name."""
+    lines: dict[tuple[str, str], list[Step]] = {}
+    for step in found:
+        lines.setdefault((step.after.scene, step.after.variant), []).append(step)
+    return tuple(
+        line
+        for line, own in lines.items()
+        if len({step.worse for step in own}) == 2
+        and not any(changes_between(s.after.engine, s.before.version, s.after.version, s.worse) for s in own)
+    )
+
+
 def step_table(own: Table, engine: str) -> str:
-    """A line for every pair of neighbouring versions between which lines have steps; empty without any."""
+    """A line for every pair of neighbouring versions between which lines have steps; empty without any.
+
+    Lines that go to and fro without a known change stand on an edge between two outcomes, and are left out.
+    """
     body = []
-    entries = [entry for entry in own.entries if entry.engine == engine]
-    for (_, before, after), found in by_version(steps(entries)).items():
+    found_steps = steps([entry for entry in own.entries if entry.engine == engine])
+    edges = on_edge(found_steps)
+    kept = [step for step in found_steps if (step.after.scene, step.after.variant) not in edges]
+    for (_, before, after), found in by_version(kept).items():
         for worse in (False, True):
             own_way = [step for step in found if step.worse == worse]
             if own_way:
@@ -281,6 +299,15 @@ def words(material: Material) -> Mapping[str, Any]:
                 "name": engine,
                 "versions": versions,
                 "steps": step_table(own, engine),
+                "edges": [f"{scene.replace('_', ' ')}, {variant}" for scene, variant in on_edge(steps(entries))],
+                "refused": sum(
+                    entry.outcome == Outcome.UNSUPPORTED for entry in entries if entry.version == versions[-1]
+                ),
+                "trees": [
+                    (entry.variant, entry.sentence, entry.error)
+                    for entry in entries
+                    if entry.quantity == ACCELERATION and entry.version == versions[-1]
+                ],
                 "cost": cost_table(own, engine),
                 "marks": [(version, mark) for (name, version), mark in own.marks.items() if name == engine],
                 "scenes": len({entry.scene for entry in entries}),
