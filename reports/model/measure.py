@@ -30,9 +30,10 @@ NAN = float("nan")
 TIMED = ("sweep", "beside", "growth", "large")
 
 SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
-# CPU seconds after which a cell is not run once more, building and reading included. Of 63 cells of the quick grid the
-# least of these runs was 0.7 % above the least of ten in the middle, and 3.3 % for one in ten; with 0.05 s, 0.6 and 3.
-BUDGET = 0.03
+# CPU seconds after which a cell is not run once more, building and reading included. Of 70 cells of the quick grid, on
+# a loaded machine, the least of these runs was 1.8 % above the least of ten in the middle, and 8 % for one in ten; with
+# twice the seconds 1.4 and 5 %.
+BUDGET = 0.015
 MOST_RUNS = 5
 # s: not repeated from here on. The first of runs of 0.05 to 0.2 s took 1.01 times as long as the least of the next
 # three (median of 50), no more than single runs scatter by.

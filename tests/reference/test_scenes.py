@@ -181,7 +181,7 @@ def test_exact_multipliers_on_the_rows_alone_give_the_same_motion(each: Scene) -
     mechanism = each.mechanism()
     run = TRUTH.build(mechanism, until(each) / 8)(4, 1)
     exact = each.motion(run.t)
-    met = np.isfinite(run.pose).all(axis=(1, 2))  # they stop where a position is singular
+    met = np.all(np.isfinite(run.pose), axis=(1, 2))  # they stop where a position is singular
     assert met[1]
     # Two integrations of a tolerance of 1e-13 a step, grown by what nearly straight knees make of a difference.
     assert np.abs((run.pose - exact.pose) / unit(mechanism))[met].max() < 1e-10
