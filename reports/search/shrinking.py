@@ -212,7 +212,7 @@ class Shrink(Task):
         return {
             "line": f"{line}{'; ' + told.words if told.words else ''}",
             "finding": json.dumps(finding, indent=1),
-            "script": script(self.subject, small, self.check),
+            "script": script(self.subject, small, self.check, self.number),
         }
 
 
