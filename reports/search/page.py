@@ -187,9 +187,11 @@ def _how_soon(answer: Answer | None) -> str:
         return answer.told if answer else ""
     if not answer.number("built"):
         return "not built"
+    if not answer.number("asked"):
+        return "not asked"
     size = answer.number("size")
     if math.isnan(size):
-        return f"not found in {answer.number('built'):.0f}"
+        return f"not found in {answer.number('asked'):.0f}"
     return f"{answer.number('case') + 1:.0f}{'' if size == SIZES[0] else f' of {size:.0e}'}"
 
 

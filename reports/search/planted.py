@@ -31,6 +31,7 @@ from reports.gate.judge import projected
 from reports.model.tasks import Task, Values
 from reports.search import relations
 from reports.search.parts import EVERY
+from reports.search.plan import taken
 from reports.search.subjects import Adapted, Told
 
 Array = NDArray[np.float64]
@@ -52,7 +53,8 @@ NUMBER = {
     "force": "second_point",
     "torque": "torque",
 }
-ANGLES = ("line_angle", "angle")
+ANGLES = ("line_angle", "angle", "rest_angle")
+FURTHER = ("spring rest_length", "torsion-spring rest_angle", "force force")  # other numbers of these kinds
 CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
 
 
@@ -79,21 +81,25 @@ class Misbuilt(Mechanism):
         """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
         return self.right.reaction(pose, acceleration, inertias, gravity, twist)
 
-    def closed(self) -> Misbuilt:
-        """With the start closed again: poses and twists next to the right ones, by mass."""
+    def closed(self, twist: Array) -> Misbuilt:
+        """With the start closed again: poses next to the right ones, and twists next to these (bodies, 3), by mass."""
         pose = allowed = self.right.pose
         for _ in range(CLOSING_STEPS):
-            pose, allowed = projected(self, pose, self.twist, 0.0)
+            pose, allowed = projected(self, pose, twist, 0.0)
         bodies = zip(self.bodies, pose.tolist(), allowed.tolist(), strict=True)
         return replace(self, bodies=tuple(replace(body, pose=tuple(p), twist=tuple(v)) for body, p, v in bodies))
 
 
 @dataclass(frozen=True)
 class Off:
-    """The change of a mechanism in which a number of this kind is off by a part: see NUMBER, and `relations.NAMES`."""
+    """The change of a mechanism in which a number is off by a part: one of FAULTS."""
 
-    kind: str
+    fault: str
     relative: float
+
+    @property
+    def kind(self) -> str:
+        return self.fault.split()[0] if self.fault in FURTHER else self.fault
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
         if self.kind == "turned":
@@ -108,20 +114,22 @@ class Off:
         if joints == mechanism.joints:
             return replace(mechanism, forces=forces)
         wrong = Misbuilt(mechanism.bodies, joints, mechanism.gravity, mechanism.forces, right=mechanism)
-        return wrong.closed()
+        return wrong.closed(mechanism.twist)
 
     def _wrong(self, part: Any, length: float) -> Any:
         if kind_of(part) != self.kind:
             return part
-        name = NUMBER[self.kind]
+        name = self.fault.split()[1] if self.fault in FURTHER else NUMBER[self.kind]
         value = getattr(part, name)
         if isinstance(value, Rolling):
             curve = Placed(value.body, shift=(self.relative * length, 0.0))
             off: Any = Rolling.at_angle(curve, value.ground, value.theta, value.ground_arc)
         elif name in ANGLES:
             off = value + self.relative
-        elif isinstance(value, tuple):
+        elif isinstance(value, tuple) and name != "force":
             off = (value[0] + self.relative * length, value[1])
+        elif isinstance(value, tuple):
+            off = tuple((1 + self.relative) * each for each in value)
         else:
             off = (1 + self.relative) * value
         return replace(part, **{name: off})
@@ -165,14 +173,14 @@ def _planted(right: Any, change: Off) -> Any:
     return wrong
 
 
-FAULTS = ("inertia", *EVERY, *relations.NAMES)
+FAULTS = ("inertia", *EVERY, *FURTHER, *relations.NAMES)
 # By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
 LEAST: Mapping[str, tuple[Engine, ...]] = {
     "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
     "mujoco": (mujoco.TUNED, mujoco.EXTENDED),
     "lagrange": (lagrange.VARIANTS[-1],),
     "exudyn": (exudyn.EXTENDED,),
-    "box2d": (box2d.DEFAULT,),
+    "box2d": box2d.VARIANTS,
     "pinocchio": (pinocchio.TUNED,),
     "mjx": (mjx.TUNED,),
     "bullet": (bullet.EXTENDED,),
@@ -204,19 +212,23 @@ class Control(Task):
         return LEAST[self.name][0]
 
     def run(self) -> Values:
-        """The size, and the check and the number of the case that finds it; `built`: how many were asked of any size.
-
-        A size of NaN: no fault was found.
-        """
-        built = 0
-        for size in self.sizes:
+        """The size, and the check and the number of the case that finds it, NaN where none does; whether the engine
+        builds this kind, and how many times it was asked until then."""
+        kind, asked = Off(self.fault, 0.0).kind, 0
+        built = kind not in EVERY or kind in taken(LEAST[self.name][0])
+        for size in self.sizes if built else ():
             for number, told, check in found(LEAST[self.name], Off(self.fault, size), self.cases):
-                built += bool(told.errors)
+                asked += bool(told.errors)
                 if check:
-                    return {"size": np.array(size), "case": np.array(number), "built": np.array(built), "check": check}
-            if not built:
+                    return _values(size, number, built, asked) | {"check": check}
+            if not asked:
                 break
-        return {"size": np.array(np.nan), "case": np.array(np.nan), "built": np.array(built), "check": ""}
+        return _values(np.nan, np.nan, built, asked) | {"check": ""}
+
+
+def _values(size: float, case: float, built: bool, asked: int) -> dict[str, Any]:
+    told = {"size": size, "case": case, "built": built, "asked": asked}
+    return {name: np.array(value) for name, value in told.items()}
 
 
 def found(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, Told, str]]:
