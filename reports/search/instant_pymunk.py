@@ -63,7 +63,7 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
     far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
     floor = np.array([[np.finfo(float).eps * far / dt / LAW, 0.0, 0.0]])
     checks = ("velocity", PUSHED) if engine.slot == "groove" else ("velocity",)
-    worst = dict.fromkeys(checks, 0.0)
+    worst: dict[str, float] = dict.fromkeys(checks, 0.0)
     for step, check in product(range(1, STEPS + 1), checks):
         law, free = _law(model, mechanism, told, step, dt, grooves=check == PUSHED)
         worst[check] = max(worst[check], difference(mechanism, told.after[step], law, (free, floor)))

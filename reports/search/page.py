@@ -179,7 +179,7 @@ def _planted(controls: Mapping[Control, Answer]) -> list[list[str]]:
     """A line for each fault: the case that found it in each engine, and how large it had to be if not 1e-6."""
     told = {(task.fault, task.name): answer for task, answer in controls.items()}
     names = dict.fromkeys(task.name for task in controls)
-    return [[fault, *(_how_soon(told.get((fault, name))) for name in names)] for fault in FAULTS]
+    return [[fault, *(_how_soon(told.get((fault, name))) for name in names)] for fault in FAULTS if controls]
 
 
 def _how_soon(answer: Answer | None) -> str:

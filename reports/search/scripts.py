@@ -36,13 +36,6 @@ from reports.search.recorded import Recorder, recording, repeated
 from reports.search.release import release
 from reports.search.subjects import Alone, Subject, at_an_instant
 
-MJX_IMPORTS = """from importlib.metadata import version as version_of
-
-import jax
-from mujoco import mjx
-
-jax.config.update("jax_enable_x64", True)
-"""
 PACKAGES = {Exudyn: "exudyn", Box2D: "pyb2d3", Bullet: "pybullet", Pinocchio: "pinocchio"}
 # What a script imports, and how it finds where bodies are, by the engine's name.
 BODIES = """
@@ -57,7 +50,7 @@ IMPORTS = {
     "pinocchio": "import pinocchio",
     "pymunk": "import pymunk",
     "mujoco": f"import mujoco{BODIES}",
-    "mjx": f"import mujoco\n{MJX_IMPORTS}{BODIES}",
+    "mjx": f"import jax\nimport mujoco\nfrom mujoco import mjx\n\njax.config.update('jax_enable_x64', True){BODIES}",
     "bullet": """import tempfile
 from pathlib import Path
 
@@ -83,8 +76,10 @@ TURNING = """
     if apart.ndim == 2:  # an angle may be told without its whole turns
         apart[:, 2] = np.remainder(apart[:, 2] + np.pi, 2 * np.pi) - np.pi"""
 NAMED, READING = re.compile(r"\bx\d+\b"), re.compile(r"[\w.]+\.[gG]et\w+\(")
-FOUND_BY_MJX = """put = mjx.put_model(model), mjx.put_data(model, data)
-found, version = jax.jit(mjx.forward)(*put).qacc, version_of("mujoco-mjx")"""
+IDEAL = """what an independent calculation with exact constraints gives. A method of some order comes nearer with
+smaller steps"""
+DECLARED = """that of M a = f + J^T F and J a + R F = aref - J' v, by an independent calculation: R and aref are
+MuJoCo's own (efc_R, efc_KBIP), and J' v is the term of the velocities"""
 
 
 def script(subject: Subject, case: Any, check: str, number: int) -> str:
@@ -135,7 +130,7 @@ def of_motion(engine: Engine, recipe: Recipe, check: str, number: int) -> str:
         runs = [("at this step", mechanism, dt, steps), ("at half of it", mechanism, dt / 2, 2 * steps)]
     if isinstance(stepped, Lagrange):
         return _of_the_judge(stepped, runs)
-    return _written(stepped, [_block(stepped, *run) for run in runs], TURNING)
+    return _written(stepped, [_block(stepped, *run) for run in runs], IDEAL, TURNING)
 
 
 Run = tuple[str, Mechanism, float, int]  # title, mechanism, step [s], steps
@@ -256,29 +251,35 @@ def of_first_step(engine: Engine, recipe: Recipe) -> str:
     speeds = "(b.linear_velocity.x, b.linear_velocity.y, b.angular_velocity)"
     read = f"[{speeds} for b in {read.partition(' for b in ')[2]}"
     _, law, _ = instant_box2d.first_step(box, mechanism)
-    return _written(box, [Block(f"velocities after a step of {dt:.6g} s", lines, read, law)], "")
+    block = Block(f"velocities after a step of {dt:.6g} s", lines, read, law)
+    return _written(box, [block], "what its own soft joints declare (b2MakeSoft)")
 
 
-def _written(engine: Engine, blocks: Sequence[Block], turning: str) -> str:
-    """The script of these blocks; `turning`: what is done with differences of angles."""
+def _written(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
+    """The script of these blocks; no engine: MuJoCo alone. `turning`: what is done with differences of angles."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     told = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"
         for number, block in enumerate(blocks)
     )
-    return f'''"""{engine.name} beside exact constraints; the calls are those that an adapter made, with their numbers.
+    name, version = "mujoco", "mujoco.__version__"
+    if engine is not None and engine.name != name:
+        name, version = engine.name, f"version({engine.packages[0]!r})"
+    return f'''"""{name} against a law. Expected is {law}.
 
-Expected is what an independent calculation gives: rows are bodies, columns x [m], y [m] and the angle [rad], or their
-rates. A method of some order comes nearer with smaller steps.
+Rows are bodies, columns x [m], y [m] and the angle [rad] or their rates; or there is a number for each coordinate.
+Calls are those that an adapter made, with their numbers.
 """
 
 import math
+from importlib.metadata import version
 
 import numpy as np
-{IMPORTS[engine.name]}
+{IMPORTS[name]}
 
 {runs}
 
+print("{name}", {version})
 for title, run, expected in (
 {told}
 ):
@@ -293,14 +294,18 @@ for title, run, expected in (
 
 def _mujoco_lines(engine: Any, mechanism: Mechanism, dt: float, steps: int) -> list[str]:
     method = engine.settings if isinstance(engine, Mjx) else engine
-    lines = [f"model = mujoco.MjModel.from_xml_string({method.text(mechanism, dt)!r})", "data = mujoco.MjData(model)"]
-    lines.append("mujoco.mj_resetDataKeyframe(model, data, 0)")
+    lines = [*_model_lines(method.text(mechanism, dt)), "mujoco.mj_resetDataKeyframe(model, data, 0)"]
     if isinstance(engine, Mjx):
         lines += ["step, held, data = jax.jit(mjx.step), mjx.put_model(model), mjx.put_data(model, data)"]
         lines += [f"for _ in range({steps}):\n    data = step(held, data)", "data = mjx.get_data(model, data)"]
     else:
         lines += [f"for _ in range({steps}):\n    mujoco.mj_step(model, data)"]
     return [*lines, "mujoco.mj_kinematics(model, data)", f"start = {mechanism.pose[:, 2].tolist()!r}"]
+
+
+def _model_lines(text: str) -> list[str]:
+    """A model of MuJoCo's and its data."""
+    return [f'model = mujoco.MjModel.from_xml_string("""\n{text.strip()}\n""")', "data = mujoco.MjData(model)"]
 
 
 def _of_the_judge(engine: Lagrange, runs: Sequence[Run]) -> str:
@@ -344,30 +349,11 @@ def of_mujoco(engine: Any, recipe: Recipe) -> str:
     dt = instant_mujoco.STEP * mechanism.time_scale
     text, model = method.text(mechanism, dt), method.model(mechanism, dt, as_text=True)
     here = instant_mujoco.Instant.of(mechanism, model, model.start(), method.softness(mechanism, dt))
-    lines = f"import mujoco\nimport numpy as np\n{MJX_IMPORTS if isinstance(inner, Mjx) else ''}"
-    return f'''"""The accelerations of a model at its start, which satisfies every constraint.
-
-Expected: M a = f + J^T F and J a + R F = aref - J' v, where R and aref are MuJoCo's own (efc_R, efc_KBIP) and J' v the
-term of the velocities. The numbers of `expected` are those of an independent calculation.
-"""
-
-{lines}
-MODEL = """
-{text.strip()}
-"""
-
-model = mujoco.MjModel.from_xml_string(MODEL)
-data = mujoco.MjData(model)
-mujoco.mj_resetDataKeyframe(model, data, 0)
-mujoco.mj_forward(model, data)
-{FOUND_BY_MJX if isinstance(inner, Mjx) else "found, version = data.qacc, mujoco.__version__"}
-expected = np.array({_numbers(here.accelerations())})
-found = np.array(found)[{model.address!r}]
-print("{"MJX" if isinstance(inner, Mjx) else "MuJoCo"}", version)
-print("found   ", found)
-print("expected", expected)
-print("largest difference", np.abs(found - expected).max())
-'''
+    by_mjx = "jax.jit(mjx.forward)(mjx.put_model(model), mjx.put_data(model, data))"
+    lines = ["mujoco.mj_resetDataKeyframe(model, data, 0)", "mujoco.mj_forward(model, data)"]
+    read = f"np.array({by_mjx if isinstance(inner, Mjx) else 'data'}.qacc)[{model.address!r}]"
+    block = Block("accelerations at the start", [*_model_lines(text), *lines], read, here.accelerations())
+    return _written(inner, [block], DECLARED)
 
 
 def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
@@ -377,33 +363,10 @@ def of_mujoco_alone(model: raw.Model, other: str = "") -> str:
         expected = np.array(release(other).asked(model)["expected"])
     else:
         _, expected = raw_law.found_and_expected(model, judge)
-    version = other or mujoco.__version__
-    names = [f"b{body} {what}" for body, what in raw.coordinates(model)]
-    return f'''"""MuJoCo's accelerations in a state that satisfies every constraint.
-
-Expected: M a = f + J^T F and J a + R F = -J' v, where R is MuJoCo's own (efc_R) and J' v the term of the velocities.
-The numbers of `expected` are those of an independent calculation, with the R of MuJoCo {version}.
-"""
-
-import mujoco
-import numpy as np
-
-MODEL = """
-{raw.xml(model)}
-"""
-
-model = mujoco.MjModel.from_xml_string(MODEL)
-data = mujoco.MjData(model)
-data.qvel[:] = {_numbers(judge.rates)}
-mujoco.mj_forward(model, data)
-expected = np.array({_numbers(expected)})
-print("MuJoCo", mujoco.__version__, "joints", {names!r})
-if mujoco.__version__ != {version!r}:
-    print("expected is of MuJoCo {version}, whose constraints may give way otherwise")
-print("found   ", data.qacc)
-print("expected", expected)
-print("largest difference", np.abs(data.qacc - expected).max())
-'''
+    names = ", ".join(f"b{body} {what}" for body, what in raw.coordinates(model))
+    lines = [f"data.qvel[:] = {judge.rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
+    title = f"accelerations of {names}; expected with the R of MuJoCo {other or mujoco.__version__}"
+    return _written(None, [Block(title, [*_model_lines(raw.xml(model)), *lines], "data.qacc", expected)], DECLARED)
 
 
 def of_pymunk(engine: Any, recipe: Recipe) -> str:
@@ -415,32 +378,14 @@ def of_pymunk(engine: Any, recipe: Recipe) -> str:
     for aim in model.aims:
         aim(dt / model.unit)
     expected = instant_pymunk.first_law(engine, mechanism, dt) * model.unit
-    body = "\n".join(_pymunk_lines(model, instant_pymunk.MOST_SWEEPS))
+    lines = [*_pymunk_lines(model, instant_pymunk.MOST_SWEEPS), f"space.step({dt / model.unit!r})"]
     bodies = ", ".join(f"b{number}" for number in range(len(model.bodies)))
-    return f'''"""pymunk's velocities after one step.
-
-Expected are the nearest ones, in the metric of the masses, that the joints allow in the pose after the step's drift.
-"""
-
-import numpy as np
-import pymunk
-
-{body}
-space.step({dt / model.unit!r})
-found = np.array([(*body.velocity, body.angular_velocity) for body in ({bodies},)])
-expected = np.array({np.round(expected, 12).tolist()!r})
-print("pymunk", pymunk.version)
-print("found   ", found.tolist())
-print("expected", expected.tolist())
-print("largest difference", np.abs(found - expected).max())
-'''
+    read = f"[(*body.velocity, body.angular_velocity) for body in ({bodies},)]"
+    law = "the nearest, in the metric of the masses, that joints allow in the pose after the step's drift"
+    return _written(engine, [Block("velocities after a step", lines, read, expected)], law)
 
 
 def _pymunk_lines(model: Any, sweeps: int) -> list[str]:
     """A space as it is before its first step. Raises Unsupported for what can't be written."""
     settings = f"space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}"
     return ["space = pymunk.Space()", settings, *object_lines(model.space, model.bodies)]
-
-
-def _numbers(values: Any) -> str:
-    return "[" + ", ".join(f"{value:.12g}" for value in values) + "]"

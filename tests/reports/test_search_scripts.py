@@ -12,6 +12,7 @@ import pytest
 
 from engines import Engine, box2d, bullet, exudyn, mjx, mujoco, pinocchio, pymunk
 from engines.lagrange import TRUTH, Lagrange
+from reference.rolling.roll import Roll
 from reports.search import motions, relations
 from reports.search.independent import Motion
 from reports.search.mechanisms import mechanism
@@ -141,9 +142,8 @@ def test_what_scripts_carry_along_agrees_with_the_judge(kinds: tuple[str, ...]) 
         drawn = mechanism(11, number, kinds)
         span = 0.1 * drawn.time_scale
         truth = TRUTH.build(drawn, span)(1, 1).pose[-1]
-        rolls = {
-            j.name: float(j.rolling.ground.angle(j.rolling.ground_arc)) for j in drawn.joints if hasattr(j, "rolling")
-        }
-        found = Motion(drawn.bodies, drawn.joints, drawn.gravity, drawn.forces, rolls).after(span)
+        rolls = [joint for joint in drawn.joints if isinstance(joint, Roll)]
+        tangents = {roll.name: float(roll.rolling.ground.angle(roll.rolling.ground_arc)) for roll in rolls}
+        found = Motion(drawn.bodies, drawn.joints, drawn.gravity, drawn.forces, tangents).after(span)
         apart.append(np.abs(found - truth).max() / max(np.abs(truth - drawn.pose).max(), 1e-9))
     assert max(apart) < 1e-10
