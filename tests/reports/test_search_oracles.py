@@ -20,7 +20,8 @@ from engines.pymunk import model as pymunk_model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.gate.change import Altered
-from reports.search import instant_mujoco, motions, raw, raw_law, relations
+from reports.search import instant_mujoco, motions, plan, raw, raw_law, relations
+from reports.search.instant_pymunk import PUSHED
 from reports.search.mechanisms import ALL
 from reports.search.planted import Off
 from reports.search.relations import NAMES
@@ -60,6 +61,14 @@ def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, 
 def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
     for number in range(25):
         assert raw_law.errors(raw_law.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
+
+
+def test_a_groove_off_the_centre_of_mass_misses_its_velocities_and_obeys_the_law_on_the_page_of_faults() -> None:
+    """The wrong one of Chipmunk's own formula: K^-1 in two directions, of which the part along the normal is kept."""
+    cases = [plan.GROOVE.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
+    found = [plan.GROOVE.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
+    assert sum(each["velocity"][0] > 1e-3 for each in found) >= 5
+    assert max(each[PUSHED][0] for each in found) < 1e-10
 
 
 # ------------------------------------------------------------------------------------- mistakes put into adapters
