@@ -9,7 +9,7 @@ export OMP_NUM_THREADS ?= 1
 # The tests start many programs, each of which would compile every module again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: report test publish slow check bench mutants lower clean
+.PHONY: report test publish slow check bench mutants search lower clean
 
 report: .venv/installed          ## run the whole grid, and write pages and charts; all below ./crosscheck-results
 	$(BIN)/crosscheck run --full
@@ -22,6 +22,7 @@ test: .venv/installed            ## the tests without those marked slow, then th
 publish: .venv/installed-mjx     ## for maintainers: all engines and releases, into reports/results and README.md
 	$(BIN)/crosscheck run --full
 	$(BIN)/crosscheck versions --all --publish
+	$(BIN)/crosscheck search --published
 	$(BIN)/crosscheck report --publish
 
 slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
@@ -40,6 +41,10 @@ bench: .venv/installed-bench     ## what stepping costs beside the bare loops, a
 
 mutants: .venv/installed         ## about 450 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
 	$(BIN)/python -m tests.tools.mutants run $(ONLY)
+
+SECONDS ?= 600
+search: .venv/installed          ## mechanisms that were never asked about, in all engines, for SECONDS; each finding with its seed
+	$(BIN)/crosscheck search --fresh --seconds $(SECONDS)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
 	.venv-lower/bin/python -m pytest $(WORKERS) -m "not crosscheck and not slow"

@@ -243,6 +243,10 @@ class Around(Engine):
     def touches(self) -> bool:
         return self.engine.touches
 
+    @property
+    def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        return self.engine.precision
+
     def prepare(self) -> None:
         self.engine.prepare()
 

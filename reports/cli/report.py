@@ -30,7 +30,7 @@ def report(
     if publish:
         refuse_outside_a_checkout()
     nothing = BadInput(f"{results} holds nothing for the present sources: {with_folder('crosscheck run', results)}")
-    searched = search_files(results)
+    searched = search_files(results, publish)
     if not (results / STORE).exists():
         if not searched:
             raise nothing
@@ -119,8 +119,9 @@ def write_files(texts: Mapping[Path, str], line: str) -> None:
     Terminal(140).say(line)
 
 
-def search_files(results: Path) -> dict[str, str]:
-    """The page of the searches that are stored here, and its picture; nothing without any."""
+def search_files(results: Path, publish: bool = False) -> dict[str, str]:
+    """The page of the searches that are stored here, and its picture; nothing without any. What is published is of
+    seeds that the last commit gives."""
     place = results / SEARCH / STORE
     if not place.exists():
         return {}
@@ -129,7 +130,7 @@ def search_files(results: Path) -> dict[str, str]:
     from reports.search.page import files, read
 
     with Store.read(place) as store:
-        return files(*read(store), foot("crosscheck search"))
+        return files(*read(store, publish), foot("crosscheck search"))
 
 
 def published() -> Path:

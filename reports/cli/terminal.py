@@ -108,19 +108,26 @@ def _plain_table(title: str, lines: Sequence[Sequence[str]], widths: Sequence[in
 
 @contextmanager
 def interruptible(
-    console: Terminal, store: Store, items: Sequence[Any], limit: float, words: str, fresh: bool = False
-) -> Iterator[tuple[Sequence[Any], Callable[[object], None], Callable[[list[Any]], None]]]:
+    console: Terminal,
+    store: Store,
+    items: Sequence[Any],
+    limit: float,
+    words: str,
+    fresh: bool = False,
+    size: Callable[[Any], int] | None = None,
+) -> Iterator[tuple[Sequence[Any], Callable[..., None], Callable[[list[Any]], None]]]:
     """(the items that are to be run, done, watch): a run into a store that Ctrl-C leaves where it can be left.
 
-    `words`: what the items are called; `fresh`: those that are stored too; done and watch: see `progress`. Raises
-    KeyboardInterrupt, having said what is stored.
+    `words`: what the items are called; `fresh`: those that are stored too; `size`: how many cases are in one, which are
+    then counted; done and watch: see `progress`. Raises KeyboardInterrupt, having said what is stored.
     """
     from reports.run.running import missing
 
     with kept() as check:
         waiting = items if fresh else missing(items, store, limit)
         try:
-            with progress(console, len(waiting), check) as (done, watch):
+            total, unit = (len(waiting), "cells") if size is None else (sum(map(size, waiting)), "cases")
+            with progress(console, total, check, unit) as (done, watch):
                 yield waiting, done, watch
             check()
         except KeyboardInterrupt:
@@ -132,14 +139,15 @@ def interruptible(
 
 @contextmanager
 def progress(
-    console: Console, total: int, check: Callable[[], None]
-) -> Iterator[tuple[Callable[[object], None], Callable[[list[Any]], None]]]:
-    """(done, watch): call done with each result, and watch with what is running; both `check` for Ctrl-C.
+    console: Console, total: int, check: Callable[[], None], unit: str = "cells"
+) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
+    """(done, watch): call done with each result, and how many of these it is; and watch with what is running; both
+    `check` for Ctrl-C.
 
     A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
     """
     if not console.is_terminal:
-        yield _lines(console, total, check)
+        yield _lines(console, total, check, unit)
         return
     bar = Progress(
         TextColumn("{task.description}"),
@@ -151,22 +159,22 @@ def progress(
         transient=True,
     )
     with bar:
-        task = bar.add_task("cells", total=total, running="starting")
+        task = bar.add_task(unit, total=total, running="starting")
 
         def watch(running: list[Any]) -> None:
             bar.update(task, running=" | ".join(item.label for item in running))
             check()
 
-        def done(row: object) -> None:
-            bar.advance(task)
+        def done(row: object, many: int = 1) -> None:
+            bar.advance(task, many)
             check()
 
         yield done, watch
 
 
 def _lines(
-    console: Console, total: int, check: Callable[[], None]
-) -> tuple[Callable[[object], None], Callable[[list[Any]], None]]:
+    console: Console, total: int, check: Callable[[], None], unit: str
+) -> tuple[Callable[..., None], Callable[[list[Any]], None]]:
     """(done, watch) of `progress`, which print what is done, and what runs, at most once in PULSE seconds."""
     start = last = monotonic()
     count = 0
@@ -177,13 +185,13 @@ def _lines(
         if now - last >= PULSE:
             last = now
             running = f"; running: {' | '.join(cell.label for cell in cells)}" if cells else ""
-            line = f"{count} of {total} cells run after {now - start:.0f} s{running}"
+            line = f"{count} of {total} {unit} run after {now - start:.0f} s{running}"
             console.print(line, markup=False, highlight=False, soft_wrap=True)
         check()
 
-    def done(row: object) -> None:
+    def done(row: object, many: int = 1) -> None:
         nonlocal count
-        count += 1
+        count += many
         check()
 
     return done, watch

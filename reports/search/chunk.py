@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from engines import Engine
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
+from reports.search.parts import TOGGLE
 from reports.search.subjects import Adapted, Subject, Told
 
 SIZE = 10  # cases in a piece: a second or some
@@ -100,6 +102,19 @@ def asked(answers: Mapping[Chunk, Answer]) -> Iterator[Asked]:
             yield Asked(chunk, chunk.first + row, tuple(kinds), Told(errors, tuple(left), said))
 
 
+def cases_in(answer: Answer) -> int:
+    """How many cases a piece tells of; none of one that has to be asked case by case."""
+    return len(answer.array("errors")) if answer.finished else 0
+
+
+def has_fault(answer: Answer) -> bool:
+    """Whether any case of a piece has one."""
+    if not answer.finished:
+        return False
+    error, bound = np.moveaxis(answer.array("errors"), -1, 0)
+    return bool(np.any(~(error <= bound) & ~np.isnan(bound)))
+
+
 def chunks(
     subjects: Sequence[Subject],
     seed: int,
@@ -114,7 +129,7 @@ def chunks(
     for first in range(begin, cases, SIZE):
         count = min(SIZE, cases - first)
         for subject in subjects:
-            own = tuple(kind for kind in subject.kinds if kind in kinds) or subject.kinds
+            own = tuple(kind for kind in (*subject.kinds, TOGGLE) if kind in kinds) or subject.kinds
             out.append(Chunk(subject, seed, first, count, own, decades, oracles))
     return out
 
@@ -147,7 +162,7 @@ def from_words(words: str, subjects: Sequence[Subject]) -> Chunk | None:
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None
 
 
-HEADER = ("subject", "check", "cases", "median", "99 %", "worst", "faults")
+HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "faults")
 
 
 @dataclass(frozen=True)
@@ -205,3 +220,40 @@ def refused(told: Iterable[Asked]) -> Mapping[str, int]:
 
 def _short(value: float) -> str:
     return f"{value:.1e}" if math.isfinite(value) else "lost"
+
+
+FOUND = ("subject", "check", "error", "may be", "seed", "decades", "case", "kinds")
+
+
+def findings(told: Iterable[Asked]) -> list[list[str]]:
+    """Rows of a table under FOUND, one for each check that fails in a case."""
+    return [
+        [
+            one.chunk.subject.name,
+            check,
+            _short(one.told.errors[check][0]),
+            _short(one.told.errors[check][1]),
+            str(one.chunk.seed),
+            str(one.chunk.decades),
+            str(one.number),
+            ",".join(one.kinds),
+        ]
+        for one in told
+        for check in one.told.faults
+    ]
+
+
+def left_out(told: Iterable[Asked]) -> list[list[str]]:
+    """(law, why it was not asked, subjects, cases), the most frequent first; numbers in reasons are left out."""
+    found: dict[tuple[str, str], Counter[str]] = {}
+    for one in told:
+        for reason in one.told.not_asked:
+            law, _, why = reason.partition(": ")
+            if law != "unsupported":
+                key = law, re.sub(r"\d[\d.e+-]*", "...", why)
+                found.setdefault(key, Counter())[one.chunk.subject.name] += 1
+    rows = [
+        [law, why, ", ".join(f"{name} {many}" for name, many in of.most_common()), str(of.total())]
+        for (law, why), of in found.items()
+    ]
+    return sorted(rows, key=lambda row: -int(row[-1]))

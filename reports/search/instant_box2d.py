@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from engines.box2d import Box2D
 from reference.joints import Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
 from reports.search.law import Fault, NotAsked, difference
 
 Array = NDArray[np.float64]
@@ -36,6 +37,12 @@ def errors(engine: Box2D, mechanism: Mechanism) -> dict[str, float]:
 
     Raises NotAsked where one sweep over the joints is no solution, and Unsupported.
     """
+    told, law, others = first_step(engine, mechanism)
+    return {"velocity": difference(mechanism, told.twist[1], law, others)}
+
+
+def first_step(engine: Box2D, mechanism: Mechanism) -> tuple[Trajectory, Array, tuple[Array, ...]]:
+    """The first step, velocities (bodies, 3) that its joints declare after it, and sizes that errors are beside."""
     if engine.closing:
         raise NotAsked("joints held by a weld joint's own frequencies are solved row by row")
     _refuse_chains(mechanism)
@@ -53,8 +60,7 @@ def errors(engine: Box2D, mechanism: Mechanism) -> dict[str, float]:
     law = _swept(mechanism, after, np.where(points[:, None], after, before), soft, 1.0, mechanism.rate)
     # A place is rounded, and over a step that is a velocity.
     far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
-    others = (free, mechanism.twist, np.array([[engine.precision * far / dt / bound(engine), 0.0, 0.0]]))
-    return {"velocity": difference(mechanism, told.twist[1], law, others)}
+    return told, law, (free, mechanism.twist, np.array([[engine.precision * far / dt / bound(engine), 0.0, 0.0]]))
 
 
 def _swept(mechanism: Mechanism, rows: Array, weighed: Array, twist: Array, share: float, wanted: Array) -> Array:

@@ -24,6 +24,10 @@ class Fault(Exception):
     """Something is not there that has to be; the message is one sentence that says what."""
 
 
+class Lost(Fault):
+    """The motion ended early, and the engine says so."""
+
+
 @dataclass(frozen=True, eq=False)
 class Constrained:
     """Accelerations or velocities (bodies, 3), and the forces or impulses of the rows (rows,)."""

@@ -16,9 +16,11 @@ from engines.registry import ENGINES, OTHERS
 from reports.model.tasks import Answer
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.store import Store
-from reports.search.chunk import HEADER, Asked, asked, from_words, refused, stored, summary
+from reports.search import plan
+from reports.search.chunk import HEADER, Asked, asked, from_words, left_out, refused, stored, summary
 from reports.search.mechanisms import SHAPES
-from reports.search.recipe import LEAST_RANK
+from reports.search.planted import FAULTS, SIZES, Control, controls
+from reports.search.recipe import LEAST_RANK, NEAREST
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
@@ -100,22 +102,32 @@ def _panel(axes: Axes, name: str, found: Mapping[str, Sequence[float]], kinds: S
 def known_subjects(words: Sequence[str]) -> list[Subject]:
     """Every engine that is registered, and MuJoCo alone in the releases that these words name."""
     releases = dict.fromkeys(release_of(json.loads(word)[0]) for word in words)
-    engines = dict.fromkeys([*ENGINES, *OTHERS])
+    engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE.engine])
     return [*(Adapted(engine) for engine in engines), *(Alone(each) for each in releases if each is not None)]
 
 
-def read(store: Store) -> tuple[list[Asked], list[tuple[Shrink, Answer]]]:
-    """The cases that are stored for the present sources, and the findings among them that were made smaller."""
+Stored = tuple[list[Asked], list[tuple[Shrink, Answer]], Mapping[Control, Answer]]
+
+
+def read(store: Store, published: bool = False) -> Stored:
+    """The cases that are stored for the present sources, the findings among them that were made smaller, and how soon
+    planted faults were found; `published`: of the plan alone (`reports.search.plan`), whose seeds nobody chose."""
     words = store.remembered()
     subjects = known_subjects(words)
     pieces = [piece for piece in (from_words(word, subjects) for word in words) if piece is not None]
-    told = list(asked(stored(store, pieces)))
+    told = list(asked(stored(store, plan.published() if published else pieces)))
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
-    small = store.answers(tasks)
-    return told, [(task, small[task]) for task in tasks if task in small]
+    small, soon = store.answers(tasks), store.answers(controls())
+    found = [(task, small[task]) for task in tasks if task in small]
+    return told, found, {task: soon[task] for task in controls() if task in soon}
 
 
-def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot: str) -> dict[str, str]:
+def files(
+    told: Sequence[Asked],
+    findings: Sequence[tuple[Shrink, Answer]],
+    planted: Mapping[Control, Answer],
+    foot: str,
+) -> dict[str, str]:
     """search.md and its picture, by name; nothing of a search that asked nothing."""
     if not told:
         return {}
@@ -126,7 +138,14 @@ def files(told: Sequence[Asked], findings: Sequence[tuple[Shrink, Answer]], foot
         "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
         "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
         "rank": f"{LEAST_RANK:g}",
+        "near": f"{NEAREST:g}",
+        "rule": plan.origin(),
+        "seeds": ", ".join(map(str, plan.seeds())),
+        "by_rule": {one.chunk.seed for one in told} <= {*plan.seeds()},
         "searched": _searched(told),
+        "left_out": left_out(told),
+        "engines": list(dict.fromkeys(task.name for task in planted)),
+        "planted": _planted(planted),
         "picture": next(iter(out), ""),
         "header": HEADER,
         "lines": summary(told),
@@ -154,6 +173,26 @@ def _searched(told: Sequence[Asked]) -> list[list[str]]:
         ]
         for (name, kinds, seed, decades), group in groups.items()
     ]
+
+
+def _planted(controls: Mapping[Control, Answer]) -> list[list[str]]:
+    """A line for each fault: the case that found it in each engine, and how large it had to be if not 1e-6."""
+    told = {(task.fault, task.name): answer for task, answer in controls.items()}
+    names = dict.fromkeys(task.name for task in controls)
+    return [[fault, *(_how_soon(told.get((fault, name))) for name in names)] for fault in FAULTS if controls]
+
+
+def _how_soon(answer: Answer | None) -> str:
+    if answer is None or not answer.finished:
+        return answer.told if answer else ""
+    if not answer.number("built"):
+        return "not built"
+    if not answer.number("asked"):
+        return "not asked"
+    size = answer.number("size")
+    if math.isnan(size):
+        return f"not found in {answer.number('asked'):.0f}"
+    return f"{answer.number('case') + 1:.0f}{'' if size == SIZES[0] else f' of {size:.0e}'}"
 
 
 def _one_of_each(findings: Sequence[tuple[Shrink, Answer]]) -> list[tuple[Shrink, Answer]]:

@@ -11,6 +11,7 @@ KINDS = ("pin", "slot", "skate", "roll", "drive")  # from the beginning; the sam
 LINKS = ("rod", "gear", "weld")
 FORCES = ("spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
 EVERY = (*KINDS, *LINKS, *FORCES)
+TOGGLE = "toggle"  # asked for by its name alone: its rows nearly depend on each other
 SHAPES = ("line", "circle", "ring", "ellipse")
 
 ANGLE = Decimal("0.3")  # rad: no multiple of it but 0 is an angle that a formula is simple at
@@ -59,6 +60,9 @@ class Link:
     Of a rod, a spring and a damper `more` and `turn` say where the first body's point lies. Of a gear `more` is the
     ratio, of a force (in the direction `turn`) and a torque how strong it is, in halves. The others' `strength` is a
     step on the ladder, and `rest` what a spring is shorter than at rest: tenths, or steps of 0.3 rad.
+
+    A toggle is a rod between points on both sides of `at`, where a pin holds the same bodies: `more` tenths and half of
+    that away along `turn`, on a line that misses `at` by 10^-strength sizes.
     """
 
     kind: str
@@ -84,7 +88,7 @@ class Recipe:
     @property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of its joints and forces, each once, in the order of EVERY."""
-        return tuple(kind for kind in EVERY if any(link.kind == kind for link in self.links))
+        return tuple(kind for kind in (*EVERY, TOGGLE) if any(link.kind == kind for link in self.links))
 
 
 def ladder(step: int) -> Decimal:

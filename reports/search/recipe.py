@@ -26,7 +26,7 @@ from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scales import length_scale
-from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, Link, Recipe, Rim, ladder
+from reports.search.parts import ANGLE, EVERY, FORCES, RATE, SHAPES, TOGGLE, Link, Recipe, Rim, ladder
 
 Point = tuple[Decimal, Decimal]
 
@@ -50,7 +50,7 @@ class Joining:
                 f"recipe: joint {number} is between bodies {link.first} and {link.second}; the first must be from 0 "
                 f"to {count}, the second from 1, and they must differ"
             )
-        if link.kind not in EVERY or (link.kind == "roll" and len(link.rims) != 2):
+        if link.kind not in (*EVERY, TOGGLE) or (link.kind == "roll" and len(link.rims) != 2):
             raise InvalidMechanism(
                 f"recipe: joint {number} is a {link.kind!r} of {len(link.rims)} rims; it must be one of "
                 f"{', '.join(EVERY)}, a roll with two rims"
@@ -79,6 +79,15 @@ class Joining:
                 return Roll(name, *ends, Rolling(curve, ground, second_angle - first_angle, ground_arc, arc))
             case "rod":
                 return Rod(name, *ends, self._far_point(link), second, abs(float(link.more * size / 10)))
+            case "toggle":
+                along = float(link.more * size / 10)
+                miss = float(size.scaleb(-link.strength))
+                line = direction - second_angle
+                second = (
+                    second[0] - along / 2 * math.cos(line) - miss * math.sin(line),
+                    second[1] - along / 2 * math.sin(line) + miss * math.cos(line),
+                )
+                return Rod(name, *ends, self._far_point(link), second, math.hypot(1.5 * along, miss))
             case "gear":
                 ratio = float(link.more * RATE)
                 return Gear(name, *ends, ratio, second_angle - ratio * first_angle)
@@ -173,6 +182,7 @@ Array = NDArray[np.float64]
 # Rows of which a combination is smaller than this, beside the largest, are left out: their forces, and what becomes of
 # the motion, depend on digits that no engine keeps.
 LEAST_RANK = 1e-3
+NEAREST = 1e-6  # the same where toggles are asked for
 NO_MOTION = 1e-12  # of the velocities wanted: what rounding leaves where joints allow no motion at all
 
 
@@ -245,8 +255,8 @@ class Standing:
         scaled, norm, _ = self._scaled(held)
         if not np.all(norm > 0) or len(norm) > scaled.shape[1]:
             return False
-        sizes = np.linalg.svd(scaled / norm, compute_uv=False)
-        return bool(sizes[-1] >= LEAST_RANK * sizes[0])
+        least = NEAREST if any(each.joint.name.startswith(TOGGLE) for each in held) else LEAST_RANK
+        return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:
         """Rows with angles as arcs, their lengths (rows, 1), and how long the arc of a radian is, by coordinate [m]."""
@@ -271,6 +281,12 @@ class Standing:
         if np.abs(twist).max() <= NO_MOTION * np.abs(wanted.reshape(-1) * turn).max():
             twist = np.zeros_like(twist)
         return (twist / turn).reshape(-1, 3)
+
+
+def dependence(rows: Array) -> float:
+    """The smallest singular value of these rows, each of length 1, beside the largest."""
+    sizes = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True), compute_uv=False)
+    return float(sizes[-1] / sizes[0])
 
 
 def _with(value: Any, **changed: Any) -> Any:

@@ -15,7 +15,7 @@ from engines import Engine
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from reference.joints import Roll
 from reference.mechanism import Mechanism
-from reports.search.law import Fault, NotAsked, difference
+from reports.search.law import Fault, Lost, NotAsked, difference
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
@@ -77,7 +77,8 @@ def _apart(mechanism: Mechanism, engine: Engine, pose: Array, twist: Array, away
     own = _run(engine, mechanism)
     moved, turned = own.pose[-1] - mechanism.pose, pose - mechanism.pose
     if not np.isfinite(own.pose[-1]).all():
-        raise Fault(f"it was lost within {STEPS} steps: {'; '.join(own.warnings)}")
+        words = f"it was lost within {STEPS} steps: {'; '.join(own.warnings)}"
+        raise Lost(words) if own.warnings else Fault(words)
     step = STEP * mechanism.time_scale
     place = _rounded(engine, mechanism) * max(away, float(np.abs(mechanism.pose[:, :2]).max()))
     far, fast = np.array([[place, 0.0, 0.0]]), np.array([[place / step, 0.0, 0.0]])

@@ -172,7 +172,8 @@ class Shrink(Task):
 
     @property
     def label(self) -> str:
-        return f"{self.subject.name}, {self.check}, case {self.number}"
+        spread = f" with {self.decades} decades" if self.decades else ""
+        return f"{self.subject.name}, {self.check}, case {self.number} of seed {self.seed}{spread}"
 
     @property
     def engine(self) -> Engine | None:
@@ -211,7 +212,7 @@ class Shrink(Task):
         return {
             "line": f"{line}{'; ' + told.words if told.words else ''}",
             "finding": json.dumps(finding, indent=1),
-            "script": script(self.subject, small, self.check),
+            "script": script(self.subject, small, self.check, self.number),
         }
 
 

@@ -14,7 +14,7 @@ from reference.forces import Spring, TorsionSpring
 from reference.joints import Slot
 from reports.search.mechanisms import ALL, mechanism, recipe, renumbered
 from reports.search.parts import EVERY, FORCES, KINDS, Link, Part, Recipe, Rim, as_text, from_text, ladder
-from reports.search.recipe import LEAST_RANK, build
+from reports.search.recipe import LEAST_RANK, NEAREST, build, dependence
 
 CASES = range(40)
 
@@ -80,6 +80,19 @@ def test_most_springs_are_stretched_or_pushed_at_the_start():
             assert (pull > 1e-9 * spring.stiffness) == (link.rest != 0), link
             stretched += link.rest != 0
     assert stretched > 30
+
+
+def test_a_toggle_holds_its_bodies_together_by_rows_that_nearly_depend_on_each_other():
+    """A rod that misses the pin of its bodies by d of their length: its moment is d, beside a force of 1."""
+    seen = 0
+    for number in range(30):
+        drawn = recipe(5, number, ("pin", "toggle"))
+        mechanism = build(drawn)
+        rows = mechanism.rows(mechanism.pose) / np.tile([1, 1, mechanism.length_scale], len(mechanism.bodies))
+        assert dependence(rows) >= 0.999 * NEAREST
+        seen += "toggle" in drawn.kinds and dependence(rows) < LEAST_RANK
+    assert seen > 10
+    assert "toggle" not in {link.kind for number in CASES for link in recipe(5, number, EVERY).links}
 
 
 def test_rods_gears_welds_and_forces_all_come_up_between_bodies_and_on_the_ground():

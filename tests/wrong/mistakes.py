@@ -5,59 +5,26 @@ This is what a mistake in an adapter comes to: its engine moves another mechanis
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-import pytest
-from numpy.typing import NDArray
 
 from engines import Engine
-from engines.box2d import Box2D
-from engines.mjx import Mjx
-from engines.mujoco import MuJoCo
-from engines.pymunk import Pymunk
-from reference.joints import Drive, Gear, Joint, Roll, Skate, Slot
-from reference.mechanism import Body, Mechanism
+from reference.joints import Drive, Joint, Roll, Skate, Slot
+from reference.mechanism import Mechanism
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 from reports.gate.change import Altered
-from reports.gate.judge import projected
+from reports.search.planted import Misbuilt
 
-Array = NDArray[np.float64]
 Some = TypeVar("Some")
 
 KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
 # In longer chains the first, the middle and the last body and joint stand for all.
 MANY = 6
-# Newton steps that close the joints of a wrong model: quadratic from a relative miss of 1e-2.
-CLOSING_STEPS = 6
-
-
-@dataclass(frozen=True)
-class Misbuilt(Mechanism):
-    """What an engine builds its model from, while what is read out of it belongs to the mechanism `right`.
-
-    Joints that can't all be closed with the wrong number are as nearly closed as they can be.
-    """
-
-    right: Mechanism = field(kw_only=True)
-
-    def _refuse_a_bad_start(self) -> None:
-        pass
-
-    def reaction(
-        self,
-        pose: Array,
-        acceleration: Array,
-        inertias: Array | None = None,
-        gravity: Array | None = None,
-        twist: Array | None = None,
-    ) -> Array:
-        """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
-        return self.right.reaction(pose, acceleration, inertias, gravity, twist)
 
 
 @dataclass(frozen=True)
@@ -100,15 +67,7 @@ class Mistake:
             case _:
                 index = [joint.name for joint in joints].index(self.owner)
                 joints[index] = _wrong_joint(joints[index], self.kind, self.detail, relative, length, time)
-        wrong = Misbuilt(tuple(bodies), tuple(joints), gravity, right.forces, right=right)
-        pose, closed = right.pose, twist
-        for _ in range(CLOSING_STEPS):
-            pose, closed = projected(wrong, pose, twist, 0.0)
-        return replace(wrong, bodies=tuple(_moved(b, p, v) for b, p, v in zip(bodies, pose, closed, strict=True)))
-
-
-def _moved(body: Body, pose: Array, twist: Array) -> Body:
-    return replace(body, pose=tuple(map(float, pose)), twist=tuple(map(float, twist)))
+        return Misbuilt(tuple(bodies), tuple(joints), gravity, right.forces, right=right).closed(twist)
 
 
 def _lengthened(joint: Joint, body: str | None, factor: float) -> Joint:
@@ -224,92 +183,3 @@ class Made:
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
     """An engine with one mistake in every model that it builds, held to the promises of the right one."""
     return Altered(engine, Made(mistake, relative))
-
-
-# What the search has to find: a part of a number, or a sign.
-
-Change = Callable[[Mechanism], Mechanism]
-
-FORCES = ("spring", "torsion-spring", "damper", "torsion-damper", "force", "torque")
-FIELD = {"spring": "stiffness", "torsion-spring": "stiffness", "force": "second_point"}  # a force's is its lever arm
-FIELD |= {"damper": "damping", "torsion-damper": "damping", "torque": "torque"}
-# Of joints that hold velocities: a kind of Mistake, and its detail.
-WRONG = {"skate": ("angle", ""), "roll": ("size", "body"), "drive": ("rate", "")}
-
-
-@dataclass(frozen=True)
-class Heavier:
-    """Every inertia off by a part."""
-
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        return replace(mechanism, bodies=tuple(_larger(body, "inertia", self.relative) for body in mechanism.bodies))
-
-
-@dataclass(frozen=True)
-class Stronger:
-    """This number of every force element off by a part."""
-
-    name: str
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        return replace(mechanism, forces=tuple(_larger(force, self.name, self.relative) for force in mechanism.forces))
-
-
-@dataclass(frozen=True)
-class Moved:
-    """A number of the last joint of a kind off by a part: its point on the second body, unless WRONG says another."""
-
-    kind: str
-    relative: float
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        own = [joint for joint in mechanism.joints if type(joint).__name__.lower() == self.kind]
-        what, detail = WRONG.get(self.kind, ("point", "second_point x"))
-        return Mistake(what, own[-1].name, detail).made(mechanism, self.relative) if own else mechanism
-
-
-@dataclass(frozen=True)
-class Reversed:
-    """Gears turn the wrong way round: a sign of their row."""
-
-    def __call__(self, mechanism: Mechanism) -> Mechanism:
-        joints = tuple(
-            replace(joint, ratio=-joint.ratio) if isinstance(joint, Gear) else joint for joint in mechanism.joints
-        )
-        return Misbuilt(mechanism.bodies, joints, mechanism.gravity, mechanism.forces, right=mechanism)
-
-
-def _larger(part: Any, name: str, relative: float) -> Any:
-    if not hasattr(part, name):
-        return part
-    value = getattr(part, name)
-    return replace(part, **{name: tuple((1 + relative) * v for v in value) if isinstance(value, tuple) else
-                            (1 + relative) * value})  # fmt: skip
-
-
-def planted(kind: str, relative: float) -> Change:
-    """The fault of a kind of joint, of a force element, or of all inertias."""
-    if kind == "inertia":
-        return Heavier(relative)
-    if kind == "gear":
-        return Reversed()
-    return Stronger(FIELD[kind], relative) if kind in FORCES else Moved(kind, relative)
-
-
-def plant(monkeypatch: pytest.MonkeyPatch, change: Change) -> None:
-    """Have the engines whose laws of an instant are asked build their models from changed mechanisms."""
-    for engine, name in ((MuJoCo, "model"), (Mjx, "model"), (Pymunk, "swept_model"), (Box2D, "build")):
-        monkeypatch.setattr(engine, name, _planted(getattr(engine, name), change))
-
-
-def _planted(right: Callable[..., Any], change: Change) -> Callable[..., Any]:
-    def wrong(self: Any, mechanism: Mechanism, *given: Any, **named: Any) -> Any:
-        made = right(self, change(mechanism), *given, **named)
-        if isinstance(self, MuJoCo):  # what is read out belongs to the mechanism that was asked for
-            return replace(made, mechanism=mechanism)
-        return (replace(made[0], mechanism=mechanism), made[1]) if isinstance(self, Mjx) else made
-
-    return wrong

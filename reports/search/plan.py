@@ -1,0 +1,99 @@
+"""What is searched for the published page, from seeds that nobody chose; and for as long as there is time, from any."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import subprocess
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import count
+
+from engines import Engine, Unsupported, pymunk
+from engines.registry import INSTALLED, VARIANTS
+from reports.model.fingerprint import OURS, ROOT
+from reports.search import mechanisms
+from reports.search.chunk import Chunk, chunks
+from reports.search.parts import EVERY, TOGGLE
+from reports.search.raw_law import HINGED
+from reports.search.recipe import build
+from reports.search.subjects import ORACLES, Adapted, Alone, Subject, is_shaped
+
+COMMIT, SOURCES = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
+DECADES = (0, 2, 4)  # one for each of the seeds
+CASES, ALONE = 100, 1000  # of an engine for each seed; of MuJoCo alone
+NEAR = 60  # of each engine that knows pins and rods, with rows that nearly depend on each other
+TRIED = 60  # mechanisms of one kind, by which is known whether an engine takes it
+# A slot as users of pymunk build it, wherever its point is: see `engines.pymunk.joints.slot`.
+GROOVE = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
+
+
+@cache
+def origin() -> tuple[str, str]:
+    """(rule, words that seeds are made from): the hash of the last commit, without git that of all sources."""
+    if (ROOT / ".git").exists():
+        asked = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
+        told = subprocess.run(asked, capture_output=True, text=True, check=False)
+        if told.returncode == 0:
+            return COMMIT, told.stdout.strip()
+    files = sorted(path for folder in OURS for path in (ROOT / folder).rglob("*.py"))
+    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in files))
+    return SOURCES, digest.hexdigest()
+
+
+def seeds(many: int = len(DECADES)) -> tuple[int, ...]:
+    """The first eight hexadecimal digits, halved, of the SHA-256 of the origin, a blank and a number from 1."""
+    words = (f"{origin()[1]} {number}" for number in range(1, many + 1))
+    return tuple(int(hashlib.sha256(word.encode()).hexdigest()[:8], 16) // 2 for word in words)
+
+
+@cache
+def taken(engine: Engine) -> tuple[str, ...]:
+    """The kinds of joints and forces of which an engine builds some mechanism."""
+    return tuple(kind for kind in EVERY if any(_is_built(engine, kind, number) for number in range(TRIED)))
+
+
+def _is_built(engine: Engine, kind: str, number: int) -> bool:
+    recipe = mechanisms.recipe(0, number, ("pin", kind))
+    if kind not in recipe.kinds:
+        return False
+    mechanism = build(recipe)
+    try:
+        engine.build(mechanism, mechanism.time_scale / 100)
+    except Unsupported:
+        return False
+    return True
+
+
+def everything() -> list[Subject]:
+    """Every variant of every engine that is installed, and MuJoCo alone."""
+    return [*(Adapted(engine) for engine in (*VARIANTS, *INSTALLED)), Alone()]
+
+
+def published() -> list[Chunk]:
+    """All engines in the mechanisms of the commit's seeds, each of the kinds that it takes; and two kinds of cases by
+    themselves: rows that nearly depend on each other, and pymunk's grooves off the centre of mass."""
+    out: list[Chunk] = []
+    for seed, decades in zip(seeds(), DECADES, strict=True):
+        for subject in everything():
+            kinds, alone = _kinds(subject), isinstance(subject, Alone)
+            out += chunks([subject], seed, ALONE if alone else CASES, kinds, 0 if alone else decades, ORACLES)
+            if decades == 0 and {"pin", "rod"} <= {*kinds} and not is_shaped(subject):
+                near = [kind for kind in ("pin", "spring", "force") if kind in kinds]
+                out += chunks([subject], seed, NEAR, (*near, TOGGLE), 0, ORACLES)
+        if decades == 0:
+            out += chunks([GROOVE], seed, CASES, ("pin", "slot"), 0, ("instant",))
+    return out
+
+
+def fresh(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
+    """So many cases of each subject for one seed after the other, without end; seeds are of the system's randomness."""
+    for number in count():
+        seed, decades = secrets.randbits(31), DECADES[number % len(DECADES)]
+        mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # so that all have their turn in a short run
+        yield [piece for one in mixed for piece in chunks([one], seed, cases, _kinds(one), decades, ORACLES)]
+
+
+def _kinds(subject: Subject) -> tuple[str, ...]:
+    return taken(subject.engine) if isinstance(subject, Adapted) else HINGED

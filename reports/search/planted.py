@@ -1,0 +1,266 @@
+"""The catalogue of wrong models: engines that are given a mechanism with one number off, and how soon this is found.
+
+This is what a mistake in an adapter comes to: its engine moves another mechanism, and is asked for the right one. A
+fault is of a kind of joint, of a force element, of all inertias, or one that depends on how a mechanism is described.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines import Engine, box2d, bullet, exudyn, lagrange, mjx, mujoco, pinocchio, pymunk
+from engines.box2d import Box2D
+from engines.mjx import Mjx
+from engines.mujoco import MuJoCo
+from engines.pymunk import Pymunk
+from reference.checks import InvalidMechanism
+from reference.joints import Body
+from reference.mechanism import Mechanism
+from reference.rolling.curves import Placed
+from reference.rolling.kinematics import Rolling
+from reports.gate.change import Altered
+from reports.gate.judge import projected
+from reports.model.tasks import Task, Values
+from reports.search import relations
+from reports.search.parts import EVERY
+from reports.search.plan import taken
+from reports.search.subjects import Adapted, Told
+
+Array = NDArray[np.float64]
+
+# By kind the number that is off: a part of it, or of a length where it is a point, or so many radians.
+NUMBER = {
+    "pin": "second_point",
+    "slot": "line_angle",
+    "skate": "angle",
+    "roll": "rolling",
+    "drive": "turning_rate",
+    "rod": "length",
+    "gear": "ratio",
+    "weld": "angle",
+    "spring": "stiffness",
+    "damper": "damping",
+    "torsion-spring": "stiffness",
+    "torsion-damper": "damping",
+    "force": "second_point",
+    "torque": "torque",
+}
+ANGLES = ("line_angle", "angle", "rest_angle")
+FURTHER = ("spring rest_length", "torsion-spring rest_angle", "force force")  # other numbers of these kinds
+CLOSING_STEPS = 6  # of Newton's method, which closes the joints of a wrong model: quadratic from a miss of 1e-2
+
+
+@dataclass(frozen=True)
+class Misbuilt(Mechanism):
+    """What an engine builds its model from, while what is read out of it belongs to the mechanism `right`.
+
+    Joints that can't all be closed with the wrong number are as nearly closed as they can be.
+    """
+
+    right: Mechanism = field(kw_only=True)
+
+    def _refuse_a_bad_start(self) -> None:
+        pass
+
+    def reaction(
+        self,
+        pose: Array,
+        acceleration: Array,
+        inertias: Array | None = None,
+        gravity: Array | None = None,
+        twist: Array | None = None,
+    ) -> Array:
+        """Reactions on the right mechanism's rows; its masses too, unless the engine gives its own."""
+        return self.right.reaction(pose, acceleration, inertias, gravity, twist)
+
+    def closed(self, twist: Array) -> Misbuilt:
+        """With the start closed again: poses next to the right ones, and twists next to these (bodies, 3), by mass."""
+        pose = allowed = self.right.pose
+        for _ in range(CLOSING_STEPS):
+            pose, allowed = projected(self, pose, twist, 0.0)
+        bodies = zip(self.bodies, pose.tolist(), allowed.tolist(), strict=True)
+        return replace(self, bodies=tuple(replace(body, pose=tuple(p), twist=tuple(v)) for body, p, v in bodies))
+
+
+@dataclass(frozen=True)
+class Off:
+    """The change of a mechanism in which a number is off by a part: one of FAULTS."""
+
+    fault: str
+    relative: float
+
+    @property
+    def kind(self) -> str:
+        return self.fault.split()[0] if self.fault in FURTHER else self.fault
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        if self.kind == "turned":
+            x, y = mechanism.gravity
+            return replace(mechanism, gravity=((1 + self.relative) * x, y))
+        if self.kind not in NUMBER:
+            bodies = tuple(self._heavier(mechanism, body) for body in mechanism.bodies)
+            return replace(mechanism, bodies=bodies)
+        length = mechanism.length_scale
+        forces = tuple(self._wrong(force, length) for force in mechanism.forces)
+        joints = tuple(self._wrong(joint, length) for joint in mechanism.joints)
+        if joints == mechanism.joints:
+            return replace(mechanism, forces=forces)
+        wrong = Misbuilt(mechanism.bodies, joints, mechanism.gravity, mechanism.forces, right=mechanism)
+        return wrong.closed(mechanism.twist)
+
+    def _wrong(self, part: Any, length: float) -> Any:
+        if kind_of(part) != self.kind:
+            return part
+        name = self.fault.split()[1] if self.fault in FURTHER else NUMBER[self.kind]
+        value = getattr(part, name)
+        if isinstance(value, Rolling):
+            curve = Placed(value.body, shift=(self.relative * length, 0.0))
+            off: Any = Rolling.at_angle(curve, value.ground, value.theta, value.ground_arc)
+        elif name in ANGLES:
+            off = value + self.relative
+        elif isinstance(value, tuple) and name != "force":
+            off = (value[0] + self.relative * length, value[1])
+        elif isinstance(value, tuple):
+            off = tuple((1 + self.relative) * each for each in value)
+        else:
+            off = (1 + self.relative) * value
+        return replace(part, **{name: off})
+
+    def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
+        """With a larger inertia, where that is so of all, or by the place, the name or the unit of this body."""
+        off = {
+            "inertia": True,
+            "shifted": body.pose[0] > 0,
+            "mirrored": body.pose[2] > 0,
+            "renamed": not body.name.isascii(),
+            "swapped": any(joint.second == body.name for joint in mechanism.joints),
+            "in other lengths": body.inertia < 0.02**2 * body.mass,
+            "in other masses": body.mass > 10.5,
+        }[self.kind]
+        return replace(body, inertia=(1 + self.relative) * body.inertia) if off else body
+
+
+def kind_of(part: Any) -> str:
+    """What a joint or a force element is called in recipes."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
+
+
+@contextmanager
+def planting(change: Off) -> Iterator[None]:
+    """The engines whose laws of an instant are asked build their models from changed mechanisms meanwhile."""
+    with ExitStack() as all_of_them:
+        for engine, name in ((MuJoCo, "model"), (Mjx, "model"), (Pymunk, "swept_model"), (Box2D, "build")):
+            wrong = _planted(getattr(engine, name), change)
+            all_of_them.enter_context(mock.patch.object(engine, name, wrong))
+        yield
+
+
+def _planted(right: Any, change: Off) -> Any:
+    def wrong(self: Any, mechanism: Mechanism, *given: Any, **named: Any) -> Any:
+        made = right(self, change(mechanism), *given, **named)
+        if isinstance(self, MuJoCo):  # what is read out belongs to the mechanism that was asked for
+            return replace(made, mechanism=mechanism)
+        return (replace(made[0], mechanism=mechanism), made[1]) if isinstance(self, Mjx) else made
+
+    return wrong
+
+
+FAULTS = ("inertia", *EVERY, *FURTHER, *relations.NAMES)
+# By engine, the variants of which the own error hides least: one for the law of an instant, one for a motion.
+LEAST: Mapping[str, tuple[Engine, ...]] = {
+    "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
+    "mujoco": (mujoco.TUNED, mujoco.EXTENDED),
+    "lagrange": (lagrange.VARIANTS[-1],),
+    "exudyn": (exudyn.EXTENDED,),
+    "box2d": box2d.VARIANTS,
+    "pinocchio": (pinocchio.TUNED,),
+    "mjx": (mjx.TUNED,),
+    "bullet": (bullet.EXTENDED,),
+}
+SEED = 1
+CASES = 300
+SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
+
+
+@dataclass(frozen=True)
+class Control(Task):
+    """How soon a search finds a fault of this kind in an engine, and of which of SIZES it has to be for that."""
+
+    name: str  # of the engine
+    fault: str
+    sizes: tuple[float, ...] = SIZES
+    cases: int = CASES
+
+    @property
+    def cost(self) -> float:
+        return 10.0 + max(engine.building for engine in LEAST[self.name])
+
+    @property
+    def label(self) -> str:
+        return f"planted in {self.name}: {self.fault}"
+
+    @property
+    def engine(self) -> Engine:
+        return LEAST[self.name][0]
+
+    def run(self) -> Values:
+        """The size, and the check and the number of the case that finds it, NaN where none does; whether the engine
+        builds this kind, and how many times it was asked until then."""
+        kind, asked = Off(self.fault, 0.0).kind, 0
+        built = kind not in EVERY or kind in taken(LEAST[self.name][0])
+        for size in self.sizes if built else ():
+            for number, told, check in found(LEAST[self.name], Off(self.fault, size), self.cases):
+                asked += bool(told.errors)
+                if check:
+                    return _values(size, number, built, asked) | {"check": check}
+            if not asked:
+                break
+        return _values(np.nan, np.nan, built, asked) | {"check": ""}
+
+
+def _values(size: float, case: float, built: bool, asked: int) -> dict[str, Any]:
+    told = {"size": size, "case": case, "built": built, "asked": asked}
+    return {name: np.array(value) for name, value in told.items()}
+
+
+def found(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tuple[int, Told, str]]:
+    """(case, what was found, the check that fails by this change and not without it), by number until one does."""
+    relation = change.kind in relations.NAMES
+    kinds = ("pin",) if change.kind not in EVERY else tuple(dict.fromkeys(("pin", change.kind)))
+    for number in range(cases):
+        if relation and relations.NAMES[number % len(relations.NAMES)] != change.kind:
+            continue
+        for engine in engines:
+            right, wrong = Adapted(engine), Adapted(Altered(engine, change))
+            case = right.draw(SEED, number, kinds, 0)
+            if change.kind in EVERY and change.kind not in case.kinds:
+                continue
+            for oracle in ("relations",) if relation else ("instant", "motions"):
+                try:
+                    if oracle == "instant":
+                        with planting(change):
+                            told = right.ask(case, number, (oracle,))
+                    else:
+                        told = wrong.ask(case, number, (oracle,))
+                except (InvalidMechanism, np.linalg.LinAlgError):  # with the fault this one is no mechanism
+                    continue
+                own = [name for name in told.faults if name != "raised" and (not relation or name == change.kind)]
+                if own:
+                    before = right.ask(case, number, (oracle,)).faults
+                    own = [name for name in own if name not in before]
+                yield number, told, f"{engine.variant}: {own[0]}" if own else ""
+                if own:
+                    return
+
+
+def controls() -> list[Control]:
+    """A control for each fault in each engine."""
+    return [Control(name, fault) for name in LEAST for fault in FAULTS]
