@@ -13,7 +13,7 @@ from engines.lagrange import HELD, TRUTH
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.gate.judge import in_numpy
+from reports.gate.judge import TABLEAUS, in_numpy
 from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
 
 Array = NDArray[np.float64]
@@ -64,8 +64,10 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
             raise NotAsked("it says itself that something is wrong")
         found = [found[1], _apart(mechanism, run, truth, promise)]
     rounded = _rounded(mechanism, promise, truth, parts)
-    if _misses(promise, found, rounded) and not _resolved(mechanism, truth, parts):
-        raise NotAsked("something passes within a step, so that a textbook method of order 4 does not show its own")
+    if _misses(promise, found, rounded) and not _resolved(mechanism, promise, truth, parts):
+        raise NotAsked(
+            "something passes within a step: a textbook method does not show its order at these steps either"
+        )
     out = {name: (found[1][name], _may_be(promise, name, found[0][name], rounded[name])) for name in found[1]}
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
@@ -153,16 +155,16 @@ def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory
     return promise.amplified * promise.differences * force / _force_size(mechanism, truth)
 
 
-def _resolved(mechanism: Mechanism, truth: Trajectory, parts: int) -> bool:
-    """Whether a method of order 4 that is no engine shows its order from the steps before these parts to these.
+def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: int) -> bool:
+    """Whether a textbook method of the promised order, or 4, shows it from the steps before these parts to these.
 
     A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of that
     depends on where its stages fall, and its error on no power of the step.
     """
-    promise, spacing = Promise(4), SPAN * mechanism.time_scale / SAMPLES
-    runs = (in_numpy(mechanism, SAMPLES, spacing, 4, every * COARSE, None, True) for every in (parts // 2, parts))
-    found = [_apart(mechanism, run, truth, promise) for run in runs]
-    return not _misses(promise, found, _rounded(mechanism, promise, truth, parts))
+    order, spacing = max(each for each in TABLEAUS if each <= promise.order), SPAN * mechanism.time_scale / SAMPLES
+    runs = (in_numpy(mechanism, SAMPLES, spacing, order, every * COARSE, None, True) for every in (parts // 2, parts))
+    found = [_apart(mechanism, run, truth, Promise(order)) for run in runs]
+    return not _misses(Promise(order), found, _rounded(mechanism, Promise(order), truth, parts))
 
 
 def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
