@@ -32,21 +32,21 @@ check: .venv/installed-develop   ## style, types, layers; and warnings about the
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
-	$(BIN)/python -m tests.prose
+	$(BIN)/python -m tests.tools.prose
 
 bench: .venv/installed-bench     ## what stepping costs beside the bare loops, and the site
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 
 mutants: .venv/installed         ## about 450 deliberate mistakes, and which the tests let through; ONLY=engines/pymunk for some
-	$(BIN)/python -m tests.mutants run $(ONLY)
+	$(BIN)/python -m tests.tools.mutants run $(ONLY)
 
 lower: .venv-lower/installed     ## the tests, without the grid, with the oldest versions of everything that pyproject.toml allows
 	.venv-lower/bin/python -m pytest $(WORKERS) -m "not crosscheck and not slow"
 
 .venv-lower/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-lower
-	$(PYTHON) tests/lower_bounds.py > .venv-lower/constraints.txt
+	$(PYTHON) tests/tools/lower_bounds.py > .venv-lower/constraints.txt
 	.venv-lower/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-lower/constraints.txt --editable ".[test]"
 	touch $@
 

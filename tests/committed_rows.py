@@ -6,7 +6,6 @@ import csv
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from reports.cli.selection import shown_cells
@@ -15,8 +14,8 @@ from reports.model.measure import Measurement, blank
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.write.csv_files import digest
+from tests import RESULTS
 
-RESULTS = Path(__file__).parents[1] / "reports" / "results"
 KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module
 
 

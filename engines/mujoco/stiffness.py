@@ -27,7 +27,7 @@ class Shipped(Valid):
     """MuJoCo's defaults: a time constant of 0.02 s whatever the step, and an impedance that grows with the gap.
 
     It is 0.9 with the gap closed, and 0.95 where it is open by a millimetre and more: R is 0.11 of the inverse inertia
-    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/test_mujoco.py`).
+    and falls to 0.053 (checked against `efc_KBIP` by a test in `tests/engines/test_mujoco.py`).
     """
 
     softening: ClassVar[float] = 1.0
@@ -55,7 +55,7 @@ class TiedToStep(Valid):
     The gap is R f / k, so it falls as the square of the step: the only way to let it vanish without touching the model.
     With its flag `refsafe`, which is on unless it is disabled, MuJoCo clamps a shorter time constant at two steps
     (mjDSBL_REFSAFE in mjtype.h). Its integrator "discrete" is another matter: there an equality is not clamped, and a
-    contact at about one step (4.0.1; a test in `tests/test_mujoco.py` asks it for both).
+    contact at about one step (4.0.1; a test in `tests/engines/test_mujoco.py` asks it for both).
     """
 
     steps: Positive = 5.0

@@ -71,7 +71,7 @@ def times_of(folder: Path) -> Times:
     except ImportError:
         raise ValueError("playwright is not installed: pip install -e '.[browser]'") from None
     if browser is None:
-        raise ValueError("no Chromium is installed: tests/browser.sh installs it on Debian")
+        raise ValueError("no Chromium is installed: tests/tools/browser.sh installs it on Debian")
     running = server(folder, 0)
     threading.Thread(target=running.serve_forever, daemon=True).start()
     address = f"http://127.0.0.1:{running.server_address[1]}/"

@@ -3,9 +3,9 @@
 It knows no engine, but it is no stranger to one: with numba the compiled rows and steps of `engines.lagrange` do its
 work, a hundred times as fast as the steps here, and both take rows from `reference.mechanism`. So others stand beside
 it, which share no code with either. In scenes that is the truth, a closed form or an own integration of few angles, to
-which its errors fall with the order of its method (`tests/test_judge.py`). In random mechanisms of all joints but
-rolling ones, and of all forces, it is the equations in the coordinates of a spanning tree, written anew there
-(`tests/test_judge_witness.py`). Joints that give way are held by the sag of a spring, and by the steps here.
+which its errors fall with the order of its method (`tests/engines/test_judge.py`). In random mechanisms of all joints
+but rolling ones, and of all forces, it is the equations in the coordinates of a spanning tree, written anew there
+(`tests/engines/test_judge_witness.py`). Joints that give way are held by the sag of a spring, and by the steps here.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ need none here.
 - "overwrite": its position and velocity are overwritten after every step (`engines.mujoco.running`). The solver still
   takes the coordinate as one that forces accelerate, so it misjudges the forces in the loop. Measured on the driven
   four-bar linkage with steps of 1e-3 and 1e-4 s: 0.14 rad and 0.14 rad with the loop as shipped, 1.6e-2 rad and 1.5e-4
-  rad with the stiff loop of *tuned* (held by a test in `tests/test_mujoco.py`).
+  rad with the stiff loop of *tuned* (held by a test in `tests/engines/test_mujoco.py`).
 """
 
 # pyright: reportAttributeAccessIssue=false

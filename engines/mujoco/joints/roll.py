@@ -48,7 +48,7 @@ class RollContact(Valid):
     `friction`: the coefficient. `steps`: the contact's time constant in steps (clamped as `engines.mujoco.stiffness`
     says) with its impedance at the limit; None for the shipped 0.02 s. `stick`: slip dies as fast as the integrator
     allows, at the rate 1/dt, and 2/dt for Runge-Kutta's; MuJoCo reads `solreffriction` with the elliptic cone only (a
-    test in `tests/test_mujoco_rolls.py` asks it). `round_shape`: what a circle is.
+    test in `tests/engines/test_mujoco_rolls.py` asks it). `round_shape`: what a circle is.
     """
 
     friction: Positive = 1.0

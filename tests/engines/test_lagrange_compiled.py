@@ -1,0 +1,330 @@
+"""The compiled judge against its numpy twin and against sixty digits: random mechanisms, steps, softness."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+
+from engines import Softness
+from engines.lagrange import METHODS, VARIANTS, Lagrange, loading
+from engines.lagrange.arrays import CHANGE, FORCE_KINDS, KINDS, MATRIX, ROWS, arrays_of
+from engines.lagrange.dynamics import RK4, Dynamics
+from engines.lagrange.machine import Machine
+from reference.forces import Damper, Spring, TorsionDamper, TorsionSpring
+from reference.joints import Drive, Pin, Roll, Skate, Slot
+from reference.mechanism import Mechanism
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.scenes.many_links import LongPendulum
+from reference.scenes.pendulum.scenes import HundredLinks
+from reference.scenes.rolling.scenes import RollingEllipse
+from reference.trajectory import joint_gap, slip
+from reports.gate.judge import in_numpy, integrate
+from reports.search.mechanisms import mechanism as random_mechanism
+from reports.search.parts import EVERY
+from tests import ROOT
+from tests.mechanisms import four_bar, pendulum
+from tests.present import present
+
+pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
+
+
+def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 2) -> tuple[float, float]:
+    """How far compiled poses are from those of numpy, and twists, in parts of the mechanism's own length and speed."""
+    unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+    runs = [replace(method, compiled=compiled).build(mechanism, dt)(2, every) for compiled in (True, False)]
+    pose, twist = (np.abs((getattr(runs[0], what) - getattr(runs[1], what)) / unit).max() for what in ("pose", "twist"))
+    return float(pose), float(twist * mechanism.time_scale)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
+def test_every_method_gives_the_numbers_of_numpy(method):
+    # Baumgarte's spring divides roundings by its time constant, 5e-3 s, squared, and a step multiplies them by 1e-3 s.
+    allowed = 1e-11 if method.stabilisation == "baumgarte" else 1e-13
+    assert max(differences(four_bar(crank_rate=3.0), method, 1e-3, 5)) < allowed
+
+
+JOINTS = {Drive, Pin, Roll, Skate, Slot}
+SOME = range(12, 24)  # of the random mechanisms: every kind of joint, and no roll whose table takes seconds
+
+
+def moves_as_in_numpy(number: int) -> None:
+    mechanism = random_mechanism(11, number)
+    # Least pivots of these are about 1e-4 (`recipe.LEAST_RANK`), which costs numpy's reactions up to four digits.
+    assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
+
+
+@pytest.mark.parametrize("number", SOME)
+def test_random_mechanisms_of_all_joints_move_as_in_numpy(number):
+    moves_as_in_numpy(number)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_random_mechanisms_of_all_joints_links_and_forces_move_as_in_numpy(number):
+    mechanism = random_mechanism(21, number, EVERY)
+    # The largest difference of the first 150 is 1.2e-14.
+    assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
+
+
+def test_the_random_mechanisms_have_every_joint_link_and_force_of_the_compiled_code():
+    drawn = [random_mechanism(21, number, EVERY) for number in range(12)]
+    kinds = {type(part) for mechanism in drawn for part in (*mechanism.joints, *mechanism.forces)}
+    assert kinds == {*KINDS, *FORCE_KINDS}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", sorted({*range(40)} - {*SOME}))
+def test_more_random_mechanisms_of_all_joints_move_as_in_numpy(number):
+    moves_as_in_numpy(number)
+
+
+def exact_acceleration(mechanism: Mechanism) -> np.ndarray:
+    """Accelerations (3 bodies,) at the start, with the row system solved to sixty digits."""
+    with mpmath.workdps(60):
+        rows = mpmath.matrix(mechanism.rows(mechanism.pose).tolist())
+        weight = mpmath.diag([1 / mpmath.mpf(value) for value in mechanism.inertias.reshape(-1)])
+        fall = mpmath.matrix(mechanism.free_fall.reshape(-1).tolist())
+        right = mpmath.matrix(mechanism.bias(mechanism.pose, mechanism.twist).tolist()) - rows * fall
+        moved = fall + weight * rows.T * mpmath.lu_solve(rows * weight * rows.T, right)
+    return np.array([float(value) for value in moved])
+
+
+def test_masses_that_differ_by_many_decades_cost_no_more_digits_than_in_numpy():
+    """Masses and sizes over decades; errors by the work that they would do, in parts of that of all accelerations."""
+    mine, theirs = [], []
+    for number in range(60):
+        mechanism = random_mechanism(12, number, kinds=("pin", "slot", "skate", "drive"), decades=2)
+        if not mechanism.row_count or not (mechanism.twist.any() or any(mechanism.gravity)):
+            continue
+        exact = exact_acceleration(mechanism).reshape(-1, 3)
+        machine = present(Machine.of(mechanism))
+        _, found = machine.reactions(1.0, *machine.empty(0))
+        compared = Dynamics(mechanism, 0.0).acceleration(mechanism.pose, mechanism.twist, 0.0)
+        size, bias = mechanism.inertias * exact**2, mechanism.inertias * mechanism.free_fall**2
+        if size.sum() + bias.sum() == 0:  # it turns about its centre of mass
+            continue
+        for errors, value in ((mine, found[0]), (theirs, compared)):
+            errors.append(np.sqrt(np.sum(mechanism.inertias * (value - exact) ** 2) / (size.sum() + bias.sum())))
+    # The rows are rounded, which costs as many digits as they are near to dependence, about 1e-5 at the worst here; by
+    # their product alone it would be twice as many.
+    assert max(mine) < 1e-10
+    assert max(mine) <= max(theirs)
+
+
+def test_rows_that_follow_from_others_change_no_motion_and_share_the_reaction():
+    mechanism = four_bar(crank_rate=3.0)
+    twice = replace(mechanism, joints=(*mechanism.joints, replace(mechanism.joints[2], name="C again")))
+    once, again = (Lagrange("rk4").build(m, 1e-3)(10, 2) for m in (mechanism, twice))
+    np.testing.assert_allclose(again.pose, once.pose, rtol=0, atol=1e-13)
+    # The smallest reactions: each of the two pins carries half.
+    np.testing.assert_allclose(again.reaction[:, 4:6], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(again.reaction[:, 8:], once.reaction[:, 4:6] / 2, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("links", [100, 1000])
+def test_a_long_chain_is_factorised_in_a_narrow_band(links):
+    scene = LongPendulum(links=links)
+    whole = arrays_of(scene.mechanism()).whole
+    assert whole[CHANGE] - whole[MATRIX] < 4 * whole[ROWS]  # a pin's two rows meet those of its two neighbours
+    run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
+    truth = scene.motion(run.t)
+    # 2e-4 s after its release the chain has hardly turned; what is compared is how its links begin to differ.
+    assert np.max(np.abs(run.twist - truth.twist)) < 1e-9 * links
+
+
+def test_a_projection_with_the_factor_of_the_rows_before_it_leaves_no_slip():
+    mechanism = HundredLinks().mechanism()
+    run = Lagrange("euler").build(mechanism, 1e-3)(4, 25)
+    # Without the correction that makes up for the older factor it is 3e-12 m/s.
+    assert np.abs(slip(mechanism, run)).max() < 1e-13
+    assert np.abs(joint_gap(mechanism, run)).max() < 1e-13
+
+
+def test_a_body_that_rolls_beyond_its_table_gets_another_window_and_moves_as_before():
+    mechanism = RollingEllipse().mechanism()
+    machine = present(Machine.of(mechanism))
+    steps = machine.empty(10), machine.empty(10)
+    machine.march(RK4, 8, 1e-3, 2, 0, *steps[0])
+    machine.windows.cells[:] = np.nan  # as if it had come to where there are no cells yet
+    machine.arrays.rolls[:, 1:3] = 0
+    machine.march(RK4, 8, 1e-3, 2, 0, *steps[1])
+    np.testing.assert_array_equal(steps[0], steps[1])
+
+
+def test_where_a_table_has_no_cell_numpy_goes_on(monkeypatch):
+    mechanism = RollingEllipse().mechanism()
+    expected = Lagrange("rk4", compiled=False).build(mechanism, 1e-3)(4, 2)
+    monkeypatch.setattr("engines.lagrange.machine.Windows.move", lambda self, which, theta: False)
+    found = Lagrange("rk4").build(mechanism, 1e-3)(4, 2)
+    np.testing.assert_array_equal(found.pose, expected.pose)
+    np.testing.assert_array_equal(found.reaction, expected.reaction)
+
+
+@pytest.mark.parametrize("spacing", [0.01, 0.2])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10, 1e-13])
+def test_steps_of_their_own_size_hold_the_tolerance_at_samples_near_and_far(tolerance, spacing):
+    scene = FreeFourBar()
+    run = Lagrange(tolerance=tolerance).build(scene.mechanism(), spacing)(round(1 / spacing), 1)
+    truth = scene.motion(run.t)
+    # Some ten to a hundred steps, each with a tenth of the tolerance, in a motion that amplifies errors a few times.
+    assert np.max(np.abs(run.pose - truth.pose)) < 3 * tolerance
+    assert np.max(np.abs(scene.mechanism().gap(run.pose, run.t))) < 1e-14
+    assert run.warnings == ()
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_pendulum_that_no_step_can_follow_is_told_and_ends(compiled, monkeypatch):
+    monkeypatch.setattr("engines.lagrange.dynamics.MOST_STEPS", 200)  # of the interpreted path: reached as well, sooner
+    # A bar of a micrometre on a bar of a metre: its period is a thousandth, and the tolerance asks for every swing.
+    fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
+    hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
+    assert np.isnan(hopeless.pose[-1]).all()
+    assert "can't be held beyond" in hopeless.warnings[0]
+
+
+def test_a_run_whose_every_sample_takes_thousands_of_steps_is_told_and_ends():
+    # Masses and lengths five decades apart: some 15000 steps from one sample to the next, which each of them may take.
+    own = random_mechanism(1, 152, decades=5)
+    found = Lagrange(tolerance=1e-13).build(own, own.time_scale / 10)(20, 1)
+    assert np.isnan(found.pose[-1]).all()
+    assert "can't be held beyond" in found.warnings[0]
+
+
+def test_a_step_costs_the_same_whether_numba_is_there_or_not(monkeypatch):
+    mechanism = four_bar()
+    expected = [engine.step_cost(mechanism) for engine in VARIANTS]
+    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+    assert [engine.step_cost(mechanism) for engine in VARIANTS] == expected
+
+
+SOFT = (
+    Softness(2500.0, 100.0, 0.01, (True,) * 8),
+    Softness(2500.0, 100.0, 0.0, (True,) * 8, complete=False),
+    Softness(2500.0, 100.0, 0.01, (True, True, False, False, True, True, False, True)),
+)
+
+
+@pytest.mark.parametrize("soft", [None, *SOFT])
+@pytest.mark.parametrize("project", [False, True])
+def test_the_gates_judge_is_the_same_compiled_and_in_numpy(soft, project):
+    scene = FreeFourBar(duration=0.05)
+    found = integrate(scene, 4, 4, soft, project)
+    expected = in_numpy(scene.mechanism(), len(found.t) - 1, scene.spacing, 4, 4, soft, project)
+    np.testing.assert_allclose(found.pose, expected.pose, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(found.reaction, expected.reaction, rtol=0, atol=1e-10 * np.abs(expected.reaction).max())
+
+
+def test_without_numba_the_same_runs_in_numpy(monkeypatch):
+    monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
+    engine = Lagrange("rk4")
+    assert "numba" not in engine.packages
+    run = engine.build(four_bar(), 1e-2)
+    assert run.dynamics is not None
+    assert np.isfinite(run(2, 2).pose).all()
+
+
+PROGRAM = "from engines.lagrange import loading; loading.compiled(); print(loading._folder())"
+
+
+def started(**environment: str) -> subprocess.Popen[str]:
+    """A process that loads the compiled code."""
+    return subprocess.Popen(
+        [sys.executable, "-W", "error", "-c", PROGRAM],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.slow  # compiles once anew
+def test_processes_that_start_at_once_compile_once(tmp_path):
+    working = [started(NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(3)]
+    assert [process.communicate()[1] for process in working] == [""] * 3
+    assert [process.returncode for process in working] == [0] * 3
+    compiled = list(tmp_path.rglob("*.nbc"))
+    assert len(compiled) == 1
+    before = compiled[0].stat().st_mtime_ns
+    with started(NUMBA_CACHE_DIR=str(tmp_path)) as later:
+        assert later.communicate()[1] == ""
+    assert later.returncode == 0
+    assert compiled[0].stat().st_mtime_ns == before
+
+
+def test_an_installation_that_cannot_be_written_to_keeps_compiled_code_in_the_users_cache(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    blocked = tmp_path / "installation"
+    blocked.write_text("a file, in which no folder can be made")
+    monkeypatch.setattr(loading, "_beside", lambda: blocked / "__pycache__")
+    assert present(loading._folder()).parent == tmp_path / "planar-crosscheck"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    assert loading._folder() is None
+
+
+def test_a_command_that_steps_nothing_imports_no_numba():
+    program = "import sys, reports.cli.commands, engines.registry as r; r.ENGINES; print('numba' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False"]
+
+
+# Where steps of their own size are hard: beside singular positions, and with springs a million times as stiff
+
+HOLONOMIC = ("pin", "slot", "rod", "gear", "weld", "spring", "torsion-spring")
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
+def test_a_linkage_that_almost_folds_into_a_line_holds_the_tolerance(off):
+    # A coupler as long as the ground and a rocker as long as the crank: twice a turn all bars lie in one line, where
+    # the linkage could go on as another one, but for what the coupler is longer.
+    scene = FreeFourBar(
+        crank=1.0, coupler=2.0 * (1 + off), rocker=1.0, ground=(2.0, 0.0), start=1.0, rate=5.0, duration=3.0
+    )
+    exact = scene.motion(0.1 * np.arange(31)).pose
+    for tolerance in (1e-6, 1e-9):
+        run = Lagrange(tolerance=tolerance).build(scene.mechanism(), 0.1)(30, 1)
+        assert run.warnings == ()
+        # Some hundred steps and several passages of the line; the largest measured is 4.4 times the tolerance.
+        assert np.abs(run.pose - exact)[..., 2].max() < 20 * tolerance
+
+
+def stiffened(mechanism: Mechanism, factor: float) -> Mechanism:
+    """With springs so many times as stiff."""
+    forces = tuple(
+        replace(force, stiffness=force.stiffness * factor) if isinstance(force, (Spring, TorsionSpring)) else force
+        for force in mechanism.forces
+    )
+    return replace(mechanism, forces=forces)
+
+
+@pytest.mark.parametrize("number", [5, 13, 17, 25, 29, 41, 44])
+def test_random_mechanisms_with_stiff_springs_hold_the_tolerance_over_their_fastest_swings(number):
+    stiff = stiffened(random_mechanism(31, number, HOLONOMIC), 1e6)
+    unit = np.array([stiff.length_scale, stiff.length_scale, 1.0])
+    exact, *runs = (
+        Lagrange(tolerance=tolerance).build(stiff, stiff.time_scale / 10)(10, 1) for tolerance in (1e-13, 1e-8, 1e-10)
+    )
+    assert np.abs((exact.pose - stiff.pose) / unit).max() > 0.05  # these do move
+    # The largest measured, of 45 mechanisms, is 2.6 times the tolerance.
+    for tolerance, run in zip((1e-8, 1e-10), runs, strict=True):
+        assert np.abs((run.pose - exact.pose) / unit).max() < 20 * tolerance
+
+
+def test_a_step_that_stability_sets_and_not_accuracy_is_told():
+    # A damper that stops a body in a millionth of the time in which gravity moves it: an explicit method creeps.
+    scene = FreeFourBar()
+    damped = replace(
+        scene.mechanism(),
+        forces=(Damper("stop", None, scene.mechanism().bodies[2].name, (3.0, 0.0), (0.0, 0.0), 1e5),),
+    )
+    run = Lagrange(tolerance=1e-8).build(damped, 0.01)(10, 1)
+    assert any("stability and not accuracy sets the steps" in warning for warning in run.warnings)
+    turned = replace(damped, forces=(TorsionDamper("stop", None, damped.bodies[2].name, 1e5),))
+    assert Lagrange(tolerance=1e-8).build(turned, 0.01)(10, 1).warnings
+    assert Lagrange(tolerance=1e-8).build(scene.mechanism(), 0.01)(10, 1).warnings == ()

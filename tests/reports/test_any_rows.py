@@ -1,0 +1,402 @@
+"""Every page can be read, whatever was run: any part of the rows of the committed results, and any of them failed."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import random
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from reports.check.picture_data import PictureData, Pose
+from reports.cli.selection import shown_cells
+from reports.gate.prediction import Softened, all_tasks
+from reports.model.catalogue import PAGES
+from reports.model.cells import Cell
+from reports.model.measure import Measurement, blank
+from reports.model.outcomes import Outcome
+from reports.model.page import Material, Page, no_words
+from reports.model.quantities import QUANTITIES
+from reports.model.tasks import Answer, Motion, Task, answered
+from reports.pages.engines.experiments import ASKED, Capabilities, OpenWork, VelocityTerm
+from reports.pages.errata import experiments as referees
+from reports.pages.faults.experiments import Equalities, Grooves, Offsets
+from reports.pages.faults.page import Script
+from reports.pages.findings.findings import findings
+from reports.pages.index import render_index, render_readme
+from reports.pages.pendulum.experiments import Neighbours
+from reports.pages.published import acrobot, newton
+from reports.pages.rendering import render_page
+from reports.pages.rolling import drawings as rolling_drawings
+from reports.pages.rolling import page as rolling
+from reports.pages.rolling.experiments import polygon_cells, softness_cells
+from reports.pages.scaling import page as scaling
+from reports.pages.skate import methods as turning_round
+from reports.pages.skate import page as skate
+from reports.pages.skate.methods import slipping
+from reports.pages.wheels import experiments as wheels_failures
+from reports.pages.wheels import page as wheels
+from reports.pages.wheels.experiments import Folding
+from reports.pages.your_model.experiments import Walk
+from reports.plots import theme
+from reports.write.experiments import observe
+from reports.write.templates import environment
+from reports.write.unmeasured import FILTERS, MARK, UNMEASURED, WORDS, Known, without_marks
+from tests import ROOT
+from tests.committed_rows import page_rows
+
+SUBSETS, MORE = 3, 16  # of every page: every day, and among the slow tests
+FAILED = [outcome for outcome in Outcome if not outcome.comparable]
+NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
+FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))  # the others have none, or compute when written
+# The pictures of the others show the truth alone, with trajectories over it that no row holds.
+DRAWN_FROM_ROWS = ("skate", "rolling", "scaling")
+
+# Some errors stay and others fall: only of those that stay can a sentence say where.
+PLATEAU = ("however small the step", "at every step", "(plateau ")
+
+Rows = Mapping[Cell, Measurement]
+
+
+def some(rows: Rows, chance: random.Random) -> Rows:
+    """A part of the rows: single ones, engines, variants, scenes, steps and purposes taken away, others failed."""
+    kept = dict(rows)
+    for of in (
+        lambda cell: cell.engine.name,
+        lambda cell: cell.engine.variant,
+        lambda cell: cell.scene.name,
+        lambda cell: cell.every,
+        lambda cell: cell.purpose,
+    ):
+        if kept and chance.random() < 0.3:
+            gone = of(chance.choice(list(kept)))
+            kept = {cell: row for cell, row in kept.items() if of(cell) != gone}
+    share = chance.choice([0.0, 0.1, 0.5, 0.9, 0.99])
+    kept = {cell: row for cell, row in kept.items() if chance.random() >= share}
+    failing, unknown = chance.choice([0.0, 0.1, 0.7, 1.0]), chance.choice([0.0, 0.0, 0.3])
+    for cell, row in kept.items():
+        if chance.random() < failing:
+            kept[cell] = blank(cell, chance.choice(FAILED), chance.choice(["", "a reason"]))
+        elif chance.random() < unknown:
+            kept[cell] = replace(row, **dict.fromkeys(chance.sample(NUMBERS, 4), math.nan))
+    return kept
+
+
+def prose(text: str) -> str:
+    """A page with a word for its lines of code, and for code among words."""
+    return re.sub(r"`[^`\n]+`", "CODE", re.sub(r"^```.*?^```$", "CODE", text, flags=re.DOTALL | re.MULTILINE))
+
+
+def complaints(page: str, files: Mapping[str, str]) -> list[str]:
+    """What a reader would stumble over on a page, and on the data page beside it if there is one."""
+    text = "\n".join(prose(files[name]) for name in (f"{page}.md", f"{page}_data.md") if name in files)
+    sentences = "\n".join(line for line in text.splitlines() if not line.startswith("|"))
+    found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
+    found += [line for line in text.splitlines() if re.search(r"\b(nan|None|Undefined|Unmeasured)\b", line)]
+    for line in sentences.splitlines():
+        if re.search(r"(^|[\s(])[,.;:)](\s|$)", line):
+            found.append(f"torn sentence: {line}")
+        if re.search(r"(?<!\|) - (rad|m|s|ms|N|off)\b", line):
+            found.append(f"no number: {line}")
+    found += [f"nothing follows: {match[0]}" for match in re.finditer(r":\n\n+(#.*|\Z)", sentences)]
+    shown = set(re.findall(r"\]\((\w+\.svg)\)", text))
+    drawn = {name for name in files if name.endswith(".svg")}
+    found += [f"picture without file: {name}" for name in shown - drawn]
+    found += [f"file without picture: {name}" for name in drawn - shown]
+    known = (
+        {f"{page.name}.md" for page in PAGES}
+        | {page.data_page for page in PAGES if page.scenes}
+        | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
+    )
+    found += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))[)#]", text)) - known]
+    return found
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pictures are made of nothing, since drawing them is what costs; which there are is decided as always."""
+    drawn = theme.svg
+    for module in [module for name, module in sys.modules.items() if name.startswith("reports")]:
+        for name, value in list(vars(module).items()):
+            if inspect.isfunction(value) and value.__annotations__.get("return") == "Figure":
+                monkeypatch.setattr(module, name, lambda *arguments, **settings: None)
+            elif value is drawn:
+                monkeypatch.setattr(module, name, lambda figure, title: "<svg/>")
+    monkeypatch.setattr(rolling_drawings, "roulettes", lambda: None)
+
+
+@cache
+def pictures_of_the_truth(page: Page) -> Mapping[str, str]:
+    return dict.fromkeys(page.figures(Material({})), "<svg/>")
+
+
+def cheap(page: Page) -> Page:
+    """A page without what needs no rows and takes long: what its tasks tell, pictures of the truth alone."""
+    quiet = tuple(replace(failure, observations=None) for failure in page.failures)
+    if page.name in DRAWN_FROM_ROWS:
+        return replace(page, failures=quiet)
+    return replace(page, failures=quiet, figures=lambda material: pictures_of_the_truth(page))
+
+
+def written(page: Page, rows: Rows) -> Mapping[str, str]:
+    return render_page(page, Material(rows), "the command")
+
+
+def read_from_parts_of_its_rows(page: Page, seeds: range) -> None:
+    for seed in seeds:
+        rows = some(page_rows(page), random.Random(f"{page.name} {seed}"))
+        assert complaints(page.name, written(cheap(page), rows)) == [], seed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_many_parts_of_its_rows_it_is_written_from(page, undrawn):
+    read_from_parts_of_its_rows(page, range(SUBSETS, MORE))
+
+
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_rows_it_is_written_from(page, undrawn):
+    read_from_parts_of_its_rows(page, range(SUBSETS))
+    assert complaints(page.name, written(cheap(page), {})) == []
+    failed = {cell: blank(cell, Outcome.FAILED, "RuntimeError: something") for cell in page_rows(page)}
+    assert complaints(page.name, written(cheap(page), failed)) == []
+
+
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_charts_can_be_drawn_of_a_few_rows_and_of_unknown_numbers(page):
+    """Really drawn: what is cheap to draw, since a chart of little is where axes and legends break."""
+    chance, rows = random.Random(page.name), page_rows(page)
+    few = {cell: rows[cell] for cell in chance.sample(list(rows), 12)}
+    for cell in list(few)[::2]:
+        few[cell] = replace(few[cell], **dict.fromkeys(chance.sample(NUMBERS, 6), math.nan))
+    for name, text in written(replace(cheap(page), figures=lambda material: {}), few).items():
+        assert not name.endswith(".svg") or text.startswith("<?xml")
+
+
+def test_the_charts_of_experiments_can_be_drawn_of_a_few_rows_and_of_failed_ones():
+    chance = random.Random(0)
+    rows = page_rows(rolling.PAGE)
+    corners = [(value, rows[cell]) for value, cell in polygon_cells()]
+    constants = [(value, rows[cell]) for value, cell in softness_cells()]
+    chains = page_rows(scaling.PAGE)
+    for count in (1, 4):
+        few, soft = chance.sample(corners, count), chance.sample(constants, count)
+        failed = [(value, replace(row, angle=math.nan)) for value, row in few]
+        failed_soft = [(value, replace(row, angle=math.nan)) for value, row in soft]
+        assert theme.svg(rolling.draw_plateaus(few, soft), "few")
+        assert theme.svg(rolling.draw_plateaus(failed, failed_soft), "failed")
+        some_chains = {cell: chains[cell] for cell in chance.sample(list(chains), count)}
+        for own in (some_chains, {cell: blank(cell, Outcome.TIMED_OUT) for cell in some_chains}):
+            assert scaling.figures(Material(own))
+
+
+def test_the_overview_can_be_read_whatever_was_run():
+    for seed in range(4):
+        materials = {page: Material(some(page_rows(page), random.Random(f"{page.name} {seed}"))) for page in FROM_ROWS}
+        text = render_index(materials, "the command")
+        drawn = {found.picture: "<svg/>" for found in findings(materials)}
+        assert complaints("index", {"index.md": text, **drawn}) == [], seed
+        readme = render_readme((ROOT / "README.md").read_text(encoding="utf-8"), materials)
+        assert "nan" not in readme
+
+
+@pytest.mark.parametrize("page", FROM_ROWS, ids=lambda page: page.name)
+def test_with_every_row_every_clause_stands(page, undrawn, monkeypatch):
+    vanished: list[str] = []
+
+    def kept(clause: str) -> str:
+        if MARK in clause and not any(words in clause for words in PLATEAU):
+            vanished.append(clause)
+        return "" if MARK in clause else clause
+
+    monkeypatch.setitem(FILTERS, "if_measured", kept)
+    answers = {task: still(task) for task in all_tasks(page)}
+    # A body that stays where it is does not slip: what remarks say of motions needs the motions themselves.
+    said = (
+        task
+        for failure in page.failures
+        if failure.words is not no_words
+        for task in failure.tasks
+        if not isinstance(task, Neighbours)  # takes seconds, and any growth makes a sentence
+    )
+    material = Material(page_rows(page), answers | {task: answered(task) for task in said})
+    assert complaints(page.name, render_page(cheap(page), material, "the command")) == []
+    assert vanished == []
+
+
+@pytest.mark.parametrize(
+    ("template", "said"),
+    [
+        ("{{ row.angle | number }}", WORDS),
+        ("{{ row.cpu | milliseconds }}", WORDS),
+        ("{{ (1e3 * row.step / row.other.step) | number }}", WORDS),
+        ("{{ rows[3].step | number(3) }}", WORDS),
+        ("{{ '%.2f' | format(row.order) }}", WORDS),
+        ("{{ row }} {{ unknown }} {{ nothing }}", f"{WORDS} {WORDS} {WORDS}"),
+        ("{% if row %}run{% else %}not run{% endif %}", "not run"),
+        ("{% if row.points >= 2 %}many{% endif %}", ""),
+        ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
+        ("a{% filter if_measured %}: {{ 0.25 | number }} rad{% endfilter %}.", "a: 0.25 rad."),
+        (
+            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
+            "a: 1.",
+        ),
+        ("a\n![A chart]({{ pictures.chart }})\nb", "a\nb"),
+        ("a\n![A chart]({{ pictures.drawn }})\nb", "a\n![A chart](drawn.svg)\nb"),
+    ],
+)
+def test_a_forgotten_guard_says_so_and_a_clause_without_its_number_vanishes(template, said):
+    given = {
+        "row": UNMEASURED,
+        "rows": Known(),
+        "unknown": math.nan,
+        "nothing": None,
+        "pictures": Known(drawn="drawn.svg"),
+    }
+    assert without_marks(environment().from_string(template).render(given)) == said
+
+
+# Of a user's model of which no setting that was tried is exact enough, and one gave up.
+STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
+ERRORS = {"angle": [0.0, 1e-3]}
+SHOWN = PictureData([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
+WALKED = {
+    "duration": 2.0,
+    "error": 0.5,
+    "judge_errors": {"angle": 1e-12},
+    "parts": {"softness": 0.1, "step": 0.4, "smallest": 1e-5, "rest": 0.1, "falling": False},
+    "opening": {"row": "loop x", "gap": 0.5, "t": 2.0},
+    "notes": [],
+    "tried": [{"words": "as it is", "error": 0.5, "reaction": None}, {"words": "1 ms", "error": None, "reaction": 0.5}],
+    "advised": None,
+}
+
+
+def still(task: Task, lost: bool = False) -> Answer:
+    """An invented answer: a body that stays where it started, or whose numbers are lost half-way."""
+    values: dict[str, Any]
+    match task:
+        case Motion(cell=cell):
+            mechanism, times = cell.scene.mechanism(), cell.sample_count + 1
+            t = np.linspace(0, cell.scene.duration, times)
+            pose, twist = (np.tile(values, (times, 1, 1)) for values in (mechanism.pose, 0 * mechanism.twist))
+            values = {"t": t, "pose": pose, "twist": twist, "reaction": np.zeros((times, mechanism.row_count))}
+        case referees.Refereed():
+            mechanism = referees.QUESTIONS[task.question].mechanism()
+            pose, twist = (np.tile(values, (referees.POINTS, 1, 1)) for values in (mechanism.pose, mechanism.twist))
+            values = {"pose": pose, "twist": twist}
+        case Folding():
+            mechanism, t = task.scene.mechanism(), np.linspace(0, task.scene.duration, 30)
+            values = {"jackknifed": np.asarray(1.0), "t": t, "pose": np.tile(mechanism.pose, (30, 1, 1))}
+        case Neighbours():
+            values = {"growth": np.ones(len(task.times))}
+        case Offsets():
+            values = {"across": np.full(len(task.offsets), -0.1)}
+        case Grooves() | Equalities():
+            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
+        case Script():
+            values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
+        case newton.Newton():
+            values = {name: np.full(len(newton.STEPS), bound / 2) for name, bound in newton.BOUNDS.items()}
+        case acrobot.Acrobot():
+            values = dict.fromkeys(("drift", "rounded"), np.full(len(acrobot.STEPS), 1e-3))
+        case Walk():
+            values = {"found": json.dumps(WALKED), "shown": SHOWN.as_text()}
+        case OpenWork():
+            values = {"lost": np.asarray(-0.1), "work": np.full(8, -0.01)}
+        case VelocityTerm():
+            values = {"t": np.ones(2), "with": np.full(2, 0.5), "without": np.full(2, 1e-6)}
+        case Capabilities():
+            values = {**dict.fromkeys(ASKED, "yes"), "reactions": "yes", "width": "64 bits"}
+        case Softened():
+            values = {quantity.name: np.asarray(1e-3) for quantity in QUANTITIES}
+        case _:
+            values = {"error": np.asarray(0.5), "evaluations": np.asarray(7.0), "stopped": "", "when": np.asarray(2.0)}
+            values |= {quantity.name: np.asarray(0.5) for quantity in QUANTITIES}
+    if lost and isinstance(task, (Motion, referees.Refereed)):
+        for name in ("pose", "twist"):
+            values[name][len(values[name]) // 2 :] = np.nan
+    return Answer(Outcome.FINISHED, values=values)
+
+
+def some_answers(page: Page, chance: random.Random) -> dict[Task, Answer]:
+    """To a part of a page's tasks, some of them failed."""
+    found = {}
+    for task in all_tasks(page):
+        match chance.choice(["missing", "failed", "lost", "still", "still"]):
+            case "failed":
+                found[task] = Answer(chance.choice(FAILED), chance.choice(["", "a reason"]))
+            case "lost" | "still" as kind:
+                found[task] = still(task, kind == "lost")
+    return found
+
+
+WITH_TASKS = [page for page in PAGES if all_tasks(page)]
+
+
+@pytest.mark.parametrize("page", WITH_TASKS, ids=lambda page: page.name)
+def test_a_page_can_be_read_whatever_became_of_its_tasks(page, undrawn):
+    tasks = all_tasks(page)
+    chance = random.Random(page.name)
+    for answers in (
+        {},
+        {task: Answer(Outcome.ABORTED, "a signal") for task in tasks},
+        *(some_answers(page, chance) for _ in range(3)),
+    ):
+        files = render_page(page, Material({}, answers), "the command")
+        told = prose(files[f"{page.name}.md"])
+        assert not re.search(r"\b(nan|None|Unmeasured)\b|\{\{|\{%", told)
+        assert MARK not in told
+        assert WORDS not in told
+
+
+@pytest.mark.parametrize("outcome", [Outcome.ABORTED, Outcome.UNSUPPORTED])
+def test_a_motion_that_was_lost_costs_its_own_line_alone(outcome):
+    for page, observations in (
+        (skate.PAGE, turning_round.backwards),
+        (skate.PAGE, slipping),
+        (wheels.PAGE, wheels_failures.folding),
+    ):
+        told = observations(Material({}, {task: Answer(outcome, "no such thing") for task in all_tasks(page)}))
+        assert [seen for seen in told if "exact" in seen.method or "closed form" in seen.method]
+        engines = [seen for seen in told if "reference" not in seen.method]
+        lost = [seen for seen in engines if seen.outcome == "**aborted**: no such thing"]
+        assert bool(lost) == (outcome == Outcome.ABORTED)
+
+
+def test_a_motion_that_can_not_be_read_says_so_in_its_line():
+    cell = Motion(turning_round.TURNING_ROUND[0]).cell
+    material = Material({}, {Motion(cell): still(Motion(cell))})
+    with pytest.raises(ZeroDivisionError):  # a mistake of ours is no observation
+        observe(material, cell, "a step", lambda run: f"{1 / 0}")
+    lost = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
+    [line] = observe(lost, cell, "a step", lambda run: "all is well")
+    assert line.outcome == "**diverged**: not finite from 5 s"
+
+
+def test_an_experiment_of_which_no_task_was_run_says_so():
+    page = replace(skate.PAGE, figures=lambda material: {})
+    for answers, waiting in (({}, True), ({task: still(task) for task in all_tasks(page)}, False)):
+        text = render_page(page, Material({}, answers), "the command")["skate_data.md"]
+        section = text.split("### The sleigh run backwards")[1].split("###")[0]
+        assert "exact motion" in section
+        assert ("Not run yet." in section) == waiting
+
+
+def test_a_referee_that_fails_is_named_and_the_others_rule():
+    first, second = referees.TASKS[0], referees.TASKS[-1]
+    lost: list[str] = []
+    found = referees.rulings([(first, Answer(Outcome.ABORTED, "no such thing")), (second, still(second))], lost)
+    assert lost == ["pymunk extended where a disc rolls off a round hill: **aborted**: no such thing"]
+    assert {ruling.about for ruling in found} == {"the double pendulum falls"}
+    unsupported = Answer(Outcome.UNSUPPORTED, "no such joint")
+    assert referees.rulings([(first, still(first, lost=True)), (second, unsupported)], lost) == ()
+    assert lost[1:] == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]

@@ -1,0 +1,337 @@
+"""The failure atlas: what a column tells, the lines that explain it by a second method, its files, its page."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.patches import PathPatch
+
+from engines import Softness
+from engines.registry import VARIANTS
+from reference.scenes.pendulum.scenes import LinkPendulum
+from reports.model.cells import Cell
+from reports.model.ending import FINE, REFUSED
+from reports.model.measure import measure
+from reports.model.outcomes import TORN, Outcome
+from reports.model.page import Material
+from reports.model.tasks import Answer
+from reports.pages.atlas import page
+from reports.pages.atlas.column import Column, bisected, gives_from, left_by_sweeps, line_of
+from reports.pages.atlas.page import atlas_map, edges
+from reports.pages.atlas.subjects import SUBJECTS, Subject, rocking, rod_rate, stiffest_hanging
+from reports.pages.atlas.table import (
+    BY_LETTER,
+    CELLS,
+    COSTS,
+    LIKE_THE_LAST,
+    Cost,
+    Costs,
+    Line,
+    as_csv,
+    costs_as_csv,
+    power,
+    read,
+    read_costs,
+)
+from reports.pages.rendering import render_page
+from reports.plots.looks import HATCHES, outcome_colour
+from reports.plots.theme import LIGHT
+from reports.run.store import Store
+from tests import RESULTS
+from tests.reports.test_command_line import call, one_line
+from tests.toys import Disc, FailingToy, Toy
+
+SHOWN = tuple(engine for engine in VARIANTS if engine.variant in ("default", "tuned"))
+TOYS = Subject(
+    "toys", "Toys", "rate [rad/s]", lambda rate: Disc(rate=rate), (1.0, 100.0), lambda rate: rate, "the disc"
+)
+
+
+def line(value: float, outcomes: str, engine: str = "toy", gives: float = math.nan, left: float = math.nan) -> Line:
+    counts = tuple(10 * 2**place for place in range(len(outcomes)))
+    errors = tuple(-1.5 if letter == "·" else math.nan for letter in outcomes)
+    return Line("toys", engine, "default", value, 0.1, counts, outcomes, errors, gives, left)
+
+
+@pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
+def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range(subject):
+    values, steps = subject.at(40), subject.steps(40)
+    assert len(steps) == 40
+    assert (values[0], values[-1]) == pytest.approx(subject.values)
+    assert all(np.diff(values) > 0)
+    assert len({samples for samples, _ in steps}) <= 11
+    for value in (values[0], values[len(values) // 2], values[-1]):
+        assert subject.make(value).mechanism().bodies
+        assert 0 < subject.frequency(value) < math.inf
+        assert subject.make(value) == subject.make(value)
+
+
+def test_steps_are_evenly_spaced_in_their_logarithm_and_the_largest_come_first():
+    counts = [samples * every for samples, every in SUBJECTS[0].steps(40)]
+    assert counts == sorted(set(counts))
+    ratios = np.diff(np.log(counts))
+    even = SUBJECTS[0].doublings * math.log(2) / 39
+    assert np.all(np.abs(ratios - even) < 0.1)  # two counts of ten and more, each rounded by a half
+
+
+def test_lines_of_the_map_are_rates_that_closed_forms_and_fine_grids_give():
+    # Of two equal bars the squared frequencies are (3 +- 6/sqrt(7)) g/l; of one, 3/2 g/l.
+    assert stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
+    two = LinkPendulum(links=2, length=0.7)
+    assert stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
+    scene = next(each for each in SUBJECTS if each.name == "offset").make(1e-3)
+    angles = np.linspace(0, 2 * math.pi, 200_001)
+    largest = np.abs(scene.shape.rates(angles)[0]).max() * scene.rate  # type: ignore[attr-defined]
+    assert rod_rate(1e-3) == pytest.approx(largest, rel=1e-3)
+    # An ellipse rocks with omega^2 = m g (a^2/b - b) / (I + m b^2): its centre hangs below the middle of curvature.
+    a, b = 0.5, 0.1
+    inertia = (a**2 + b**2) / 4
+    assert rocking(b / a) == pytest.approx(math.sqrt(9.81 * (a**2 / b - b) / (inertia + b**2)), rel=1e-3)
+
+
+class Soft:
+    """Declares a softness: the gap that carries a body is compliance g / stiffness, whatever the step."""
+
+    def __init__(self, stiffness: float, compliance: float, complete: bool = True) -> None:
+        self.told = Softness(stiffness, 1.0, compliance, (True, True), complete)
+        self.tied = False
+
+    def softness(self, mechanism: object, dt: float) -> Softness:
+        return replace(self.told, stiffness=self.told.stiffness / dt**2) if self.tied else self.told
+
+
+def test_softness_gives_where_the_gap_of_the_weight_is_a_twentieth_of_the_length():
+    """The disc turns about its centre: the pin carries its weight, 10 m/s^2, and needs no other acceleration."""
+    scene, mechanism = Disc(), Disc().mechanism()
+    limit = TORN * mechanism.length_scale
+    soft, hard = Soft(10 * 0.1 / limit * 0.99, 0.1), Soft(10 * 0.1 / limit * 1.01, 0.1)
+    assert gives_from(scene, mechanism, (soft, hard), 1e-3, 1e-1) == [0.0, math.inf]  # type: ignore[arg-type]
+    tied = Soft(10 * 0.1 / limit * 1e-4, 0.1)  # gives at a step of 1e-2 s
+    tied.tied = True
+    [found] = gives_from(scene, mechanism, (tied,), 1e-3, 1e-1)  # type: ignore[arg-type]
+    assert found == pytest.approx(1e-2, rel=0.07)  # looked for at 81 steps over two decades
+    # The pin stays where it is, so that an engine without the term of velocities loses nothing.
+    lacking = Soft(1.0, 0.0, complete=False)
+    assert gives_from(scene, mechanism, (lacking,), 1e-3, 1e-1) == [math.inf]  # type: ignore[arg-type]
+
+
+def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():
+    mechanism = LinkPendulum(links=10).mechanism()
+    left = {engine: left_by_sweeps(mechanism, engine) for engine in SHOWN}
+    for engine, value in left.items():
+        assert math.isnan(value) == (engine.iterations_of(mechanism) is None)
+        assert math.isnan(value) or 0 < value < 1
+
+
+def test_a_column_tells_what_its_cells_do_and_an_abort_costs_one_cell():
+    steps = ((10, 1), (10, 4))
+    column = Column(Disc(), (Toy(), Toy("other", factor=1e6)), steps)
+    answer = dict(column.run())
+    cells = [Cell(Disc(), engine, every, "map", samples) for engine in column.engines for samples, every in steps]
+    rows = [measure(cell, repeat=False) for cell in cells]
+    assert str(answer["outcomes"]).split(",") == [str(row.outcome) for row in rows]
+    np.testing.assert_array_equal(np.ravel(answer["errors"]), [row.angle for row in rows])
+    assert [len(single.cells(single.engines[0])) for single in column.singles] == [1] * 4
+    assert [single.engines for single in column.singles] == [(Toy(),)] * 2 + [(column.engines[1],)] * 2
+
+
+def found_of(told: str, stride: int) -> tuple[str, str]:
+    """(letters as a column with these outcomes would keep them, the letters that are drawn)."""
+    by_letter: Any = {place: SimpleNamespace(outcome=letter) for place, letter in enumerate(told)}
+    rows = bisected(by_letter.__getitem__, len(told), stride)
+    kept = "".join(told[place] if place in rows else LIKE_THE_LAST for place in range(len(told)))
+    drawn = "".join(one.letter for one in line(1.0, kept).told)
+    assert line(1.0, kept).run == len(rows)
+    return kept, drawn
+
+
+def test_borders_are_as_sharp_as_if_every_point_had_been_run():
+    for border in range(1, 21):
+        told = "T" * border + "S" * 7 + "·" * (27 - border)
+        kept, drawn = found_of(told, 4)
+        assert drawn == told
+        assert LIKE_THE_LAST in kept
+        assert found_of(told, 1) == (told, told)
+
+
+def test_what_is_narrower_than_the_stride_may_be_missed_and_nothing_else():
+    assert found_of("····S····", 4) == ("·=··S··=·", "····S····")  # one that is run
+    assert found_of("··S······", 4) == ("·===·===·", "·········")  # one between two that are alike
+    assert found_of("SS", 4) == ("SS", "SS")
+    assert found_of("S", 4) == ("S", "S")
+
+
+def test_a_column_leaves_out_what_lies_between_points_that_end_alike():
+    steps = tuple((10, every) for every in range(1, 10))
+    column = Column(Disc(), (Toy(), FailingToy("refuse")), steps, 4)
+    answer = Answer(Outcome.FINISHED, values=column.run())
+    lines = [line_of(TOYS, 2.0, column, engine, {column: answer})[0] for engine in column.engines]
+    assert [one.outcomes for one in lines] == ["·===·===·", "r===r===r"]
+    assert [math.isnan(error) for error in lines[0].errors] == [letter == LIKE_THE_LAST for letter in lines[0].outcomes]
+    assert {single.stride for single in column.singles} == {1}
+
+
+def test_a_column_whose_process_ends_is_asked_cell_by_cell(tmp_path):
+    from reports.cli.atlas import run_columns, whole
+    from reports.cli.terminal import Terminal
+    from reports.run.cluster import pool
+
+    column = Column(Disc(), (Toy(), FailingToy("abort")), ((10, 1), (10, 2)))
+    with Store(tmp_path / "cells.sqlite") as store:
+        assert run_columns(Terminal(80), store, [column], pool(1)) == 1
+        answers = whole(store, [column])[column]
+        assert run_columns(Terminal(80), store, [column], pool(1)) == 0
+    assert len(answers) == 4
+    told = [line_of(TOYS, 2.0, column, engine, answers)[0] for engine in column.engines]
+    assert [one.outcomes for one in told] == ["··", "AA"]
+    assert all(math.isnan(error) for error in told[1].errors)
+
+
+LINES = (
+    line(1.0, "·S·T", gives=0.01, left=0.2),
+    line(10.0, "TTS·", gives=0.03, left=0.7),
+    line(100.0, "TTTR", "other", gives=math.inf),
+)
+
+
+def test_the_files_are_read_as_they_were_written(tmp_path):
+    (tmp_path / CELLS).write_text(as_csv(LINES), encoding="utf-8")
+    assert sorted(map(str, read(tmp_path / CELLS))) == sorted(map(str, LINES))
+    assert read(tmp_path / "none.csv") == ()
+    (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match=r"wrong\.csv: it is no atlas"):
+        read(tmp_path / "wrong.csv")
+    costs = Costs("x86_64; Python 3", 12.5, 2, math.nan, 100.0, (Cost("toys", "toy default", 8, 0.25),))
+    (tmp_path / COSTS).write_text(costs_as_csv(costs))
+    assert str(read_costs(tmp_path / COSTS)) == str(costs)
+    assert read_costs(tmp_path / "none.csv") is None
+    with pytest.raises(ValueError, match="no list of an atlas's costs"):
+        read_costs(tmp_path / "wrong.csv")
+
+
+def test_letters_and_powers_say_what_became_of_a_cell():
+    for outcome in Outcome:
+        assert BY_LETTER[outcome.letter].comparable == outcome.comparable
+    assert BY_LETTER["·"] is Outcome.FINISHED
+    assert LINES[0].steps == (0.1, 0.05, 0.025, 0.0125)
+    assert LINES[0].told == (Outcome.FINISHED, Outcome.SATURATED, Outcome.FINISHED, Outcome.TORN)
+    assert (power(2e-3), power(1.0)) == (-2.7, 0.0)
+    assert math.isnan(power(math.nan))
+    assert math.isnan(power(0.0))
+
+
+def test_regions_lie_where_the_cells_of_their_outcome_are():
+    figure = atlas_map(TOYS, LINES[:2])
+    [panel] = [axes for axes in figure.axes if axes.get_visible()]
+    across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
+    painted = [patch for patch in panel.patches if isinstance(patch, PathPatch) and patch.get_fill()]
+    for column, own in enumerate(LINES[:2]):
+        for row, outcome in enumerate(own.told[::-1]):
+            middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
+            colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
+            assert colours[0] == outcome_colour(outcome, LIGHT)
+    assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
+
+
+def test_lines_are_drawn_only_where_they_explain_something():
+    def labels(lines):
+        return {text.get_text() for text in atlas_map(TOYS, lines).legends[0].get_texts()}
+
+    swept = "sweeps leave half of the slowest mode"
+    soft = "from here on the method's own softness tears a joint"
+    assert {swept, soft} <= labels(LINES[:2])
+    assert not {swept, soft} & labels(LINES[2:])
+    # 2 / rate is above the largest step of 0.1 s up to 20 rad/s.
+    assert not any("frequency" in label for label in labels(LINES[:2]))
+    assert any("frequency of the disc" in label for label in labels([*LINES[:2], line(100.0, "TT·S")]))
+
+
+def test_the_largest_safe_step_is_safe_at_every_value():
+    assert page.largest_safe([line(1.0, "·S··"), line(2.0, "TTS·")]) == "0.013"
+    assert page.largest_safe([line(1.0, "·S··")]) == "0.025"
+    assert page.largest_safe([line(1.0, "···T")]) == "-"
+    assert page.agreement(
+        [line(1.0, "TT··", gives=0.1), line(2.0, "TT··", gives=0.3), line(3.0, "····", gives=0.1)]
+    ) == (
+        1,
+        2,
+    )
+
+
+def test_scaling_is_bounded_by_what_one_client_gets_through():
+    lines = (Cost("toys", "toy default", 1000, 30.0),)
+    told = page.scaling(Costs("here", 0.0, 2, math.nan, 1000.0, lines))
+    assert told["stops"] == pytest.approx(30.0)  # 30 ms a cell, 1000 of them stored in a second
+    assert "| 64 | 7.81 min | 16.7 min | the client |" in told["table"]
+    fast = page.scaling(Costs("here", 0.0, 2, 10.0, 1e9, lines))
+    assert fast["stops"] == pytest.approx(3.0)  # 10 chunks of 0.3 s in a second
+
+
+def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
+    def text() -> str:
+        files = render_page(page.PAGE, Material({}), "crosscheck report")
+        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {each.name for each in SUBJECTS} & shown}
+        return files["atlas.md"]
+
+    shown: set[str] = set()
+    monkeypatch.setattr(page, "lines", lambda: ())
+    monkeypatch.setattr(page, "costs", lambda: None)
+    assert "Nothing was run yet" in text()
+    shown = {"coupler"}
+    monkeypatch.setattr(page, "lines", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
+    monkeypatch.setattr(page, "costs", lambda: Costs("here", 1.0, 2, math.nan, 1000.0, (Cost("a", "b", 10, 1.0),)))
+    for words in (
+        "Not run yet: A four-bar driven fast;",
+        "was not measured with this run",
+        "Run were 2 of these 4 points",
+    ):
+        assert words in text()
+
+
+def test_what_is_published_is_whole_and_small():
+    published = RESULTS / CELLS
+    if not published.is_file():
+        pytest.skip("no atlas is published")
+    assert published.stat().st_size < 1_000_000
+    found = {(each.subject, each.method) for each in read(published)}
+    assert found == {(s.name, f"{e.name} {e.variant}") for s in SUBJECTS for e in SHOWN}
+
+
+def test_the_command_maps_writes_and_goes_on(monkeypatch, tmp_path, capsys, at_home):
+    monkeypatch.chdir(tmp_path)
+    words = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
+    assert call(*words) == FINE
+    folder = tmp_path / "crosscheck-results" / "atlas"
+    found = read(folder / CELLS)
+    assert {each.method for each in found} == {f"{engine.name} {engine.variant}" for engine in SHOWN}
+    assert all(len(each.outcomes) == 3 for each in found)
+    assert "3 of 3 columns run" in capsys.readouterr().out
+    assert call(*words) == FINE
+    assert "0 of 3 columns run" in capsys.readouterr().out
+    costs = read_costs(folder / COSTS)
+    assert costs
+    assert costs.cells == 3 * 3 * len(SHOWN)
+
+
+@pytest.mark.parametrize("words", [("--scenes", "lenght"), ("--scenes", ",")])
+def test_unknown_maps_are_refused_in_a_line(words, monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert call("atlas", *words) == REFUSED
+    assert "length" in one_line(capsys.readouterr().err)
+
+
+def test_no_two_failures_look_and_read_alike():
+    failed = [outcome for outcome in Outcome if not outcome.comparable]
+    assert len({outcome.letter for outcome in failed}) == len(failed)
+    fine, *colours = (
+        {outcome_colour(outcome, LIGHT) for outcome in Outcome if outcome.comparable == good} for good in (True, False)
+    )
+    assert fine == {LIGHT.good, LIGHT.middling}
+    assert LIGHT.good not in colours[0]
+    assert len(set(HATCHES.values())) == len(HATCHES)

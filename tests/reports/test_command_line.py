@@ -1,0 +1,290 @@
+"""The program's ends: each status, one line and no traceback, whatever becomes of its files, its pipes or Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+from unittest.mock import Mock
+
+import pytest
+
+from engines import registry
+from engines.lagrange import Lagrange
+from reference.scenes.four_bar.scenes import DrivenFourBar
+from reports import __main__ as program
+from reports.cli import commands, selection
+from reports.cli import report as report_command
+from reports.model import catalogue
+from reports.model.cells import Cell
+from reports.model.ending import FINE, INTERRUPTED, REFUSED, UNREAD, BadInput, Broken
+from reports.model.measure import blank, measure
+from reports.model.outcomes import Outcome
+from reports.pages import index, rendering
+from reports.run import files
+from reports.run.files import write_whole
+from reports.run.store import Store
+from reports.write.csv_files import as_csv
+from tests import ROOT
+from tests.reports.test_reports import PAGE
+from tests.rows import row
+from tests.toys import Disc, Toy
+
+ONE_CELL = ("driven_four_bar", "--engine", "lagrange", "--variant", "euler baumgarte", "--every", "1")
+
+
+def call(*words):
+    """The exit status of the command line, in this process."""
+    with pytest.raises(SystemExit) as ending:
+        program.main([str(word) for word in words])
+    return ending.value.code
+
+
+def environment():
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def one_line(err):
+    assert len(err.strip().splitlines()) == 1, err
+    assert err.startswith("crosscheck: ")
+    return err
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capfd):
+    one_stored(here)
+    assert call("run", *ONE_CELL) == FINE
+    assert "0 of 1 cells run" in capfd.readouterr().out
+    (here / "crosscheck-results" / "cells.sqlite").write_text("no results\n" * 1000)
+    for words in (("report",), ("show", ONE_CELL[0])):
+        assert call(*words) == REFUSED
+        assert "is damaged" in one_line(capfd.readouterr().err)
+    assert call("run", *ONE_CELL) == FINE
+    out, err = capfd.readouterr()
+    assert "cells.sqlite.damaged-1" in one_line(err)
+    assert "1 of 1 cells run" in out
+    assert call("show", ONE_CELL[0]) == FINE
+    kept = {"cells.sqlite", "cells.sqlite.damaged-1", "truths"}
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == kept
+    assert {path.name for path in here.iterdir()} == {"crosscheck-results"}
+
+
+@pytest.mark.parametrize("words", [("show", "driven_four_bar"), ("report",), ("report", "--publish")])
+def test_reading_commands_make_no_store(words, here, capfd):
+    assert call(*words) == REFUSED
+    assert "crosscheck run" in one_line(capfd.readouterr().err)
+    assert call(*words, "--results", "my results") == REFUSED
+    assert "--results 'my results'" in capfd.readouterr().err
+    assert list(here.iterdir()) == []
+
+
+def one_stored(folder):
+    """As after a run of ONE_CELL."""
+    with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
+        store.put(blank(Cell(DrivenFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
+
+
+def checkout(folder, monkeypatch):
+    """A folder that looks like a checkout, with its files' texts."""
+    texts = {"README.md": "a readme", "reports/results/index.md": "an index"}
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    monkeypatch.setattr(report_command, "CHECKOUT", folder)
+    return texts
+
+
+def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
+    texts = checkout(here / "checkout", monkeypatch)
+    one_stored(here)
+    assert call("report", "--publish") == REFUSED
+    said = one_line(capfd.readouterr().err)
+    left, total = (int(said.split()[place]) for place in (4, 6))
+    assert 0 < total - left <= 1
+    assert said.endswith("crosscheck run --full\n")
+    assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
+    assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
+
+
+def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, monkeypatch, capfd):
+    """Its cells are not missing, since nobody can run them: they would be taken out without a word."""
+    texts = checkout(here / "checkout", monkeypatch)
+    texts["reports/results/errors.csv"] = as_csv(
+        [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
+    )
+    (here / "checkout/reports/results/errors.csv").write_text(texts["reports/results/errors.csv"])
+    absent = {"bullet": "bullet needs pybullet", "mjx": "mjx needs jax", "exudyn": "it is in no row"}
+    monkeypatch.setattr(registry, "ABSENT", absent)
+    one_stored(here)
+    assert call("report", "--publish") == REFUSED
+    said = one_line(capfd.readouterr().err)
+    assert "bullet needs pybullet; mjx needs jax" in said
+    assert "exudyn" not in said
+    assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
+
+
+def test_nothing_is_published_outside_a_checkout(here, monkeypatch, capfd):
+    monkeypatch.setattr(report_command, "CHECKOUT", here / "site-packages")
+    assert call("report", "--publish") == REFUSED
+    assert "checkout" in one_line(capfd.readouterr().err)
+    assert list(here.iterdir()) == []
+
+
+def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch, capfd):
+    """With a grid of one cell and one page of one line, since rendering is not the subject."""
+    checkout(here / "checkout", monkeypatch)
+    cell = Cell(Disc(), Toy(), 1)
+    monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
+    monkeypatch.setattr(selection, "page_cells", lambda page: (cell,))
+    monkeypatch.setattr(
+        rendering, "render_all", lambda material, command, further, made: {"index.md": f"made by {command}"}
+    )
+    monkeypatch.setattr(index, "render_readme", lambda text, material: f"{text}, with a table")
+    with Store(here / "crosscheck-results" / "cells.sqlite") as store:
+        store.put(measure(cell, repeat=False))
+    assert call("report") == FINE
+    assert (here / "checkout" / "README.md").read_text() == "a readme"
+    assert (here / "checkout/reports/results/index.md").read_text() == "an index"
+    assert (here / "crosscheck-results/index.md").read_text() == "made by crosscheck report"
+    (here / "crosscheck-results/index.md").unlink()
+    assert call("report", "--publish") == FINE
+    assert (here / "checkout" / "README.md").read_text() == "a readme, with a table"
+    assert (here / "checkout/reports/results/index.md").read_text() == "made by make publish"
+    assert not (here / "crosscheck-results/index.md").exists()
+
+
+@pytest.mark.parametrize("command", [("run", *ONE_CELL), ("show", "driven_four_bar"), ("report",)])
+def test_results_that_can_not_be_a_folder_are_one_line(command, here, capfd):
+    (here / "file").write_text("mine")
+    for results in ("file", "file/below", "x" * 300):
+        assert call(*command, "--results", results) == REFUSED
+        one_line(capfd.readouterr().err)
+    assert (here / "file").read_text() == "mine"
+
+
+def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
+    old = {tmp_path / name: "old" for name in ("a.md", "b.md", "c.md")}
+    new = dict.fromkeys(old, "new\n")
+    for path, text in old.items():
+        path.write_text(text)
+    full = OSError(28, "No space left on device")
+
+    def texts():
+        return {path: path.read_text() for path in tmp_path.iterdir()}
+
+    for ends, told in (
+        ([None, None, full], pytest.raises(files.FileTrouble, match=r"c\.md can't be written \(No space.*make room")),
+        ([KeyboardInterrupt], pytest.raises(KeyboardInterrupt)),
+    ):
+        with monkeypatch.context() as patched, told:
+            patched.setattr(files.os, "fsync", Mock(side_effect=ends))
+            write_whole(new, "make room")
+        assert texts() == old
+    (tmp_path / "d.md").mkdir()
+    with pytest.raises(files.FileTrouble, match=r"d\.md can't be written \(a folder has its name\)"):
+        write_whole({**new, tmp_path / "d.md": "new"}, "make room")
+    (tmp_path / "d.md").rmdir()
+    assert texts() == old
+    write_whole(new, "make room")
+    assert texts() == new
+
+
+def test_a_link_is_replaced_and_what_it_leads_to_is_not(tmp_path):
+    (tmp_path / "target").write_text("mine")
+    (tmp_path / "page.md").symlink_to(tmp_path / "target")
+    write_whole({tmp_path / "page.md": "new"}, "")
+    assert (tmp_path / "target").read_text() == "mine"
+    assert not (tmp_path / "page.md").is_symlink()
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (Broken("3 cells are lost"), 1, "crosscheck: 3 cells are lost\n"),
+        (files.FileTrouble("two\nlines"), 2, "crosscheck: two lines\n"),
+        (BadInput("bad"), 2, "crosscheck: bad\n"),
+        (OSError(24, "Too many open files"), 2, "crosscheck: Too many open files\n"),
+        (PermissionError(13, "Permission denied", "a.csv"), 2, "crosscheck: a.csv: Permission denied\n"),
+        (BrokenPipeError(), UNREAD, ""),
+        (KeyboardInterrupt(), INTERRUPTED, ""),
+    ],
+)
+def test_each_ending_has_its_status_and_its_line(error, status, line, monkeypatch, capfd):
+    monkeypatch.setattr(commands, "invoke", Mock(side_effect=error))
+    assert call("list") == status
+    assert capfd.readouterr() == ("", line)
+
+
+def test_a_mistake_of_the_program_itself_is_not_hidden(monkeypatch):
+    monkeypatch.setattr(commands, "invoke", Mock(side_effect=ZeroDivisionError))
+    with pytest.raises(ZeroDivisionError):
+        program.main(["list"])
+
+
+def test_a_command_s_own_status_is_the_program_s(monkeypatch):
+    def command():
+        raise commands.typer.Exit(7)
+
+    application = commands.typer.Typer()
+    application.command("one")(command)
+    application.command("other")(lambda: None)
+    monkeypatch.setattr(commands, "app", application)
+    assert call("one") == 7
+    assert call("other") == FINE
+
+
+def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
+    assert call() == FINE
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert out.startswith("Usage: crosscheck")
+    assert "Exit status: 0 fine" in " ".join(out.split())
+
+
+def test_a_word_in_capitals_gets_a_suggestion(capfd):
+    assert call("run", "FREE_FOUR_BAR") == REFUSED
+    assert "did you mean 'free_four_bar'?" in one_line(capfd.readouterr().err)
+    assert call("run", "--engine", "PyMunk") == REFUSED
+    assert "did you mean 'pymunk'?" in one_line(capfd.readouterr().err)
+
+
+def ended(words, **streams):
+    return subprocess.run([sys.executable, "-m", "reports", *words], env=environment(), text=True, **streams)
+
+
+def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
+    if not Path("/dev/full").exists():
+        pytest.skip("/dev/full is there on Linux alone")
+    with open("/dev/full", "w") as full:
+        for words in (["errata", "1"], ["--help"]):
+            process = ended(words, stdout=full, stderr=subprocess.PIPE)
+            assert process.returncode == REFUSED
+            assert "No space left on device" in one_line(process.stderr)
+        process = ended(["nonsense"], stdout=subprocess.PIPE, stderr=full)
+        assert (process.returncode, process.stdout) == (REFUSED, "")
+
+
+def test_a_reader_that_goes_away_ends_the_program_without_a_word():
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        process = ended(["errata"], stdout=writing, stderr=subprocess.PIPE)
+    finally:
+        os.close(writing)
+    assert (process.returncode, process.stderr) == (UNREAD, "")
+
+
+def test_closed_streams_are_no_reason_to_fail(tmp_path):
+    """And no file takes the number of a closed stream, to be written into."""
+    words = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
+    process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *words], env=environment())
+    assert process.returncode == FINE
+    with closing(Store(tmp_path / "cells.sqlite")._connection) as connection:
+        assert connection.execute("select count(*) from results").fetchone() == (1,)

@@ -1,0 +1,205 @@
+"""Scenes and engines of somebody else that exit, trap, hang, fork or lie: an outcome or one line, never a traceback."""
+
+from __future__ import annotations
+
+import http.client
+import os
+import re
+import threading
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from engines.loading import load
+from reports.cli import known
+from reports.model import catalogue
+from reports.model.cells import Cell, estimated_cost
+from reports.model.ending import REFUSED, BadInput
+from reports.model.measure import blank, measure
+from reports.model.page import Material
+from reports.pages.rendering import render_page
+from reports.run.supervisor import supervise
+from reports.site.folder import server
+from reports.site.markdown import Formulas, html
+from reports.write.csv_files import as_csv
+from reports.write.templates import inert_page
+from tests.reports.test_command_line import call, one_line
+from tests.toys import Disc, Toy
+
+SCENE = """
+import os, signal, time
+from dataclasses import dataclass
+from typing import ClassVar
+import numpy as np
+from tests.toys import Disc, turning
+
+@dataclass(frozen=True)
+class Odd(Disc):
+    name: ClassVar[str] = "odd"
+
+"""
+DEEDS = {
+    "raises": "raise RuntimeError('no such thing')",
+    "refuses": "raise ValueError('no such thing')",
+    "exits": "os._exit(0)",
+    "leaves": "raise SystemExit(0)",
+    "interrupts": "raise KeyboardInterrupt",
+    "traps": "os.kill(os.getpid(), signal.SIGILL)",
+    "sleeps": "time.sleep(1e6)",
+}
+OF_SCENES = {
+    "mechanism": "def mechanism(self):",
+    "__eq__": "__hash__ = Disc.__hash__\n    def __eq__(self, other):",
+    "__hash__": "def __hash__(self):",
+    "__repr__": "def __repr__(self):",
+    "samples": "@property\n    def samples(self):",
+    "__post_init__": "def __post_init__(self):",
+}
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(known, "SLEEPING", 10.0)  # s: a loaded machine imports for seconds
+    return tmp_path
+
+
+def member(text, head, deed):
+    return f"{text}    {head}\n        {DEEDS[deed]}\n"
+
+
+def told_in_a_line(capfd):
+    told = one_line(capfd.readouterr().err)
+    assert "Traceback" not in told
+    return told
+
+
+SAID = {
+    "raises": "RuntimeError: no such thing",
+    "refuses": "ValueError: no such thing",
+    "exits": "the process ended by itself with exit status 0",
+    "leaves": "SystemExit: 0",
+    "interrupts": "KeyboardInterrupt",
+    "traps": "aborted with signal 4 (SIGILL)",
+    "sleeps": "did not end within 10 s",
+}
+FEW = [("mechanism", "raises"), ("mechanism", "exits"), ("__eq__", "raises")]
+MANY = [
+    *(("mechanism", deed) for deed in SAID),
+    *((name, deed) for name in ("samples", "__eq__", "__hash__", "__repr__", "__post_init__") for deed in [*SAID][:4]),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "deed"), [*FEW, *(pytest.param(*each, marks=pytest.mark.slow) for each in MANY if each not in FEW)]
+)
+def test_what_a_scene_s_own_code_does_is_one_line(here, capfd, name, deed):
+    (here / "odd_scene.py").write_text(member(SCENE, OF_SCENES[name], deed))
+    assert call("run", "odd_scene.py") == REFUSED
+    told = told_in_a_line(capfd)
+    assert told.startswith("crosscheck: odd_scene.py: ")
+    assert name == "__post_init__" or SAID[deed] in told
+    assert not (here / "crosscheck-results").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "telling"),
+    [
+        ("duration: ClassVar[float] = float('inf')", "duration is inf"),
+        ("horizon: ClassVar[float] = 0.0", "horizon is 0.0"),
+        ("samples: ClassVar[int] = 0", "samples is 0"),
+        ("samples: ClassVar[int] = 2**40", "samples is 1099511627776"),
+        ("samples = property(lambda self: 0)", "samples is 0"),
+    ],
+)
+def test_a_scene_of_no_duration_or_samples_is_refused(here, text, telling):
+    path = here / f"odd_{abs(hash(text))}.py"  # a name of its own: modules stay
+    path.write_text(f"{SCENE}    {text}\n")
+    with pytest.raises(ValueError, match=r"\w") as told:
+        load(str(path), catalogue.SCENE)
+    assert telling in str(told.value)
+
+
+@pytest.mark.parametrize("deed", ["raise RuntimeError('no')", "return float('nan')", "return 'long'"])
+def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
+    @dataclass(frozen=True)
+    class Odd(Toy):
+        def step_cost(self, mechanism) -> Any:
+            if "raise" in deed:
+                raise RuntimeError("no")
+            return float("nan") if "nan" in deed else "long"
+
+    with pytest.raises(BadInput, match="toy default: step_cost of disc"):
+        estimated_cost(Cell(Disc(), Odd(), 1))
+
+
+def forks(number):
+    """In the child too it returns a number, as an engine does that forks and forgets."""
+    if os.fork() == 0 and number % 2:
+        time.sleep(1e4)
+    return number
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_job_that_forks_is_answered_once_and_its_child_is_ended():
+    before = set(children_of_all())
+    told = list(supervise(forks, range(6), 20.0, workers=2))
+    assert sorted((item, result) for item, result, _ in told) == [(number, number) for number in range(6)]
+    late = time.monotonic() + 10.0  # a killed process stays in the list until its new parent has taken notice
+    while any(each not in before and sleeping(each) for each in children_of_all()) and time.monotonic() < late:
+        time.sleep(0.05)
+    assert [each for each in children_of_all() if each not in before and sleeping(each)] == []
+
+
+def children_of_all():
+    return [path.name for path in Path("/proc").iterdir() if path.name.isdigit()]
+
+
+def sleeping(process):
+    """Whether it is a worker of these tests whose parent is gone."""
+    try:
+        words = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+        return words[1] == "1" and b"forkserver" in Path(f"/proc/{process}/cmdline").read_bytes()
+    except OSError:
+        return False
+
+
+def test_names_are_words_on_pages_and_no_formula_is_one_in_a_table():
+    page = inert_page("# <script>x</script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n")
+    assert page == "# &lt;script>x&lt;/script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n"
+    site = html("# <script>x</script>\n\n| <img src=x onerror=y> |\n|--|\n| <!--><iframe> `<b>` |\n", Formulas())
+    assert set(re.findall(r"<[/!]?[\w-]+", site)) == {"<h1", "</h1", "<div", "</div", "<table", "</table", "<!--"} | {
+        f"<{slash}{tag}" for slash in ("", "/") for tag in ("thead", "tbody", "tr", "th", "td", "code")
+    }
+    row = replace(
+        blank(Cell(Disc(), Toy(), 1)), engine="=cmd|' /C calc'!A0", variant="+1", sentence="@x", position=-1.0
+    )
+    line = as_csv([row], timings=False).splitlines()[1]
+    assert "'=cmd|" in line
+    assert ",'+1," in line
+    assert ",'@x," in line
+    assert ",-1," in line
+
+
+def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
+    odd = replace(Disc(), rate=3.0)
+    vars(odd)["name"] = "<script>alert(1)</script>"
+    page = catalogue.generic_page(odd, (Toy(),))
+    cells = [Cell(odd, Toy(), every) for every in (1, 3, 10)]
+    files = render_page(page, Material({cell: measure(cell, repeat=False) for cell in cells}, {}), "crosscheck report")
+    assert not [name for name, text in files.items() if "<script" in text]
+
+
+def test_the_server_answers_to_a_name_that_no_file_can_have(tmp_path, capfd):
+    with server(tmp_path, 0) as running:
+        threading.Thread(target=running.serve_forever, daemon=True).start()
+        for name in ("/%00", "/a%00b.md", "/" + 5000 * "x"):
+            asked = http.client.HTTPConnection("127.0.0.1", running.server_port, timeout=20)
+            asked.request("GET", name)
+            assert asked.getresponse().status == 404
+            asked.close()
+        running.shutdown()
+    assert capfd.readouterr().err == ""

@@ -1,0 +1,213 @@
+"""What becomes of a run: the bound of every outcome and its sentence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from reference.trajectory import Trajectory
+from reports.model.cells import Cell
+from reports.model.measure import compare, measure
+from reports.model.outcomes import BLOWN, LETTERS, MEANINGS, SATURATED, TORN, Outcome, describe_exit, of_motion
+from tests.reports.test_errors import SCENE, Pair
+from tests.reports.test_measure import DISC, LENGTH, TIMES, Given, disc, shifted
+from tests.rows import row
+from tests.toys import Disc, FailingToy, ImpossibleDisc, Toy
+
+
+def outcome_of(trajectory: Trajectory, scene=DISC) -> tuple[str, str]:
+    found = measure(Cell(scene, Given(trajectory), 1), repeat=False)
+    return found.outcome, found.sentence
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "outcome", "telling"),
+    [
+        (disc(), "finished", ""),
+        (disc(reset_at=0.05), "reset", "started anew by itself at 0.05 s"),
+        (shifted(0, np.nan, 7), "diverged", "not finite from 0.07 s"),
+        (disc(twist=np.where(np.arange(21) < 6, 0.0, np.nan)[:, None, None] + disc().twist), "diverged", "from 0.06 s"),
+        (shifted(1, 1.01 * BLOWN * LENGTH), "diverged", f"opened by {1.01 * BLOWN * LENGTH:.2g} m"),
+        (shifted(1, 0.99 * BLOWN * LENGTH), "torn", f"in a mechanism of {LENGTH:.2g} m"),
+        (shifted(1, 1.01 * TORN * LENGTH), "torn", f"opened by {1.01 * TORN * LENGTH:.2g} m"),
+        (shifted(1, 0.99 * TORN * LENGTH), "finished", ""),
+        (shifted(2, 1.01 * SATURATED), "saturated", f"wrong by {1.01 * SATURATED:.2g} rad within the horizon"),
+        (shifted(2, 0.99 * SATURATED), "finished", ""),
+        (disc(unresolved_at=0.05, estimate=np.full((21, 1, 3), 3e-5)), "unresolved", "its own estimate is 3e-05 rad"),
+        (disc(unresolved_at=0.0, estimate=np.full((21, 1, 3), np.nan)), "unresolved", "so it has no estimate"),
+    ],
+)
+def test_each_outcome_has_its_bound_and_its_number(trajectory, outcome, telling):
+    found = outcome_of(trajectory)
+    assert found[0] == outcome
+    assert found[1] == telling if not telling else telling in found[1]
+
+
+def cut(count):
+    exact = disc()
+    return Trajectory(exact.t[:count], exact.pose[:count], exact.twist[:count], exact.reaction[:count], 0.0)
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "found", "expected"),
+    [
+        (None, "a NoneType", "a Trajectory"),
+        (cut(0), "t of the shape (0,)", "(21,)"),
+        (cut(1), "t of the shape (1,)", "(21,)"),
+        (cut(18), "t of the shape (18,)", "(21,)"),
+        (disc(t=TIMES + 1000.0), "an instant that is 1e+03 s off", "multiples of 0.01 s"),
+        (disc(t=-TIMES), "an instant that is 0.4 s off", "multiples of 0.01 s"),
+        (disc(t=TIMES + 0.005), "an instant that is 0.005 s off", "multiples of 0.01 s"),
+        (disc(pose=np.zeros((21, 2, 3)), twist=np.zeros((21, 2, 3))), "pose of the shape (21, 2, 3)", "(21, 1, 3)"),
+        (disc(reaction=np.zeros((21, 3))), "reaction of the shape (21, 3)", "(21, 2)"),
+        (disc(stepping=-1.0), "stepping = -1.0 s", "CPU seconds from 0 on"),
+        (disc(stepping=math.nan), "stepping = nan s", "CPU seconds from 0 on"),
+    ],
+)
+def test_what_is_no_motion_at_the_instants_asked_for_has_no_errors_and_a_sentence(trajectory, found, expected):
+    row = measure(Cell(DISC, Given(trajectory), 1), repeat=False)
+    assert (row.outcome, row.sentence) == (
+        "failed",
+        f"its run gave {found}{' with 1 steps a sample' * ('instant' in found)}; the contract of engines asks for "
+        f"{expected}",
+    )
+    assert math.isnan(row.angle)
+    assert math.isnan(row.cpu)
+
+
+def test_beyond_the_horizon_a_wrong_angle_is_told_and_is_no_failure():
+    scene = Disc(horizon=0.1)
+    outcome, sentence = outcome_of(shifted(2, 0.75, 15), scene)
+    assert (outcome, sentence) == ("finished", "beyond the horizon an angle is wrong by 0.75 rad")
+
+
+def test_a_drive_that_falls_behind_is_torn():
+    t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
+    for lag, outcome, telling in (
+        (1.01 * SATURATED, "torn", "the drive fell behind by"),
+        (0.99 * SATURATED, "finished", ""),
+    ):
+        late = replace(SCENE.motion(t), stepping=0.0)
+        late.pose[:, 0, 2] -= lag * t / t[-1]
+        found = measure(Cell(Pair(horizon=0.01), Given(late), 1), repeat=False)
+        assert found.outcome == outcome
+        assert telling in found.sentence
+        assert found.drive_gap == pytest.approx(lag)
+
+
+@pytest.mark.parametrize(
+    ("variant", "outcome"),
+    [
+        ("flip", "branch flip"),
+        ("blind", "diverged"),
+        ("nan", "diverged"),
+        ("tear", "torn"),
+        ("reset", "reset"),
+        ("saturate", "saturated"),
+        ("refuse", "refused"),
+        ("unsupported", "unsupported"),
+    ],
+)
+def test_a_toy_that_fails_as_it_says_is_told_apart(variant, outcome):
+    found = measure(Cell(DISC, FailingToy(variant), 1), repeat=False)
+    assert found.outcome == outcome
+    assert found.sentence
+
+
+def test_changes_of_assembly_are_counted():
+    found = measure(Cell(DISC, FailingToy("flip"), 1), repeat=False)
+    assert (found.flips, found.sentence) == (1, "1 change of assembly that the truth lacks")
+    sentence = of_motion(row(gap=0.0, drive_gap=0.0, flips=2), DISC.mechanism(), disc(), len(TIMES))[1]
+    assert sentence == "2 changes of assembly that the truth lacks"
+
+
+def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) -> str:
+    """What a row with these fields is, by the first rule that holds."""
+    quiet = {"gap": 0.0, "drive_gap": 0.0, "flips": 0, "angle": 0.0, "angle_duration": 0.0}
+    given = row(**{**quiet, **fields_of_a_row})
+    count = len(trajectory.t) if count is None else count
+    return of_motion(given, DISC.mechanism(), trajectory, count)[0]
+
+
+def test_the_gravest_finding_decides():
+    """Each is taken away from a row that has them all: what is left is the next."""
+    everything = {"gap": 2 * BLOWN * LENGTH, "drive_gap": 1.0, "flips": 2, "angle": 1.0, "angle_duration": 1.0}
+    assert told(disc(reset_at=0.1), 5, **everything) == "reset"
+    assert told(disc(), 5, **everything) == "diverged"
+    for outcome, changed in (
+        ("diverged", {}),
+        ("torn", {"gap": 0.5 * BLOWN * LENGTH}),
+        ("torn", {"gap": 0.0}),
+        ("branch flip", {"drive_gap": 0.0}),
+        ("saturated", {"flips": 0}),
+        ("finished", {"angle": 0.0}),
+    ):
+        everything |= changed
+        assert told(disc(), **everything) == outcome
+
+
+@pytest.mark.parametrize(
+    ("warnings", "quiet"),
+    [((), True), (("ours: the solver missed",), True), (("Nan in qacc",), False), (("ours: a", "theirs"), False)],
+)
+def test_only_the_engines_own_words_count_as_a_warning(warnings, quiet):
+    trajectory = replace(shifted(1, 2 * TORN * LENGTH), warnings=warnings)
+    outcome, sentence = outcome_of(trajectory)
+    assert outcome == "torn"
+    assert ("without a warning" in sentence) == quiet
+    assert all(warning in sentence for warning in warnings)
+
+
+def test_where_the_textbook_refuses_there_is_no_error_and_the_sentence_says_so():
+    found = measure(Cell(ImpossibleDisc(), Given(disc(warnings=("a warning",))), 1), repeat=False)
+    assert (found.outcome, found.sentence) == ("finished", "the reference refuses: no such motion; a warning")
+    assert found.gap == 0.0
+    assert math.isnan(found.angle)
+
+
+def test_a_motion_that_is_finite_nowhere_is_diverged_from_the_start():
+    outcome, sentence = outcome_of(shifted(0, np.nan))
+    assert (outcome, sentence) == ("diverged", "not finite from 0 s")
+
+
+def test_what_comes_after_the_first_sample_that_is_not_finite_is_not_compared():
+    trajectory = shifted(2, 0.25, 15)
+    trajectory.pose[5] = np.nan
+    found = compare(Cell(DISC, Toy(), 1), DISC.mechanism(), trajectory, row())
+    assert (found.outcome, found.angle) == ("diverged", 0.0)
+
+
+def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_three_can_be_compared():
+    assert set(MEANINGS) == set(LETTERS) == set(Outcome)
+    assert all(outcome.meaning == MEANINGS[outcome] and outcome.letter == LETTERS[outcome] for outcome in Outcome)
+    assert len(set(MEANINGS.values())) == len(MEANINGS)
+    good = [outcome for outcome in Outcome if outcome.comparable]
+    assert good == [Outcome.FINISHED, Outcome.CONVERGED, Outcome.PLATEAU]
+    # The two that a map shows alike show a number there instead of a letter.
+    letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
+    assert len(set(letters)) == len(letters)
+    assert {str(outcome) for outcome in Outcome} == {
+        "finished", "converged", "plateau", "unresolved", "saturated", "branch flip", "torn", "diverged", "reset",
+        "refused", "unsupported", "aborted", "timed out", "failed", "lost",
+    }  # fmt: skip
+
+
+def test_the_bounds_are_those_that_the_meanings_tell():
+    assert (TORN, BLOWN, SATURATED) == (1 / 20, 1000, 1 / 2)
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (-6, "aborted with signal 6 (SIGABRT)"),
+        (-11, "aborted with signal 11 (SIGSEGV)"),
+        (-250, "aborted with signal 250 (unknown)"),
+        (3, "the process ended by itself with exit status 3"),
+        (0, "the process ended by itself with exit status 0"),
+    ],
+)
+def test_an_exit_code_is_put_in_words(code, words):
+    assert describe_exit(code) == words

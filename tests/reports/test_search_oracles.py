@@ -1,0 +1,426 @@
+"""What the search asks: right adapters pass, and every mistake that is put into one is found."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+from engines import Promise, Run
+from engines.lagrange import Lagrange
+from engines.mujoco import DEFAULT, EXTENDED, TUNED
+from engines.mujoco.running import MuJoCoRun
+from engines.mujoco.user_rows import RowWriter
+from engines.pymunk import LEAPFROG
+from engines.pymunk import model as pymunk_model
+from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
+from reports.gate.change import Altered
+from reports.search import instant_mujoco, motions, raw, raw_law, relations
+from reports.search.mechanisms import ALL
+from reports.search.relations import NAMES
+from reports.search.scripts import script
+from reports.search.shrinking import shrunk
+from reports.search.subjects import OURS, Adapted, Alone, Told
+from tests.wrong.adapters import Spoiled, Wrong
+from tests.wrong.mistakes import Heavier, Stronger, plant
+
+SEED = 1
+
+
+def told(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> list[Told]:
+    subject = Adapted(engine)
+    return [subject.ask(subject.draw(SEED, number, kinds, 0), number, (oracle,)) for number in range(cases)]
+
+
+def faults(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> set[str]:
+    """The checks that fail in any of these cases."""
+    return {check for one in told(engine, kinds, cases, oracle) for check in one.faults}
+
+
+# -------------------------------------------------------------------------------------------------- what is right
+
+
+@pytest.mark.parametrize(
+    ("engine", "kinds"),
+    [(DEFAULT, ("pin",)), (EXTENDED, ("pin", "slot", "skate")), (LEAPFROG, ("pin", "slot", "skate", "drive"))],
+    ids=lambda value: getattr(value, "variant", None),
+)
+def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, ...]) -> None:
+    found = told(engine, kinds, 8)
+    assert sum(bool(one.errors) for one in found) >= 5, "nearly nothing was asked"
+    assert {check for one in found for check in one.faults} == set()
+
+
+def test_mujoco_alone_obeys_it_with_connects_welds_and_gears() -> None:
+    for number in range(25):
+        assert raw_law.errors(raw_law.model(SEED, number, ("connect", "weld", "gear")))["acceleration"] < 1e-10
+
+
+# ------------------------------------------------------------------------------------- mistakes put into adapters
+
+
+@pytest.mark.parametrize("engine", [DEFAULT, LEAPFROG], ids=lambda engine: engine.name)
+def test_an_inertia_off_by_one_in_ten_thousand_is_found(engine: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    plant(monkeypatch, Heavier(1e-4))
+    assert faults(engine, ("pin",), 6) & {"acceleration", "velocity"}
+
+
+def test_a_sign_flipped_in_a_row_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = RowWriter.write
+
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        jacobian[-self.size * len(v) :: len(v)] *= -1.0  # of the first coordinate
+
+    monkeypatch.setattr(RowWriter, "write", flipped)
+    assert "instant" in faults(EXTENDED, ("slot",), 8)  # MuJoCo then has a row that is none of the mechanism's
+
+
+def test_a_velocity_term_of_the_wrong_sign_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = RowWriter.write
+
+    def flipped(self: RowWriter, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
+        right(self, q, v, jacobian, reference)
+        reference[-self.size :] *= -1.0
+
+    monkeypatch.setattr(RowWriter, "write", flipped)
+    assert "acceleration" in faults(EXTENDED, ("slot",), 8)
+
+
+def test_a_motor_that_turns_the_wrong_way_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.motor
+    monkeypatch.setattr(
+        pymunk_model,
+        "motor",
+        lambda joint, *given: right(replace(joint, turning_rate=-joint.turning_rate), *given),
+    )
+    assert "velocity" in faults(LEAPFROG, ("pin", "drive"), 12)
+
+
+def test_a_reaction_read_at_the_wrong_time_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = MuJoCoRun.__call__
+
+    def late(self: MuJoCoRun, samples: int, every: int) -> Trajectory:
+        run = right(self, samples, every)
+        return replace(run, reaction=np.roll(run.reaction, 1, axis=0))
+
+    monkeypatch.setattr(MuJoCoRun, "__call__", late)
+    assert "reaction" in faults(DEFAULT, ("pin",), 6)
+
+
+def test_a_direction_of_the_world_that_is_taken_for_granted_is_found() -> None:
+    subject = Adapted(Wrong("gravity points down"))
+    case = next(case for case in (subject.draw(SEED, n, ("pin",), 0) for n in range(20)) if case.gravity[0])
+    assert subject.ask(case, NAMES.index("turned"), ("relations",)).faults == ("turned",)
+
+
+@dataclass(frozen=True)
+class InItsUnits:
+    """A fixed mass [kg], or arm [m], is taken for granted on every body beside what is told."""
+
+    mass: float = 0.0
+    arm: float = 0.0
+
+    def __call__(self, mechanism: Mechanism) -> Mechanism:
+        bodies = tuple(
+            replace(body, mass=body.mass + self.mass, inertia=body.inertia + body.mass * self.arm**2)
+            for body in mechanism.bodies
+        )
+        return replace(mechanism, bodies=bodies)
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("in other masses", InItsUnits(mass=0.01)),
+        ("in other lengths", InItsUnits(arm=0.01)),
+    ],
+)
+def test_a_number_with_a_unit_that_is_taken_for_granted_is_found(name: str, wrong: InItsUnits) -> None:
+    def found(engine: Any) -> set[str]:
+        subject, number = Adapted(engine), NAMES.index(name)
+        cases = [subject.draw(SEED, case, ("pin",), 0) for case in range(8)]
+        return {fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults}
+
+    assert found(Lagrange("rk4", "projection")) == set()
+    assert found(Altered(Lagrange("rk4", "projection"), wrong)) == {name}
+
+
+@pytest.mark.parametrize("name", ["in other masses", "in other lengths"])
+def test_a_case_that_is_written_in_units_of_its_own_is_asked_in_others_too(name: str) -> None:
+    subject, number = Adapted(Lagrange("rk4", "projection")), NAMES.index(name)
+    cases = [case for n in range(12) if all((case := subject.draw(SEED, n, ("pin",), 2)).decades[:2])]
+    told = [subject.ask(case, number, ("relations",)) for case in cases]
+    assert {name} == {each for one in told for each in one.errors} > {fault for one in told for fault in one.faults}
+
+
+@dataclass(frozen=True)
+class Single(Lagrange):
+    """Computes in single precision, as it says, and feels so much of its gravity's part along x."""
+
+    precision: ClassVar[float] = 2.0**-23
+    part: float = 1.0
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        x, y = mechanism.gravity
+        run = super().build(replace(mechanism, gravity=(self.part * x, y)), dt)
+        return Spoiled(run, self._rounded)
+
+    def _rounded(self, given: Trajectory) -> Trajectory:
+        return replace(
+            given, **{name: getattr(given, name).astype(np.float32).astype(float) for name in ("pose", "twist")}
+        )
+
+
+def test_single_precision_hides_its_rounding_and_no_hundredth_of_a_motion() -> None:
+    def found(engine: Any) -> list[str]:
+        subject, number = Adapted(engine), NAMES.index("turned")
+        cases = [case for n in range(24) if (case := subject.draw(SEED, n, ("pin",), 0)).gravity[0]]
+        return [fault for case in cases for fault in subject.ask(case, number, ("relations",)).faults]
+
+    assert relations.bound(Single("rk4")) < 2e-3
+    assert found(Single("rk4", "projection")) == []
+    assert found(Single("rk4", "projection", part=1.03))
+
+
+def test_joints_that_are_tied_to_the_step_are_asked_and_those_that_give_way_for_good_are_not() -> None:
+    """A loop of pins: MuJoCo's springs fall as the square of the step where it is tuned, and stay as shipped."""
+    kinds, cases = ("pin",), range(8)
+
+    def gives_way(engine: Any) -> list[bool]:
+        found = told(engine, kinds, len(cases), "motions")
+        return [any("give way" in reason for reason in one.not_asked) for one in found]
+
+    assert any(gives_way(DEFAULT))
+    assert not any(gives_way(TUNED))
+    loops = [
+        one for one, soft in zip(told(TUNED, kinds, len(cases), "motions"), gives_way(DEFAULT), strict=True) if soft
+    ]
+    assert any(one.errors for one in loops)
+    assert faults(Altered(TUNED, Heavier(1e-4)), kinds, len(cases), "motions")
+
+
+@dataclass(frozen=True)
+class Boasting(Lagrange):
+    """A method of the first order that promises the fourth."""
+
+    def order(self, mechanism: Mechanism) -> Promise:
+        return Promise(4)
+
+
+def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
+    assert faults(Boasting("euler", "projection"), ("pin",), 3, "motions") & {"motion", "reactions"}
+    assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
+
+
+@dataclass(frozen=True)
+class Admitting(Boasting):
+    """As wrong as that, and says so in the finer runs alone, or in the coarse one alone."""
+
+    finer: bool = True
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        rough = motions.SPAN * mechanism.time_scale / motions.SAMPLES / motions.COARSE
+        words = ("it is wrong",) if (dt < 0.75 * rough) is self.finer else ()
+        return Spoiled(super().build(mechanism, dt), lambda given: replace(given, warnings=words))
+
+
+@pytest.mark.parametrize("finer", [True, False])
+def test_a_motion_of_which_any_run_warns_is_not_held_against_the_engine(finer: bool) -> None:
+    for one in told(Admitting("euler", "projection", finer=finer), ("pin",), 3, "motions"):
+        assert one.faults == ()
+        assert any("something is wrong" in reason for reason in one.not_asked)
+
+
+def test_an_exception_that_is_no_refusal_is_a_fault() -> None:
+    def loses(mechanism: Mechanism) -> Mechanism:
+        raise KeyError("body 7")
+
+    [one] = told(Altered(Lagrange(), loses), ALL, 1, "motions")
+    assert one.faults == ("raised",)
+    assert "body 7" in one.words
+
+
+def test_an_exception_of_an_oracle_is_no_fault_of_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*given: Any) -> float:
+        raise KeyError("a row that is not there")
+
+    monkeypatch.setattr(motions, "difference", broken)
+    monkeypatch.setattr(instant_mujoco, "errors", broken)
+    for engine, oracle in ((Lagrange("rk4"), "motions"), (EXTENDED, "instant")):
+        [one] = told(engine, ("pin",), 1, oracle)
+        assert one.faults == (OURS,)
+        assert one.words.startswith("ours: KeyError")
+
+
+# ------------------------------------------------------------- mistakes put into rods, gears, welds and force elements
+
+LINKED = ("pin", "rod", "gear", "weld")
+SPRUNG = ("pin", "spring", "damper", "torsion-spring", "torsion-damper", "force", "torque")
+
+
+@pytest.mark.parametrize(
+    ("engine", "kinds"),
+    [(EXTENDED, LINKED), (EXTENDED, SPRUNG), (TUNED, SPRUNG), (LEAPFROG, LINKED), (LEAPFROG, SPRUNG)],
+    ids=lambda value: getattr(value, "variant", None),
+)
+def test_adapters_obey_the_law_with_rods_gears_welds_and_forces(engine: Any, kinds: tuple[str, ...]) -> None:
+    found = told(engine, kinds, 25)
+    assert sum(bool(one.errors) for one in found) >= 5, "nearly nothing was asked"
+    assert {check for one in found for check in one.faults} == set()
+
+
+def test_a_rods_velocity_term_that_is_left_out_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As MuJoCo's own equality of a tendon leaves it out; here with the damping of slip, which is rounding."""
+    right = RowWriter.write
+    monkeypatch.setattr(RowWriter, "write", lambda self, q, v, *arrays: right(self, q, 0.0 * v, *arrays))
+    assert "acceleration" in faults(EXTENDED, ("pin", "rod"), 12)
+
+
+def test_a_gear_whose_ratio_is_that_of_its_other_wheel_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.gear
+    monkeypatch.setattr(
+        pymunk_model, "gear", lambda joint, *given: right(replace(joint, ratio=1 / joint.ratio), *given)
+    )
+    assert faults(LEAPFROG, ("pin", "gear"), 12)
+
+
+def _row_flipped(right: Callable[..., Any]) -> Callable[..., Any]:
+    """A rod whose arm on the second body has a sign of its row flipped: its anchor is on the other side."""
+
+    def rod(joint: Any, *given: Any) -> Any:
+        x, y = joint.second_point
+        return right(replace(joint, second_point=(x, -y)), *given)
+
+    return rod
+
+
+@pytest.mark.parametrize(
+    ("kind", "wrong"),
+    [
+        ("rod", _row_flipped),
+        ("rod", lambda right: lambda joint, *given: right(replace(joint, length=1.0001 * joint.length), *given)),
+        ("gear", lambda right: lambda joint, *given: right(replace(joint, ratio=-joint.ratio), *given)),
+        ("gear", lambda right: lambda joint, *given: right(replace(joint, phase=joint.phase + 1e-4), *given)),
+        ("weld", lambda right: lambda joint, *given: right(replace(joint, angle=joint.angle + 1e-4), *given)),
+    ],
+)
+def test_a_mistake_in_a_rod_a_gear_or_a_weld_of_pymunk_is_found(
+    kind: str, wrong: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pymunk_model, kind, wrong(getattr(pymunk_model, kind)))
+    assert faults(LEAPFROG, ("pin", kind), 12)
+
+
+def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = pymunk_model.weld
+    monkeypatch.setattr(pymunk_model, "weld", lambda *given: right(*given)[:1])
+    assert faults(LEAPFROG, ("pin", "weld"), 12)
+
+
+@pytest.mark.parametrize("kind", ["rod", "gear", "weld", "spring", "force"])
+def test_an_inertia_off_by_one_in_ten_thousand_is_found_beside_what_came_last(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Heavier(1e-4))
+    assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("stiffness", "spring"),
+        ("rest_length", "spring"),
+        ("stiffness", "torsion-spring"),
+        ("rest_angle", "torsion-spring"),
+        ("damping", "damper"),
+        ("damping", "torsion-damper"),
+        ("torque", "torque"),
+        ("force", "force"),
+        ("second_point", "force"),
+    ],
+)
+def test_a_force_element_off_by_one_in_ten_thousand_is_found(
+    name: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, Stronger(name, 1e-4))
+    assert "acceleration" in faults(TUNED, ("pin", kind), 12)
+    if "damp" not in kind:  # which pymunk takes among its sweeps, so that no law of a step is asked for
+        assert "velocity" in faults(LEAPFROG, ("pin", kind), 12)
+
+
+def test_a_stiffer_spring_is_found_in_the_motion_of_an_engine_without_a_law_of_an_instant() -> None:
+    """An engine that declares nothing at an instant is held to the judge's motion."""
+    right = Lagrange("rk4", "projection")
+    assert faults(Altered(right, Stronger("stiffness", 0.01)), ("pin", "spring"), 4, "motions") & {
+        "motion",
+        "reactions",
+    }
+    assert faults(right, ("pin", "spring"), 4, "motions") == set()
+
+
+# --------------------------------------------------------------------------------------------- faults of MuJoCo's own
+
+
+def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> None:
+    """Of first = slope second + bend second^2 with second zero: the rates of a sum are squared, not summed squares."""
+    asked = 0
+    for number in range(12):
+        model = raw_law.model(SEED, number, ("tendon",))
+        judge = raw_law.judged(model)
+        found = judge.expected(np.zeros((len(model.equalities), 1)))
+        for each in model.equalities:
+            first, second = ([one - 1, one] if one else [0] for one in (each.first, each.second))
+            slope, bend = each.curve[0] / 2, each.curve[1] / 2
+            turning = 2 * bend * judge.rates[second].sum() ** 2
+            left = found[first].sum() - slope * found[second].sum() - turning
+            assert abs(left) < 1e-9 * max(1.0, np.abs(found).max())
+            asked += abs(turning) > 0.1 and len(second) == 2
+    assert asked >= 3
+
+
+def largest_difference(text: str, capsys: Any) -> float:
+    """What a script prints, which needs nothing of ours: it names none of our packages."""
+    assert not {"reports", "engines", "reference"} & {*re.findall(r"\w+", text)}
+    exec(compile(text, "script.py", "exec"), {})
+    return float(capsys.readouterr().out.split("largest difference")[1])
+
+
+def test_curved_equalities_without_their_velocity_term_are_found_made_small_and_written_as_a_script(
+    capsys: Any,
+) -> None:
+    """MuJoCo up to 4.0.1: polycoef beyond the slope. One body is left, and the script shows it without our code."""
+    subject = Alone()
+    number = next(n for n in range(20) if subject.ask(raw_law.model(SEED, n, ("joint",)), n, ("instant",)).faults)
+    case = raw_law.model(SEED, number, ("joint",))
+
+    def still(smaller: raw.Model) -> bool:
+        try:
+            return bool(subject.ask(smaller, number, ("instant",)).faults)
+        except ValueError:
+            return False
+
+    small = shrunk(case, still, 20.0)
+    assert len(small.links) <= 2
+    assert len(small.equalities) == 1
+    assert sum(abs(value) for link in small.links for value in (*link.offset, *link.centre, link.mass)) <= 1
+    text = script(subject, small, "acceleration")
+    assert largest_difference(text, capsys) > 1e-4  # of accelerations of about 0.01: rates are halves
+
+
+def test_a_script_for_pymunk_prints_what_the_joints_ask_for(capsys: Any) -> None:
+    subject = Adapted(LEAPFROG)
+    case = subject.draw(SEED, 3, ("pin", "slot"), 0)
+    text = script(subject, case, "velocity")
+    assert largest_difference(text, capsys) < 1e-9  # a right case: expected is what is found
+
+
+def test_a_script_for_mujoco_through_our_adapter_prints_what_its_law_asks_for(capsys: Any) -> None:
+    subject = Adapted(TUNED)
+    text = script(subject, subject.draw(SEED, 2, ("pin", "weld", "gear", "spring", "torque"), 0), "acceleration")
+    assert largest_difference(text, capsys) < 1e-9

@@ -1,0 +1,191 @@
+"""`crosscheck shapes`: what it writes for a known motion, the page's own example, and its answers to bad input."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import runpy
+import shlex
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import pytest
+from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.filemanagement import readfile
+
+from reference.chapter.centrodes import from_poses
+from reports.pages.centrodes.page import returned
+from reports.write.templates import TEMPLATES
+from tests.reports.test_command_line import call
+
+HEADER = "t,x,y,angle"
+
+
+def ladder(count=101, low=0.2, high=1.3):
+    """A ladder of 1 m that slides down a wall: its shapes are Cardan's circles of radius 1 m and 1/2 m."""
+    t = np.linspace(low, high, count)
+    return np.column_stack([t, 0.5 * np.cos(t), 0.5 * np.sin(t), -t])
+
+
+def as_text(table, header=HEADER):
+    return "\n".join([header, *(",".join(repr(float(v)) for v in row) for row in table)]) + "\n"
+
+
+def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, capfd):
+    motion = tmp_path / "ladder.csv"
+    motion.write_text(as_text(ladder()))
+    assert call("shapes", motion, "--folder", tmp_path / "new" / "folder", "--points", 50) == 0
+    folder = tmp_path / "new" / "folder"
+    assert {path.name for path in folder.iterdir()} == {f"ladder_shapes.{kind}" for kind in ("csv", "svg", "dxf")}
+    rows = list(csv.DictReader(io.StringIO((folder / "ladder_shapes.csv").read_text())))
+    space = np.array([[float(row["space_x"]), float(row["space_y"])] for row in rows])
+    body = np.array([[float(row["body_x"]), float(row["body_y"])] for row in rows])
+    assert len(rows) == 50
+    # Splines of degree 7 through 100 poses a hundredth of a radian apart: their eighth power leaves rounding, 1e-11
+    # after one derivative.
+    np.testing.assert_allclose(np.linalg.norm(space, axis=-1), 1.0, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(body, axis=-1), 0.5, rtol=0, atol=1e-9)
+    layers = {line.dxf.layer: line for line in readfile(folder / "ladder_shapes.dxf").modelspace()}
+    np.testing.assert_allclose(np.array(cast(LWPolyline, layers["SPACE"]).get_points("xy")), space, atol=1e-12)
+    assert (folder / "ladder_shapes.svg").read_text().count("<path") == 2
+    assert "gives the motion back" in capfd.readouterr().out
+
+
+def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_path, capfd):
+    motion, mine = tmp_path / "ladder.csv", tmp_path / "mine"
+    motion.write_text(as_text(ladder()))
+    mine.write_text("mine")
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "ladder_shapes.svg").write_text("old")
+    (tmp_path / "linked").mkdir()
+    (tmp_path / "linked" / "ladder_shapes.svg").symlink_to(mine)
+    (tmp_path / "dangling").mkdir()
+    (tmp_path / "dangling" / "ladder_shapes.dxf").symlink_to(tmp_path / "nowhere")
+    for name in ("there", "linked", "dangling"):
+        assert call("shapes", motion, "--folder", tmp_path / name) == 2
+        out, err = capfd.readouterr()
+        assert out == ""
+        assert "--force" in err
+        assert len(list((tmp_path / name).iterdir())) == 1
+    for name in ("there", "linked", "dangling"):
+        assert call("shapes", motion, "--folder", tmp_path / name, "--force") == 0
+        written = list((tmp_path / name).iterdir())
+        assert len(written) == 3
+        assert not any(path.is_symlink() for path in written)
+    assert "<path" in (tmp_path / "there" / "ladder_shapes.svg").read_text()
+    assert mine.read_text() == "mine"
+    assert not (tmp_path / "nowhere").exists()
+
+
+def test_only_the_kinds_asked_for_are_written(tmp_path, capfd):
+    (tmp_path / "ladder.csv").write_text(as_text(ladder()))
+    assert call("shapes", tmp_path / "ladder.csv", "--folder", tmp_path, "--kind", "svg") == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"ladder.csv", "ladder_shapes.svg"}
+
+
+def test_a_coarse_table_is_said_to_be_coarse_and_a_fine_one_is_not(tmp_path, capfd):
+    for count, coarse in ((101, False), (17, True)):
+        t = np.linspace(0, 1.2, count)
+        # A wobble of 8 rad/s: two periods, which 17 poses can't show.
+        table = np.column_stack([t, 0.3 * np.cos(8 * t), 0.1 * np.sin(8 * t), -3 * t])
+        (tmp_path / "motion.csv").write_text(as_text(table))
+        assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path, "--force") == 0
+        assert ("too far apart" in capfd.readouterr().out) is coarse
+
+
+def test_the_round_trip_catches_a_motion_that_the_curves_do_not_have():
+    table = ladder()
+    curves = from_poses(table[:, 0], table[:, 1:])
+    # The poses are met at the spline's own knots: rounding.
+    assert returned(curves)[0] < 1e-12
+    other = replace(curves, pose=curves.pose * [1.001, 1.0, 1.0])
+    assert returned(other)[0] > 1e-5
+
+
+def altered(row, column, value):
+    lines = as_text(ladder()).splitlines()
+    cells = lines[row].split(",")
+    cells[column] = value
+    lines[row] = ",".join(cells)
+    return "\n".join(lines)
+
+
+def vanishing():
+    """It stops turning at t = 0.75 s and turns on."""
+    t = np.linspace(0, 1.5, 151)
+    return as_text(np.column_stack([t, np.cos(t), np.sin(t), (t - 0.75) ** 3]))
+
+
+def reversing():
+    """It turns back at t = 0.7531 s, between two samples."""
+    t = np.linspace(0, 1.5, 151)
+    return as_text(np.column_stack([t, np.cos(t), np.sin(t), (t - 0.7531) ** 2]))
+
+
+TABLES = {
+    "empty": ("", "no column 't'"),
+    "no header": ("0,0,0,0\n", "no column 't'"),
+    "wrong columns": (as_text(ladder(), "t,x,y,theta"), "no column 'angle'"),
+    "a word": (altered(5, 1, "left"), "line 6"),
+    "not a number": (altered(5, 1, "nan"), "line 6"),
+    "infinite": (altered(7, 3, "inf"), "line 8"),
+    "a short line": (altered(9, 3, "").rsplit(",", 1)[0].rsplit("\n", 1)[0] + "\n1,2", "must be finite numbers"),
+    "too few": (as_text(ladder(9)), "9 poses are too few"),
+    "no rows": (HEADER, "0 poses are too few"),
+    "times go back": (altered(20, 0, "0"), "is not after the one before"),
+    "no rotation": (as_text(ladder() * [1, 1, 1, 0]), "doesn't rotate"),
+    "a fixed centre": (as_text(ladder() * [1, 0, 0, 1]), "the instant centre stays at"),
+    "stops turning": (vanishing(), "t = 0.75 s"),
+    "turns back": (reversing(), "between t = 0.75 and 0.76 s"),
+}
+
+
+@pytest.mark.parametrize("case", TABLES)
+def test_a_table_without_shapes_is_one_line_with_its_reason_and_writes_nothing(case, tmp_path, capfd):
+    text, telling = TABLES[case]
+    (tmp_path / "motion.csv").write_text(text)
+    assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path / "out") == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert len(err.strip().splitlines()) == 1
+    assert telling in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tmp_path, capfd):
+    (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\xff\xfe\x00")
+    good = tmp_path / "ladder.csv"
+    good.write_text(as_text(ladder()))
+    for words, telling in (
+        ([tmp_path / "nowhere.csv"], "can't be read"),
+        ([tmp_path], "can't be read"),
+        ([tmp_path / "picture.csv"], "no text"),
+        ([good, "--folder", good], "can't be a folder"),
+        ([good, "--points", "1"], "--points is 1"),
+        ([good, "--points", "many"], "--points"),
+        ([good, "--kind", "png"], "csv, svg, dxf"),
+        ([], "motion"),
+    ):
+        assert call("shapes", *words) == 2
+        out, err = capfd.readouterr()
+        assert out == ""
+        assert len(err.strip().splitlines()) == 1
+        assert telling in err.lower() or telling in err
+
+
+def test_the_pages_example_runs_as_it_stands(tmp_path, monkeypatch, capfd):
+    page = (TEMPLATES / "centrodes" / "page.md").read_text()
+    [script] = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    [shell] = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "coupler.py").write_text(script)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["coupler.py"])
+    runpy.run_path("coupler.py")
+    words = shlex.split(next(line for line in shell.splitlines() if line.startswith("crosscheck ")))[1:]
+    assert call(*words) == 0
+    assert {"coupler_shapes.csv", "coupler_shapes.svg", "coupler_shapes.dxf"} <= {p.name for p in Path().iterdir()}
+    assert "gives the motion back" in capfd.readouterr().out

@@ -1,0 +1,297 @@
+"""The static site: what its pages carry is the reference's motion, its words are the pages', and no link is dead."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import tomllib
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+import pytest
+
+from engines.lagrange import Lagrange
+from engines.registry import trouble
+from reference.scenes.four_bar.scenes import FreeFourBar
+from reports.model.ending import FileTrouble
+from reports.model.tasks import answered
+from reports.site import markdown
+from reports.site.build import MARKER, build, reference_pages, tasks
+from reports.site.embed import data, picture, shown
+from reports.site.folder import compressed_size, refuse_strangers, write_site
+from reports.site.lesson import Source, Take
+from reports.site.lessons import LESSONS
+from reports.site.markdown import Formulas, html, section
+from reports.site.packages import NotFetched, Package, fetched
+from reports.site.rows import explored
+from tests import ROOT
+
+RESULTS = ROOT / "reports" / "results"
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+# What a page may differ from the reference by: 13 digits after the point, and rounding.
+HELD = 1e-12
+
+
+def take_of(lesson: str, name: str) -> Take:
+    return next(each for each in LESSONS if each.name == lesson).takes[name]
+
+
+class Page(HTMLParser):
+    """The addresses and anchors of a page, and what stands in its scripts of data."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.anchors: set[str] = set()
+        self.json: dict[str, str] = {}
+        self._inside = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = {name: value or "" for name, value in attrs}
+        self.links += [given[name] for name in ("href", "src") if name in given]
+        self.anchors.add(given.get("id", ""))
+        self._inside = given.get("id", "") if given.get("type") == "application/json" else ""
+
+    def handle_data(self, data):
+        if self._inside:
+            self.json[self._inside] = data
+        self._inside = ""
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """The published pages, no motions, and no packages: npm is not asked."""
+    cache = tmp_path_factory.mktemp("cache")
+    texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
+    return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.", CONTRIBUTING, api=False)
+
+
+SUFFIXES = (".md", ".svg", ".csv")
+
+
+@pytest.fixture(scope="module")
+def files(source, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", str(tmp_path_factory.mktemp("nothing")))
+        return build(source)
+
+
+def test_a_page_holds_the_motion_of_the_reference():
+    # A scene is in several takes of its lesson: its motion is asked for once.
+    for take in {
+        (take.scene, take.samples, take.start, take.end): take for lesson in LESSONS for take in lesson.takes.values()
+    }.values():
+        held = json.loads(json.dumps(data(shown(take, {})), allow_nan=False))
+        truth = take.scene.motion(held["t"])
+        pose = np.array(held["truth"]["pose"]).reshape(truth.pose.shape)
+        # The time in the page has been rounded as well: what that moves is the speed times half of its last digit.
+        speed = float(np.abs(truth.twist).max())
+        assert np.abs(pose - truth.pose).max() < HELD + speed * 1e-13
+        assert 2 <= len(held["t"]) <= 152
+
+
+def test_a_changed_length_would_be_noticed_in_a_page():
+    take, scene = take_of("four_bar", "free"), FreeFourBar()
+    assert take.scene == scene
+    held = data(shown(replace(take, scene=replace(scene, coupler=scene.coupler + 1e-9)), {}))
+    truth = scene.motion(held["t"])
+    assert np.abs(np.reshape(held["truth"]["pose"], truth.pose.shape) - truth.pose).max() > 100 * HELD
+
+
+def test_a_method_is_shown_at_the_samples_of_the_truth():
+    take = take_of("four_bar", "free")
+    word, motion = next(iter(take.motions().items()))
+    answer = answered(motion)
+    held = data(shown(take, {motion: answer}))
+    assert [each["name"] for each in held["motions"]] == [word]
+    assert [each["name"] for each in held["lost"]] == [other for other in take.motions() if other != word]
+    shape = (len(held["t"]), 3, 3)
+    pose = np.reshape(held["truth"]["pose"], shape) + np.reshape(held["motions"][0]["apart"], shape)
+    apart = np.abs(np.array(held["motions"][0]["apart"])).max()
+    assert np.allclose(pose, answer.array("pose")[take.shown], atol=1e-5 * apart, rtol=0)
+    assert np.allclose(held["t"], answer.array("t")[take.shown], atol=1e-12, rtol=0)
+    assert 0.1 < np.abs(pose - np.reshape(held["truth"]["pose"], pose.shape))[..., 2].max() < 10  # as shipped
+
+
+def test_arrows_add_up_to_what_moves_the_bodies():
+    take = take_of("four_bar", "free")
+    given = shown(take, {})
+    held = {each["name"]: np.reshape(each["force"], (-1, 2)) for each in data(given)["forces"]}
+    dense = take.scene.motion(np.array([given.t[50] - 1e-5, given.t[50], given.t[50] + 1e-5]))
+    acceleration = (dense.twist[2] - dense.twist[0]) / 2e-5
+    coupler = given.mechanism.bodies[1]
+    wanted = coupler.mass * (acceleration[1, :2] - np.array(given.mechanism.gravity))
+    # B acts on the coupler, C on the rocker, so its opposite acts on the coupler.
+    assert held["B"][50] - held["C"][50] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_every_lesson_has_five_steps_of_words_and_shows_takes_that_it_has():
+    for lesson in LESSONS:
+        assert len(lesson.words) == len(lesson.steps) == 5
+        for step in lesson.steps:
+            assert {step.take, *(take for _, take, _ in step.broken)} <= set(lesson.takes)
+        used = {step.take for step in lesson.steps} | {take for step in lesson.steps for _, take, _ in step.broken}
+        assert used == set(lesson.takes)
+    assert len(tasks()) == len(set(tasks()))
+
+
+def test_sections_that_lessons_quote_are_on_their_pages():
+    for page, heading in (step.section for lesson in LESSONS for step in lesson.steps if step.section):
+        assert len(section((RESULTS / f"{page}.md").read_text("utf-8"), heading) or "") > 40, heading
+    # A comment in code ends no section, and a heading of a higher rank does.
+    page = "# Top\n## Part\nbefore\n```\n# a comment\n```\nafter\n### Below\nmore\n# Next\nother\n"
+    assert section(page, "Part") == "before\n```\n# a comment\n```\nafter\n### Below\nmore"
+    assert section(page, "Nothing") is None
+
+
+def test_a_picture_stands_without_a_script():
+    drawing = picture(shown(take_of("rolling", "ellipse"), {}), "An ellipse")
+    assert drawing.startswith('<svg class="stage" viewBox="')
+    assert 'aria-label="An ellipse"' in drawing
+    assert drawing.count('class="body" transform="translate(') == 1
+    assert "nan" not in drawing
+
+
+def test_no_link_of_the_site_is_dead(files):
+    pages = {name: Page(text.decode()) for name, text in files.items() if name.endswith(".html")}
+    assert len(pages) > 30
+    dead = []
+    for name, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme in ("http", "https", "data", "mailto"):
+                continue
+            place = (Path("/") / Path(name).parent / unquote(parts.path)).resolve().relative_to("/").as_posix()
+            target = name if not parts.path else place
+            known = target in files
+            if known and parts.fragment and target in pages:
+                known = parts.fragment in pages[target].anchors
+            if not known:
+                dead.append(f"{name}: {link}")
+    assert "\n".join(dead) == ""
+
+
+def test_nothing_is_fetched_from_elsewhere_when_a_page_is_read(files):
+    loading = re.compile(r'(?:src|<link[^>]*href)="(?:https?:)?//|@import|url\(')
+    for name, text in files.items():
+        if name.endswith((".html", ".css")):
+            assert not loading.search(text.decode()), name
+
+
+def test_without_npm_the_site_says_what_is_missing(files):
+    about = files["about.html"].decode()
+    assert "npm is not installed" in about
+    assert "Formulas are shown as TeX, since node is not installed." in about
+    assert '<code class="tex' in files["results/four_bar.html"].decode()
+    assert json.loads(files[MARKER])["troubles"]
+
+
+def test_data_of_a_page_are_json(files):
+    page = Page(files["lessons/four_bar.html"].decode())
+    for text in page.json.values():
+        assert json.loads(text)["bodies"]
+    assert {f"take-{name}" for name in LESSONS[0].takes} <= set(page.json)
+
+
+def test_formulas_are_found_outside_of_code_alone_and_keep_their_place():
+    formulas = Formulas()
+    html("A $x^2$ and $$\\frac{a}\n{b}$$ and `$HOME` costs 3 $ or 4 $.\n\n```\n$y$\n```\n", formulas)
+    assert set(formulas.found) == {("x^2", False), ("\\frac{a} {b}", True)}
+    text = html("$b$ then $a$ then $b$", Formulas())
+    assert markdown.with_formulas(text, ["(B)", "(A)"]) == "<p>(B) then (A) then (B)</p>\n"
+
+
+def test_headings_have_the_anchors_of_github():
+    text = html("# A b, `c`\n\n## Twice\n\n## Twice\n", Formulas())
+    assert re.findall('id="([^"]*)"', text) == ["a-b-c", "twice", "twice-1"]
+
+
+def test_a_package_of_another_digest_is_refused(tmp_path):
+    package = Package("some", "1.0", "AAAA", "MIT", "a test", ())
+    path = tmp_path / "some-1.0.tgz"
+    path.write_bytes(b"something else")
+    with pytest.raises(NotFetched, match="another digest"):
+        fetched(package, tmp_path)
+    assert not path.exists()
+
+
+def test_a_folder_of_somebody_else_is_not_replaced(tmp_path):
+    (tmp_path / "own.txt").write_text("mine")
+    with pytest.raises(FileTrouble, match="files that no site wrote: give another --output"):
+        refuse_strangers(tmp_path)
+    with pytest.raises(FileTrouble, match="no folder"):
+        refuse_strangers(tmp_path / "own.txt")
+    new = tmp_path / "new"
+    assert write_site(new, {MARKER: b"{}", "a/b.html": b"one"}) == compressed_size({MARKER: b"{}", "a/b.html": b"one"})
+    write_site(new, {MARKER: b"{}", "c.html": b"two"})
+    assert sorted(path.name for path in new.iterdir()) == ["c.html", MARKER]
+
+
+def test_every_file_of_the_site_is_in_a_wheel():
+    globs = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-data"]["*"]
+    folder = ROOT / "reports" / "site"
+    for path in folder.rglob("*"):
+        if path.is_dir() or path.suffix in (".py", ".pyc") or path.name == "readme.svg":
+            continue
+        package = next(each for each in path.parents if (each / "__init__.py").is_file())
+        assert any(path in package.glob(pattern) for pattern in globs), path
+
+
+HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))
+
+
+@pytest.mark.parametrize("path", HOWTOS, ids=lambda path: path.stem)
+def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
+    blocks = re.findall(r"```python\n(.*?)```", path.read_text("utf-8"), re.DOTALL)
+    module = ModuleType("howto")  # dataclasses look their module up
+    monkeypatch.setitem(sys.modules, "howto", module)
+    given: dict[str, Any] = vars(module)
+    for block in blocks:
+        exec(compile(block, path.name, "exec"), given)
+    if "STILL" in given:
+        scene = FreeFourBar()
+        still = given["STILL"].build(scene.mechanism(), 1e-2)(100, 1)
+        assert trouble(given["STILL"]) == ""
+        assert np.all(still.pose == scene.mechanism().pose)
+    if "SCENE" in given:
+        found = Lagrange("dop853", "projection").build(given["SCENE"].mechanism(), 1e-2)(100, 1)
+        assert np.abs(found.pose - given["SCENE"].motion(found.t).pose).max() < 1e-9
+    if "mechanism" in given:
+        errors = [float(each) for each in re.findall(r": (\S+) rad", capsys.readouterr().out)]
+        assert len(errors) == 2
+        assert errors[0] > errors[1] > 0  # as shipped, and tuned
+
+
+def test_how_to_pages_quote_the_steps_of_contributing(files):
+    assert "crosscheck conform my_package.engine:TUNED" in files["howto/add_an_engine.html"].decode()
+    assert "reference.scene.Scene" in files["howto/add_a_scene.html"].decode()
+    assert len(HOWTOS) == 4
+
+
+def test_all_rows_are_told_with_their_cost_and_settings():
+    texts = [(RESULTS / f"{name}.csv").read_text("utf-8") for name in ("errors", "timings", "descriptions")]
+    told = explored(*texts)
+    rows = [dict(zip(told["columns"], row, strict=True)) for row in told["rows"]]
+    assert len(rows) > 500
+    (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == FREE and abs(r["step"] - 1e-3) < 1e-6]
+    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # as the page of the four-bar tells
+    assert row["cpu"] > 0
+    assert "Pymunk(" in row["settings"]
+
+
+FREE = ("free_four_bar", "pymunk", "default")
+
+
+def test_the_reference_is_made_of_docstrings_and_needs_nothing_from_elsewhere():
+    pytest.importorskip("pdoc", reason="pdoc is not installed: pip install '.[site]'")
+    pages = reference_pages()
+    assert "Bodies, the joints between them" in pages["reference/reference/mechanism.html"].decode()
+    fetched_from = re.compile(rb"<(?:script[^>]* src|link[^>]* rel=.stylesheet.[^>]* href)=.https?:")
+    assert not [name for name, text in pages.items() if fetched_from.search(text)]

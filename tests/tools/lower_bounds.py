@@ -1,0 +1,25 @@
+"""Print the oldest versions that pyproject.toml allows, as constraints for pip: `make lower` tests them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+PYPROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
+
+
+def lower_bounds(text: str) -> list[str]:
+    """'name==version' of every dependency of the project and of its extra `test`; ValueError for one without bound."""
+    project = tomllib.loads(text)["project"]
+    out = []
+    for requirement in (*project["dependencies"], *project["optional-dependencies"]["test"]):
+        found = re.match(r"([A-Za-z0-9_.-]+)\s*>=\s*([0-9.]+)", requirement)
+        if not found:
+            raise ValueError(f"pyproject: {requirement!r} has no lower bound; write it as 'name>=version'")
+        out.append("==".join(found.groups()))
+    return out
+
+
+if __name__ == "__main__":
+    print("\n".join(lower_bounds(PYPROJECT.read_text(encoding="utf-8"))))

@@ -1,0 +1,140 @@
+"""The readme keeps its promises: its example runs, it is short, and its table has a place."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+
+import pytest
+
+from reports.model.ending import STATUSES
+from reports.write.templates import marks
+from tests import ROOT
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(compile(example, "README.md", "exec"), {})
+    said = capsys.readouterr().out
+    assert re.fullmatch(r"largest angle error \d\.\de-\d\d rad after 1 s\n", said)
+    # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6.
+    assert float(said.split()[3]) < 1e-4
+
+
+def test_both_parts_are_written_and_none_tells_a_time():
+    told = {name: README.split(marks(name)[0])[1].split(marks(name)[1])[0] for name in ("findings", "overview")}
+    assert len(re.findall("^- ", told["findings"], re.MULTILINE)) == 10
+    assert "pymunk default" in told["overview"]
+    assert "mujoco extended" in told["overview"]
+    assert not re.search(r"(?<!at )(?<![\d.])[\d.]+ ms\b(?!\*\*)", told["overview"])  # "at 0.33 ms" is a step
+
+
+def git(folder, *words):
+    return subprocess.run(["git", "-C", folder, *words], check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture
+def clone(tmp_path):
+    """A fresh clone of the checkout, with what is changed in it and not committed yet."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no git checkout")
+    folder = tmp_path / "clone"
+    subprocess.run(["git", "clone", "--quiet", "--local", ROOT, folder], check=True)
+    for name in git(ROOT, "ls-files", "-z", "--modified", "--others", "--exclude-standard").split("\0"):
+        if name and (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes((ROOT / name).read_bytes())
+    git(folder, "add", "--all")
+    git(folder, "-c", "user.name=nobody", "-c", "user.email=nobody", "commit", "--quiet", "--allow-empty", "-m", "now")
+    return folder
+
+
+def commands():
+    """The commands of the readme, without those that take minutes: make and pytest."""
+    blocks = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
+    plain = [block for language, block in blocks if not language]
+    lines = [shlex.split(line, comments=True) for block in plain for line in block.splitlines()]
+    return [words[1:] for words in lines if words and words[0] == "crosscheck"]
+
+
+@pytest.mark.slow
+def test_what_the_readme_says_runs_in_a_fresh_clone_and_changes_nothing_published(clone):
+    assert [words[0] for words in commands()] == ["list", "run", "run", "show", "report"]
+    for words in commands():
+        ended = subprocess.run(
+            [sys.executable, "-m", "reports", *words],
+            cwd=clone,
+            env={**os.environ, "PYTHONPATH": str(clone), "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+        )
+        assert (ended.returncode, ended.stderr) == (0, ""), words
+    results = clone / "crosscheck-results"
+    assert "free_four_bar" in (results / "errors.csv").read_text()
+    assert git(clone, "status", "--porcelain") == ""
+    # What is written is ignored, not merely unchanged.
+    assert git(clone, "check-ignore", "crosscheck-results").strip() == "crosscheck-results"
+    missing = [
+        (page.name, link)
+        for page in results.glob("*.md")
+        for link in re.findall(r"\]\(([^)#]+)\)", page.read_text())
+        if not link.startswith(("https://", "http://")) and not (results / link).is_file()
+    ]
+    assert missing == []
+
+
+def test_it_has_the_exit_statuses_of_the_help():
+    told = STATUSES.partition(": ")[2]
+    assert told in " ".join(README.split())
+
+
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+def test_contributing_is_short_and_names_files_groups_and_targets_that_are_there():
+    assert len(CONTRIBUTING.splitlines()) < 115
+    paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING))
+    assert paths
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert set(re.findall(r"`(crosscheck\.\w+)`", CONTRIBUTING)) <= set(project["entry-points"])
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert all(f"\n{target}:" in makefile for target in re.findall(r"\bmake (\w+)", CONTRIBUTING))
+
+
+def test_their_commands_are_the_programs():
+    told = set(re.findall(r"^crosscheck ([a-z]+)\b|`crosscheck ([a-z]+)\b", README + CONTRIBUTING, re.MULTILINE))
+    words = {word for pair in told for word in pair if word}
+    assert {"run", "report", "conform", "list", "show"} <= words
+    helping = [sys.executable, "-m", "reports", "--help"]
+    said = subprocess.run(helping, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert words <= set(re.findall(r"^  ([a-z]+)  ", said, re.MULTILINE))
+
+
+# Stands for Python: it notes what it is asked, and the half that its environment names is red.
+PYTHON = """#!/bin/sh
+case "$*" in *"not crosscheck"*) half=tests;; *) half=grid;; esac
+echo $half >> "$NOTES"
+[ "$RED" != $half ]
+"""
+
+
+@pytest.mark.parametrize("red", ["none", "tests", "grid"])
+def test_make_test_runs_the_tests_and_the_grid_and_is_red_if_either_is(red, tmp_path):
+    if shutil.which("make") is None:
+        pytest.skip("make is not installed")
+    (tmp_path / "python").write_text(PYTHON)
+    (tmp_path / "python").chmod(0o755)
+    words = ["make", "--silent", "--old-file=.venv/installed", "test", f"BIN={tmp_path}"]
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    environment = {**kept, "NOTES": str(tmp_path / "notes"), "RED": red}
+    ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert (tmp_path / "notes").read_text().split() == ["tests", "grid"]
+    assert (ended.returncode == 0) == (red == "none")
