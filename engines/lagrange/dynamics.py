@@ -96,7 +96,7 @@ class Dynamics:
         """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
         if not self.mechanism.row_count:
             return self.mechanism.unconstrained(pose, twist)
-        if not np.all(np.isfinite(pose)):  # curves have no contact there
+        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # curves have no contact there
             return np.full_like(pose, np.nan)
         rows, reaction = self.reaction(pose, twist, t)
         free = self.mechanism.unconstrained(pose, twist).reshape(-1)
@@ -128,6 +128,8 @@ class Dynamics:
                     break
             else:
                 self.unclosed = t if np.isnan(self.unclosed) else self.unclosed
+            if not np.all(np.isfinite(pose)):
+                return pose, twist
         rows = mechanism.rows(pose)
         slip = rows @ twist.reshape(-1) - mechanism.rate
         return pose, twist - (self.weight * (rows.T @ self._solve(rows, slip))).reshape(-1, 3)

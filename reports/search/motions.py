@@ -65,9 +65,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         found = [found[1], _apart(mechanism, run, truth, promise)]
     rounded = _rounded(mechanism, promise, truth, parts)
     if _misses(promise, found, rounded) and not _resolved(mechanism, promise, truth, parts):
-        raise NotAsked(
-            "something passes within a step: a textbook method does not show its order at these steps either"
-        )
+        raise NotAsked("something passes within a step: a textbook method shows no order at these steps either")
     out = {name: (found[1][name], _may_be(promise, name, found[0][name], rounded[name])) for name in found[1]}
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
