@@ -159,8 +159,12 @@ def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: 
     A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of that
     depends on where its stages fall, and its error on no power of the step.
     """
-    order, spacing = max(each for each in TABLEAUS if each <= promise.order), SPAN * mechanism.time_scale / SAMPLES
-    runs = (in_numpy(mechanism, SAMPLES, spacing, order, every * COARSE, None, True) for every in (parts // 2, parts))
+    order = max((each for each in TABLEAUS if each <= promise.order), default=1)
+    spacing = SPAN * mechanism.time_scale / SAMPLES
+    try:
+        runs = [in_numpy(mechanism, SAMPLES, spacing, order, n * COARSE, None, True) for n in (parts // 2, parts)]
+    except ValueError:  # it went where curves can't touch
+        return False
     found = [_apart(mechanism, run, truth, Promise(order)) for run in runs]
     return not _misses(Promise(order), found, _rounded(mechanism, Promise(order), truth, parts))
 
