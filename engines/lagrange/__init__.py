@@ -9,13 +9,15 @@ Stepping is in machine code where the extra `fast` (numba) is installed, and in 
 same numbers up to rounding, and tests hold the one against the other.
 """
 
-from engines.lagrange.engine import METHODS, TRUTH, VARIANTS, Integrator, Lagrange, Stabilisation
+from engines.lagrange.engine import HELD, METHODS, TRUTH, VARIANTS, Integrator, Judge, Lagrange, Stabilisation
 
 __all__ = [
+    "HELD",
     "METHODS",
     "TRUTH",
     "VARIANTS",
     "Integrator",
+    "Judge",
     "Lagrange",
     "Stabilisation",
 ]

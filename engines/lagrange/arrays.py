@@ -79,9 +79,9 @@ HEADER = 48
 # What a call leaves behind, among the real numbers from STATUS on: the smallest pivot; the roll and the angle without a
 # cell; accepted steps; the time at which steps became too small or too many, and when the motion became stiff, NaN if
 # never; and how much rounding alone may have changed the speeds, in parts of the mechanism's own; the last factor's
-# smallest pivot.
-SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED, PIVOTED = range(8)
-STATUSES = 8
+# smallest pivot; the first time at which a projection left joints open, NaN if none did.
+SMALLEST, WANTED_ROLL, WANTED_ANGLE, STEPS, STOPPED, STIFF, ROUNDED, PIVOTED, UNCLOSED = range(9)
+STATUSES = 9
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def arrays_of(mechanism: Mechanism) -> Arrays:
     )
     real = np.concatenate([*numbers, np.zeros(sum(room))])
     real[header[TURNED] : header[TURNED] + 2 * bodies + 2 : 2] = 1.0  # the ground's stay so
-    real[header[STATUS] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0
+    real[header[STATUS] :] = 1.0, -1.0, 0.0, 0.0, np.nan, np.nan, 0.0, 0.0, np.nan
     whole = np.concatenate(
         [np.array(header, dtype=np.int64), *(record.reshape(-1).astype(np.int64) for record in records)]
     )

@@ -74,6 +74,7 @@ class Dynamics:
     def __init__(self, mechanism: Mechanism, baumgarte: float) -> None:
         self.mechanism = mechanism
         self.baumgarte = baumgarte  # 1/s; 0 for none
+        self.unclosed = float("nan")  # s, the first time at which a projection left joints open
         self.weight = 1 / mechanism.inertias.reshape(-1)
         self.holonomic = mechanism.holonomic
         self.unit = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
@@ -95,7 +96,7 @@ class Dynamics:
         """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
         if not self.mechanism.row_count:
             return self.mechanism.unconstrained(pose, twist)
-        if not np.all(np.isfinite(pose)):  # curves have no contact there
+        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # curves have no contact there
             return np.full_like(pose, np.nan)
         rows, reaction = self.reaction(pose, twist, t)
         free = self.mechanism.unconstrained(pose, twist).reshape(-1)
@@ -125,6 +126,10 @@ class Dynamics:
                 pose = pose - correction.reshape(-1, 3)
                 if not np.max(np.abs(correction) / self.unit) > CLOSED:
                     break
+            else:
+                self.unclosed = t if np.isnan(self.unclosed) else self.unclosed
+            if not np.all(np.isfinite(pose)):
+                return pose, twist
         rows = mechanism.rows(pose)
         slip = rows @ twist.reshape(-1) - mechanism.rate
         return pose, twist - (self.weight * (rows.T @ self._solve(rows, slip))).reshape(-1, 3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal, get_args
 
 import numpy as np
@@ -22,8 +22,8 @@ from engines.lagrange.dynamics import (
     semi_implicit_euler,
 )
 from engines.lagrange.loading import compiled, installed
-from engines.lagrange.machine import Machine, not_held
-from engines.motions import is_prescribed, over_three
+from engines.lagrange.machine import Machine, left_open, not_held
+from engines.motions import over_three
 from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
 from reference.kinds import Rule
@@ -44,6 +44,10 @@ STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
 }
+
+# Of a judge: how many times larger the tolerance of its second run is, and of one that rounding disturbs; and what it
+# holds of poses, in radians and parts of the mechanism's length, and of velocities, in the mechanism's own time.
+LOOSER, ROUGH, HELD = 10.0, 100.0, 1e-10
 
 TABLEAUS = {"euler": NONE, "rk4": RK4, "dop853": FIXED_DOP853}
 
@@ -90,20 +94,20 @@ class Lagrange(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """The integrator's; a projection leaves no gap, and all of the motion is its own where nothing is free.
+        """The integrator's; a projection leaves no gap, and all of the motion is its own where poses are prescribed.
+        A skate may leave no velocity free and yet poses, which the integrator makes of the velocities.
 
         Baumgarte's spring is tied to the step, and turns a gap into an acceleration divided by the step squared: that
         costs two orders, and the reactions all.
         """
         if self.tolerance is not None:
             return Unpromised("its steps are its own: the error is that of its tolerance, whatever the step asked for")
-        order = ORDERS[self.integrator]
+        order, posed = ORDERS[self.integrator], mechanism.degrees_of_freedom()[0] > 0
         match self.stabilisation:
             case "projection":
-                return Promise(EXACT) if is_prescribed(mechanism) else Promise(order, gap=EXACT, slip=EXACT)
+                return Promise(order, gap=EXACT, slip=EXACT) if posed else Promise(EXACT)
             case "baumgarte" if order == 1:
-                prescribed = Promise(2, rate=1, slip=1, energy=1, reaction=1)
-                return prescribed if is_prescribed(mechanism) else Promise(1, gap=2)
+                return Promise(1, gap=2) if posed else Promise(2, rate=1, slip=1, energy=1, reaction=1)
             case "baumgarte" if order == 4:
                 return Promise(2, rate=1, slip=1, energy=1, reaction=0)
             case "baumgarte":
@@ -180,7 +184,7 @@ class _LagrangeRun(OneShot):
                 poses, twists = np.full((2, *shape), np.nan)
                 poses[0], twists[0] = self._mechanism.pose, self._mechanism.twist
                 self._in_numpy(poses, twists, 0, every)
-                stepping, warnings = time.process_time() - started, self._stopped(t, poses)
+                stepping, warnings = time.process_time() - started, ()
             else:
                 columns, fast = self._machine.empty(samples)
                 done = self._in_machine_code(self._machine, columns, fast, every)
@@ -188,16 +192,16 @@ class _LagrangeRun(OneShot):
                 if self._machine.left_to_numpy:
                     self._in_numpy(poses, twists, done, every)
                 stepping = time.process_time() - started
-                warnings = self._machine.warnings(self._engine.tolerance) if self._engine.tolerance is not None else ()
-                warnings = warnings or self._stopped(t, poses)
+                warnings = self._machine.warnings(self._engine.tolerance)
+            warnings = warnings or self._stopped(t, poses)
             return Trajectory(t, poses, twists, self._reactions(t, poses, twists), stepping, warnings)
 
     def _stopped(self, t: Array, poses: Array) -> tuple[str, ...]:
-        """What is to be said of a run with a tolerance that did not come to its end."""
+        """What is to be said of a run that did not come to its end, or of which numpy left joints open."""
+        if self._dynamics is not None and not np.isnan(self._dynamics.unclosed):
+            return (left_open(self._dynamics.unclosed),)
         ended = np.all(np.isfinite(poses), axis=(1, 2))
-        if self._engine.tolerance is None or ended[-1]:
-            return ()
-        return (not_held(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
+        return () if ended[-1] else (not_held(self._engine.tolerance, float(t[int(np.argmin(ended)) - 1])),)
 
     def _in_machine_code(self, machine: Machine, poses: Array, twists: Array, every: int) -> int:
         """Fill samples; gives the last that is done."""
@@ -253,5 +257,65 @@ METHODS = tuple(
 )
 # For every scene: orders 1, 4 and 8.
 VARIANTS = (Lagrange("euler", "projection"), Lagrange("rk4", "projection"), Lagrange("dop853", "projection"))
-TRUTH = Lagrange("dop853", "projection", tolerance=1e-13)
-"""The tightest that double precision carries: what scenes are checked against."""
+
+
+@dataclass(frozen=True)
+class Judge(Lagrange):
+    """The tightest tolerance that double precision carries, and an `estimate` of what the answer is wrong by.
+
+    That is the difference to a second run, whose steps are others: at LOOSER times the tolerance, with samples twice as
+    often and one more after the end, as steps end at samples or at the end wherever the tolerance allows it. So it is
+    about LOOSER times the error where the tolerance sets the steps, and about the error where rounding does. From where
+    poses, or velocities in the mechanism's own time, differ by more than HELD the motion is unresolved, and a warning
+    tells it: nobody can be held against it from there on.
+
+    Where rows are nearly dependent, rounding alone may be above the tolerance, and steps become too small; then another
+    run is made with ROUGH times as much.
+    """
+
+    tolerance: Tolerance | None = 1e-13
+
+    @validated
+    def build(self, mechanism: Mechanism, dt: Positive) -> _JudgeRun:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """As of any method; raises ValueError for a step that is not a finite time above zero."""
+        return _JudgeRun(self, mechanism, dt)
+
+
+class _JudgeRun(OneShot):
+    def __init__(self, engine: Judge, mechanism: Mechanism, dt: float) -> None:
+        self._engine, self._mechanism, self._dt = engine, mechanism, dt
+        self._first = _LagrangeRun(engine, mechanism, dt)
+        self.size = self._first.size
+
+    @validated
+    def __call__(self, samples: Count, every: Count) -> Trajectory:
+        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        self.begin()
+        found, factor = self._first(samples, every), LOOSER
+        spent = found.stepping
+        if not np.isfinite(found.pose).all():
+            rough = self._looser(ROUGH, 1)(samples, every)
+            spent += rough.stepping
+            if np.isfinite(rough.pose).all():
+                found, factor = rough, ROUGH * LOOSER
+        other = self._looser(factor, 2)(2 * samples + 1, every)
+        estimate = np.abs(found.pose - other.pose[:-1:2])
+        rate = np.abs(found.twist - other.twist[:-1:2]) * self._mechanism.time_scale
+        unit = np.array([self._mechanism.length_scale, self._mechanism.length_scale, 1.0])
+        # Not below, where one is no number.
+        above = ~(np.maximum(estimate, rate) < HELD * unit).all(axis=(1, 2))
+        unresolved_at, warnings = None, found.warnings
+        if above.any():
+            unresolved_at = float(found.t[int(np.argmax(above))])
+            warnings = (*warnings, f"lagrange: unresolved from {unresolved_at:.6g} s on, another tolerance changes it")
+        spent += other.stepping
+        return replace(found, stepping=spent, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
+
+    def _looser(self, factor: float, parts: int) -> _LagrangeRun:
+        """A run with so many times the tolerance, and steps [s] that are parts of those asked for."""
+        tolerance = None if self._engine.tolerance is None else factor * self._engine.tolerance
+        return _LagrangeRun(replace(self._engine, tolerance=tolerance), self._mechanism, self._dt / parts)
+
+
+TRUTH = Judge()
+"""What scenes and engines are checked against."""

@@ -34,6 +34,7 @@ from engines.lagrange.arrays import (
     STIFFNESS,
     STOPPED,
     TABLE,
+    UNCLOSED,
     WANTED_ANGLE,
     WANTED_ROLL,
     Arrays,
@@ -98,11 +99,21 @@ class Windows:
         return True
 
 
-def not_held(tolerance: float, t: float) -> str:
-    """What a run says that stopped at t [s]."""
+def not_held(tolerance: float | None, t: float) -> str:
+    """What a run says that stopped at t [s]; None: its steps are of one length."""
+    if tolerance is None:
+        return f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
     return (
         f"lagrange: the tolerance {tolerance:g} can't be held beyond {t:.6g} s: "
         "steps become too small or too many; give a larger tolerance, or end the run there"
+    )
+
+
+def left_open(t: float) -> str:
+    """What a run says of which a projection at t [s] did not close the joints."""
+    return (
+        f"lagrange: at {t:.6g} s the projection onto the joints does not converge: "
+        "the step is too long, or they are in a singular position"
     )
 
 
@@ -142,9 +153,11 @@ class Machine:
         """Whether the last call ended at a contact that no table holds."""
         return self.status(WANTED_ROLL) >= 0
 
-    def warnings(self, tolerance: float) -> tuple[str, ...]:
-        """What the control of steps has to say after a run."""
-        found = []
+    def warnings(self, tolerance: float | None) -> tuple[str, ...]:
+        """What projections and the control of steps have to say after a run."""
+        found = [] if np.isnan(self.status(UNCLOSED)) else [left_open(self.status(UNCLOSED))]
+        if tolerance is None:
+            return tuple(found)
         if not np.isnan(self.status(STOPPED)):
             found.append(not_held(tolerance, self.status(STOPPED)))
         if not np.isnan(self.status(STIFF)):

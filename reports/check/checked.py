@@ -233,8 +233,9 @@ def check(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
     told("following the ideal motion")
-    judge = judged(mechanism, samples, every * model.dt)
+    judge = judged(mechanism, samples, every * model.dt, tolerance)
     truth = judge.trajectory
+    samples = len(truth.t) - 1
     for met in model.obstacles(*often(truth, min(every, LOOKS))):
         shorter = f"--duration {_below(met.t):g}, or " if met.t > every * model.dt else ""
         raise Unsupported(

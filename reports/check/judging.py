@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from engines import Unsupported
-from engines.lagrange import TRUTH
+from engines.lagrange import TRUTH, Lagrange
 from engines.lagrange.dynamics import Dynamics
 from engines.reading import Give, Reading
 from reference.checks import InvalidMechanism
@@ -69,7 +69,8 @@ def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array) -
     return out[:, 0], out[:, 1]
 
 
-LOOSER = replace(TRUTH, tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
+LOOSER = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
+KNOWN = 0.1  # of a tolerance: the most that the judge's estimate of its own error may be where others are held to it
 NUDGE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
 SEEDS = (1, 2)
 # A disturbance of a motion that is not chaotic grows about as the time; this many times that is taken as exponential.
@@ -78,16 +79,23 @@ GROWN = 100.0
 
 @dataclass(frozen=True, eq=False)
 class IdealMotion:
-    """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by."""
+    """The ideal motion, and the same at a `looser` tolerance: the difference tells what the judge may be wrong by.
+
+    `cut`: it goes on, but from there on the judge's own estimate is above KNOWN of the tolerance.
+    """
 
     trajectory: Trajectory
     looser: Trajectory
     growth: Array  # (times,) how many times a small disturbance of the start has grown
     horizon: float  # s; the duration if errors grow no faster than about linearly
+    cut: bool = False
 
 
-def judged(mechanism: Mechanism, samples: int, spacing: float) -> IdealMotion:
-    """The motion of ideal joints. Raises InvalidMechanism where it can't be followed to the end."""
+def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
+    """The motion of ideal joints, for as long as the judge knows it well enough for a tolerance.
+
+    Raises InvalidMechanism where it can't be followed to the end, or not known for a sample.
+    """
     motion = TRUTH.build(mechanism, spacing)(samples, 1)
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
@@ -95,6 +103,14 @@ def judged(mechanism: Mechanism, samples: int, spacing: float) -> IdealMotion:
             f"the ideal motion can't be followed beyond {motion.t[int(np.argmin(sound))]:.4g} s: the joints are in a "
             f"singular position or the forces grow without bound; give a shorter --duration"
         )
+    known = apart(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose) < KNOWN * tolerance
+    if not known.all():
+        if (last := int(np.argmin(known)) - 1) < 1:
+            raise InvalidMechanism(
+                f"the judge does not know the ideal motion to a tenth of the tolerance {tolerance:g} beyond "
+                f"{motion.t[max(last, 0)]:.4g} s: the joints are near a singular position; give a larger --tolerance"
+            )
+        return replace(judged(mechanism, last, spacing), cut=True)
     looser = LOOSER.build(mechanism, spacing)(samples, 1)
     growth = np.max([_growth(mechanism, motion, samples, spacing, seed) for seed in SEEDS], axis=0)
     expected = GROWN * (1 + motion.t / mechanism.time_scale)

@@ -144,6 +144,11 @@ def _read(found: Checked) -> Section:
         sentences.append("The whole motion is prescribed, so a small error of the start has nothing to grow in.")
     else:
         sentences.append(f"Small errors grow {growth:.2g} times in {found.duration:g} s, which is not exponential.")
+    if found.judge.cut:
+        sentences.append(
+            f"Beyond {found.duration:.3g} s the judge itself does not know the motion to a tenth of the tolerance: "
+            "nothing is compared there."
+        )
     for note in reading.notes:
         sentences.append(f"Note: {note.element}: {note.reason}.")
     rows = tuple((name, value) for name, value in reading.model.settings.items())

@@ -45,10 +45,11 @@ REDUNDANT = 0.1
 PARTS, SAME, MOST = 10, 1e-6, 200_000
 
 TABLEAUS: dict[int, tuple[Array, Array]] = {
+    1: (np.zeros((1, 1)), np.array([1.0])),
     2: (np.array([[0, 0], [0.5, 0]]), np.array([0.0, 1.0])),
     4: (np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6),
 }
-NODES = {2: np.array([0, 0.5]), 4: np.array([0, 0.5, 0.5, 1])}
+NODES = {1: np.zeros(1), 2: np.array([0, 0.5]), 4: np.array([0, 0.5, 0.5, 1])}
 
 
 def solved(matrix: Array, right: Array) -> Array:
@@ -215,7 +216,10 @@ def in_numpy(
     soft: Softness | None = None,
     project: bool = False,
 ) -> Trajectory:
-    """A mechanism's motion from its start, samples `spacing` [s] apart, by the steps of this module alone."""
+    """A mechanism's motion from its start, samples `spacing` [s] apart, by the steps of this module alone.
+
+    Order 1, which compiled steps have not, is the semi-implicit Euler method: poses move with the velocities after.
+    """
     (stages, weights), nodes = TABLEAUS[order], NODES[order]
     dt = spacing / every
     poses = np.full((samples + 1, *mechanism.pose.shape), np.nan)
@@ -231,8 +235,8 @@ def in_numpy(
             acceleration[i], reaction = multipliers(mechanism, at, velocity[i], t + node * dt, soft)
             if i == 0 and step % every == 0:
                 poses[step // every], twists[step // every], reactions[step // every] = pose, twist, reaction
-        pose = pose + dt * np.tensordot(weights, velocity, 1)
         twist = twist + dt * np.tensordot(weights, acceleration, 1)
+        pose = pose + dt * (twist if order == 1 else np.tensordot(weights, velocity, 1))
         if project:
             pose, twist = projected(mechanism, pose, twist, t + dt)
         if not (np.isfinite(pose).all() and np.isfinite(twist).all()):

@@ -8,7 +8,7 @@ print([one for one in found if one.silent])
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -61,17 +61,14 @@ class Row:
 def judged(seed: int, numbers: Iterable[int], kinds: tuple[str, ...] = EVERY) -> tuple[list[Case], list[int]]:
     """Cases, and the numbers of those whose motion the judge itself does not know to a tenth of the claim.
 
-    It is asked with two tolerances: where these differ, or one stops at a singular position, no row can be held to it.
+    It says so itself: where another tolerance makes another motion, or it stops at a singular position.
     """
     cases, unknown = [], []
     for number in numbers:
         own = mechanism(seed, number, kinds)
-        truth, looser = (
-            replace(TRUTH, tolerance=tolerance).build(own, TICK)(round(DURATION / TICK), 1)
-            for tolerance in (TRUTH.tolerance, 1e-11)
-        )
+        truth = TRUTH.build(own, TICK)(round(DURATION / TICK), 1)
         # Not below, where one is no number.
-        if np.max(np.abs(truth.pose - looser.pose) / sizes(own)) < CLAIM / 10:
+        if np.max(np.asarray(truth.estimate) / sizes(own)) < CLAIM / 10:
             cases.append(Case(number, own, truth))
         else:
             unknown.append(number)

@@ -1,4 +1,4 @@
-"""A witness beside the judge: random mechanisms in the coordinates of a spanning tree, by scipy's DOP853.
+"""A witness beside the judge: random mechanisms in the coordinates of a spanning tree, by scipy's DOP853 and Radau.
 
 It shares no code with `engines.lagrange`, nor with the rows that the judge takes from the mechanism: from that it reads
 names and numbers. A body hangs on an earlier one by a pin, a slot or a weld, whose coordinates are an angle, an angle
@@ -9,15 +9,18 @@ contacts are left out: there the scenes' closed forms are the witness.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from engines.lagrange import HELD, TRUTH
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
+from reference.scales import time_scale
 from reports.gate.judge import in_numpy, stepped
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import EVERY
@@ -176,15 +179,15 @@ class Tree:
         found = np.linalg.solve(whole, np.concatenate([right, bias]))[:n] if n else np.zeros(0)
         return found, (ways @ found + rest).reshape(-1, 3)
 
-    def motion(self, t: Any) -> tuple[Any, Any, Any]:
-        """Poses, twists and accelerations (times, bodies, 3)."""
+    def motion(self, t: Any, method: str = "DOP853", tolerance: float = 1e-13) -> tuple[Any, Any, Any]:
+        """Poses, twists and accelerations (times, bodies, 3); fewer times where the method gives up."""
 
         def rates(_: float, state: Any) -> Any:
             return np.concatenate([state[1::2], self.acceleration(state[::2], state[1::2])[0]])[order]
 
         n = len(self.start) // 2
         order = np.arange(2 * n).reshape(2, n).T.reshape(-1)
-        done = solve_ivp(rates, (0.0, t[-1]), self.start, "DOP853", t, rtol=1e-11, atol=1e-12)
+        done = solve_ivp(rates, (0.0, t[-1]), self.start, method, t, rtol=tolerance, atol=tolerance / 10)
         states = [(y[::2], y[1::2]) for y in done.y.T]
         bodies = [self.bodies(*state) for state in states]
         pose, twist = (np.array([[body[which] for body in each] for each in bodies]) for which in (0, 1))
@@ -232,6 +235,99 @@ def test_the_judge_moves_random_mechanisms_as_equations_in_the_coordinates_of_a_
             needed = mass * (acceleration[sample] - fall)
             most = np.abs(needed).max() + np.abs(mass * fall).max() + np.abs(fine.reaction[sample]).max()
             assert np.abs(carried - needed).max() < 1e-9 * most
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What the judge says and what the witness does, in radians and parts of the mechanism's length: by how much they
+    are `apart`, and by how much the witness is apart from itself at another tolerance. Velocities count in the time of
+    the mechanism; NaN where one of them stops. `resolved`: whether the judge claims to hold HELD.
+    """
+
+    number: int
+    resolved: bool
+    estimate: float
+    apart: float
+    doubt: float
+
+
+def compared(number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]) -> Compared:
+    """Over a `span` [s], by the witness's method at two tolerances, the tighter one last."""
+    t = np.linspace(0.0, span, SAMPLES + 1)
+    with np.errstate(all="ignore"):
+        judge = TRUTH.build(mechanism, t[1])(SAMPLES, 1)
+        loose, tight = (Tree(mechanism).motion(t, method, tolerance)[:2] for tolerance in tolerances)
+    size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+
+    def apart(one: Any, other: Any) -> float:
+        if len(one[0]) != len(other[0]):
+            return np.nan
+        places, rates = (np.abs(mine - yours).max(axis=(0, 1)) / size for mine, yours in zip(one, other, strict=True))
+        return float(np.maximum(places, mechanism.time_scale * rates).max())
+
+    estimate = float(np.max(np.asarray(judge.estimate) / size))
+    here = (judge.pose, judge.twist)
+    return Compared(number, judge.unresolved_at is None, estimate, apart(here, tight), apart(loose, tight))
+
+
+def in_its_own_time(number: int) -> Compared:
+    """Over SPAN of what the fastest of the mechanism takes."""
+    mechanism = random_mechanism(SEED, number, KINDS)
+    return compared(number, mechanism, SPAN * mechanism.time_scale, "DOP853", (1e-12, 1e-13))
+
+
+def far_beyond_its_own_time(number: int) -> Compared | None:
+    """Over SPAN of what it would take without springs and dampers, where these are STIFF times faster; else None."""
+    mechanism = random_mechanism(SEED, number, KINDS)
+    slow = time_scale(mechanism.length_scale, mechanism.gravity, mechanism.bodies, mechanism.joints)
+    if slow < STIFF * mechanism.time_scale:
+        return None
+    return compared(number, mechanism, SPAN * slow, "Radau", (1e-9, 1e-11))
+
+
+def held(found: list[Compared]) -> list[Compared]:
+    """Those that can be compared: the judge claims them, and the witness knows them better than the claim."""
+    both = [one for one in found if one.resolved and one.doubt < HELD]
+    wrong = [one for one in both if not one.apart < HELD + one.doubt]
+    assert wrong == [], f"{len(wrong)} of {len(found)}"
+    return both
+
+
+STIFF_CASES = (59, 114, 237, 411)  # up to 3,204 times faster than gravity and their start, and cheap
+SEED, STIFF = 291528136, 10.0  # the first eight digits of a commit's hash, so that nobody chose it
+
+
+def test_the_judge_holds_what_it_claims_in_random_mechanisms() -> None:
+    assert len(held([in_its_own_time(number) for number in range(40)])) >= 39
+
+
+@pytest.mark.slow  # a minute or two
+def test_the_judge_holds_what_it_claims_in_five_hundred_random_mechanisms() -> None:
+    assert len(held([in_its_own_time(number) for number in range(500)])) >= 490
+
+
+def test_the_judge_holds_what_it_claims_of_a_stiff_mechanism_far_beyond_its_own_time() -> None:
+    found = [far_beyond_its_own_time(number) for number in STIFF_CASES]
+    assert len(held([one for one in found if one is not None])) == len(STIFF_CASES)
+
+
+@pytest.mark.slow  # ten minutes
+def test_the_judge_holds_what_it_claims_of_every_stiff_mechanism_of_five_hundred() -> None:
+    found = [one for one in map(far_beyond_its_own_time, range(500)) if one is not None]
+    assert len(held(found)) > len(found) / 2
+
+
+def test_a_judge_with_springs_a_millionth_too_stiff_is_caught() -> None:
+    """So much is wrong in what the judge is told, and the witness has it right."""
+    caught = 0
+    for number in range(40):
+        mechanism = random_mechanism(SEED, number, ("pin", "slot", "spring", "torsion-spring"))
+        springs = (force for force in mechanism.forces if isinstance(force, Spring | TorsionSpring))
+        forces = tuple(replace(force, stiffness=force.stiffness * (1 + 1e-6)) for force in springs)
+        right = Tree(mechanism).motion(np.array([0.0, SPAN * mechanism.time_scale]))[0]
+        wrong = TRUTH.build(replace(mechanism, forces=forces), SPAN * mechanism.time_scale)(1, 1)
+        caught += bool(forces) and wrong.unresolved_at is None and np.abs(wrong.pose - right).max() > HELD
+    assert caught >= 15
 
 
 def test_the_mechanisms_have_every_kind_and_trees_with_cut_loops() -> None:

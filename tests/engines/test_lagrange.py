@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from engines.lagrange import METHODS, TRUTH, Lagrange
+from engines import Promise
+from engines.lagrange import HELD, METHODS, TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import RK4, Dynamics, runge_kutta
+from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.trajectory import energy, joint_gap, slip
 from tests.mechanisms import four_bar, pendulum
+from tests.present import present
 
 
 @pytest.fixture(autouse=True, params=["compiled", "numpy"])
@@ -32,6 +35,57 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
     run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.01)(300, 1)
     # 3 s at a tolerance of 1e-13 a step: a few 1e-13.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
+
+
+@pytest.mark.parametrize(("tolerance", "resolved"), [(1e-13, True), (1e-6, False)])
+def test_a_judge_estimates_its_error_and_says_from_when_on_it_does_not_hold_its_claim(tolerance, resolved):
+    run = Judge(tolerance=tolerance).build(pendulum(angle=-np.pi / 2 + 1.0), 0.5)(6, 1)
+    wrong = np.abs(run.pose[:, 0, 2] + np.pi / 2 - swinging_angle(run.t, 1.0))
+    estimate = present(run.estimate)[:, 0, 2]
+    # What the second run is off by, and rounding. In numpy steps end at samples, so that it is hardly looser.
+    assert wrong.max() < 2 * estimate.max() + 1e-12
+    assert (run.unresolved_at is None) is resolved
+    assert any("unresolved" in warning for warning in run.warnings) is not resolved
+    if run.unresolved_at is not None:
+        assert np.all(estimate[run.t < run.unresolved_at] < HELD)
+
+
+@pytest.mark.parametrize("method", ["euler", "rk4", "dop853"])
+def test_steps_of_one_length_tell_of_a_dead_end_and_of_a_motion_that_is_lost(method):
+    # A crank of 1 m that a motor turns, and a rod of 1.2 m to a point that is held 1.5 m away: it comes no farther.
+    crank = Body("crank", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
+    far = float(np.hypot(1.5 - 1.0, 0.0))
+    joints = (
+        Pin("centre", None, "crank", (0.0, 0.0), (0.0, 0.0)),
+        Drive("motor", None, "crank", 2.0, 0.0),
+    )
+    slide = Body("slide", 1.0, 0.1, (1.5, 0.0, 0.0))
+    held = (Slot("guide", None, "slide", (1.5, 0.0), np.pi / 2, (0.0, 0.0)),)
+    rod = (Rod("rod", "crank", "slide", (1.0, 0.0), (0.0, 0.0), far),)
+    blocked = Mechanism((crank, slide), (*joints, *held, *rod))
+    run = Lagrange(method).build(blocked, 1e-2)(40, 5)
+    assert any("does not converge" in warning or "is lost" in warning for warning in run.warnings)
+    assert Lagrange(method).build(pendulum(), 1e-2)(40, 5).warnings == ()
+
+
+def test_a_skate_that_leaves_no_velocity_free_leaves_poses_to_the_integrator():
+    """A crank is driven, and a bar on it has a blade: all velocities follow from the pose, no pose from the time."""
+    crank = Body("crank", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
+    # The crank's end moves up at 2 m/s; a blade along x at the bar's far end, 1 m to the right, stays at its height.
+    bar = Body("bar", 1.0, 0.1, (2.0, 0.0, 0.0), (0.0, 0.0, -2.0))
+    joints = (
+        Pin("centre", None, "crank", (0.0, 0.0), (0.0, 0.0)),
+        Drive("motor", None, "crank", 2.0, 0.0),
+        Pin("elbow", "crank", "bar", (1.0, 0.0), (-1.0, 0.0)),
+        Skate("blade", None, "bar", (0.0, 0.0), 0.0),
+    )
+    towed = Mechanism((crank, bar), joints)
+    assert towed.degrees_of_freedom() == (1, 0)
+    truth = TRUTH.build(towed, 0.05)(4, 1)
+    errors = [np.abs(Lagrange("euler").build(towed, 0.05 / n)(4, n).pose - truth.pose).max() for n in (10, 20)]
+    assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
+    promised = [Lagrange("euler").order(towed), Lagrange("rk4").order(towed)]
+    assert [isinstance(each, Promise) and each.of("angle") for each in promised] == [1, 4]
 
 
 def test_a_long_run_may_take_more_steps_for_every_sample_and_a_sample_that_takes_too_many_ends_it(monkeypatch):

@@ -16,6 +16,7 @@ from engines.mujoco.writers import urdf
 from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.written_script import script
 from engines.reading import Give
+from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES
@@ -27,6 +28,7 @@ from reports.check.judging import accelerations, errors, judged
 from reports.check.picture_data import from_text, shown_of
 from reports.check.pictures import pictures
 from reports.check.telling import data, sections, verdict
+from tests.present import present
 from tests.toys import Disc
 
 FOUR_BAR = """<mujoco model="four bar"><option timestep="0.002"/>
@@ -224,6 +226,18 @@ def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_no
     assert 1.0 < chaotic.horizon < chaotic.trajectory.t[-1]
     before = chaotic.trajectory.t < chaotic.horizon
     assert np.all(chaotic.growth[before] <= 100 * (1 + chaotic.trajectory.t[before] / wild.time_scale))
+
+
+def test_nobody_is_judged_where_the_judge_does_not_know_a_tenth_of_the_tolerance():
+    links = PENDULUM_2.mechanism()
+    wild = replace(links, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in links.bodies))
+    whole, known = judged(wild, 1500, 0.01), judged(wild, 1500, 0.01, tolerance=1e-10)
+    assert not whole.cut
+    assert known.cut
+    assert 0 < known.trajectory.t[-1] < whole.trajectory.t[-1]
+    assert np.max(present(known.trajectory.estimate)) < 1e-11 * max(1.0, wild.length_scale)
+    with pytest.raises(InvalidMechanism, match="does not know the ideal motion to a tenth of the tolerance"):
+        judged(wild, 1500, 0.01, tolerance=1e-20)
 
 
 def test_the_report_can_be_read_by_people_and_programs(shipped):

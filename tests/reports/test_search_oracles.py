@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engines import Promise, Run
-from engines.lagrange import Lagrange
+from engines.lagrange import Judge, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.user_rows import RowWriter
@@ -23,6 +23,7 @@ from reports.gate.change import Altered
 from reports.search import instant_mujoco, motions, plan, raw, raw_law, relations
 from reports.search.instant_pymunk import PUSHED
 from reports.search.mechanisms import ALL
+from reports.search.parts import EVERY
 from reports.search.planted import Off
 from reports.search.relations import NAMES
 from reports.search.scripts import script
@@ -220,6 +221,52 @@ class Boasting(Lagrange):
 def test_a_motion_that_does_not_fall_with_the_promised_order_is_found() -> None:
     assert faults(Boasting("euler", "projection"), ("pin",), 3, "motions") & {"motion", "reactions"}
     assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
+
+
+@dataclass(frozen=True)
+class Drifting(Lagrange):
+    """Every sample moves a body away by so many times what rounding of steps may add up to."""
+
+    times: float = 0.0
+
+    def build(self, mechanism: Mechanism, dt: float) -> Run:  # type: ignore[override]
+        steps = round(motions.SPAN * mechanism.time_scale / dt)
+
+        def drifted(given: Trajectory) -> Trajectory:
+            by = self.times * motions._drifted(mechanism, given, steps)
+            pose = given.pose.copy()
+            pose[1:, :, 0] += by
+            return replace(given, pose=pose)
+
+        return Spoiled(super().build(mechanism, dt), drifted)
+
+
+@pytest.mark.parametrize(("seed", "number", "decades"), [(77777, 263, 0), (1167020602, 28, 2), (1167020602, 90, 2)])
+def test_what_rounding_of_steps_adds_up_to_is_no_fault_and_little_more_is(seed: int, number: int, decades: int) -> None:
+    """Strong dampers that hold still what they are on: it moves by 1e-9 to 1e-6 m, as far as places are rounded."""
+    case = Adapted(Lagrange()).draw(seed, number, EVERY, decades)
+    for integrator in ("rk4", "dop853"):
+        one, off = (Adapted(Drifting(integrator, times=times)).ask(case, number, ("motions",)) for times in (0.0, 2.0))
+        assert one.faults == ()
+        assert "motion" in one.errors  # it is asked
+        assert "motion" in off.faults
+
+
+def test_nobody_is_held_against_a_motion_that_the_judge_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    engine = Boasting("euler", "projection")
+    assert all(one.errors for one in told(engine, ("pin",), 3, "motions"))
+    monkeypatch.setattr(motions, "TRUTH", Judge(tolerance=1e-2))
+    for one in told(engine, ("pin",), 3, "motions"):
+        assert not one.errors
+        assert "the judge itself does not hold 1e-10" in one.not_asked[0]
+
+
+def test_an_order_is_not_missed_where_a_textbook_method_does_not_show_its_own() -> None:
+    """A spring of 0.5 GN/m shrinks to less than a micrometre within a step: where stages fall decides what it does."""
+    case = Adapted(Lagrange()).draw(1167020602, 191, EVERY, 2)
+    one = Adapted(Lagrange("dop853")).ask(case, 191, ("motions",))
+    assert one.faults == ()
+    assert "a textbook method shows no order" in one.not_asked[0]
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from engines.lagrange.arrays import (
     STATUS,
     STIFFNESS,
     TWIST,
+    UNCLOSED,
     VELOCITY,
     WANTED_ROLL,
     WHICH,
@@ -58,7 +59,10 @@ def accelerations(whole, real, cells, pose, twist, t, out):
 
 @inner
 def project_onto_joints(whole, real, cells, pose, twist, t, most):
-    """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most."""
+    """Move a pose and a twist to the nearest, by mass, that the joints allow: Newton's method, `most` times at most.
+
+    UNCLOSED tells when that was not enough: a step ended too far from any pose of the joints, or in a singular one.
+    """
     if whole[ROWS] == 0:
         return
     holonomic = most if whole[HOLONOMIC_ROWS] > 0 else 0
@@ -84,6 +88,8 @@ def project_onto_joints(whole, real, cells, pose, twist, t, most):
             largest = max(largest, abs(real[change + k]) / real[units + k])
         if not largest > CLOSED:
             holonomic, kept = iteration + 1, which == ALL
+        elif iteration + 1 == holonomic and math.isnan(real[whole[STATUS] + UNCLOSED]):
+            real[whole[STATUS] + UNCLOSED] = t
 
 
 @inner
@@ -107,15 +113,15 @@ def evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
 
 @inner
 def add_stages(whole, real, weights, dt, pose, twist):
-    """Add to a state the weighted velocities and accelerations of the stages."""
+    """Add to a state the weighted velocities and accelerations of the stages: their sum, which rounds a place once."""
     columns = whole[COLUMNS]
-    for stage in range(len(weights)):
-        share = dt * weights[stage]
-        if share != 0:
-            gain, rate = whole[ACCELERATION] + stage * columns, whole[VELOCITY] + stage * columns
-            for k in range(columns):
-                real[pose + k] += share * real[rate + k]
-                real[twist + k] += share * real[gain + k]
+    for k in range(columns):
+        moved = gained = 0.0
+        for stage in range(len(weights)):
+            moved += weights[stage] * real[whole[VELOCITY] + stage * columns + k]
+            gained += weights[stage] * real[whole[ACCELERATION] + stage * columns + k]
+        real[pose + k] += dt * moved
+        real[twist + k] += dt * gained
 
 
 @inner
