@@ -15,7 +15,8 @@ and a second program would have to be compiled.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, TypeVar
 
 import mujoco
 import numpy as np
@@ -28,7 +29,16 @@ from engines.mujoco.joints.skate import STEPWISE, slip_damping
 from engines.mujoco.model import Model
 from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
-from reports.search.law import Constrained, Fault, NotAsked, constrained, difference, driving_force, force_difference
+from reports.search.law import (
+    Constrained,
+    Fault,
+    NotAsked,
+    carried,
+    constrained,
+    difference,
+    driving_force,
+    force_difference,
+)
 from reports.search.raw_law import jacobian
 
 Array = NDArray[np.float64]
@@ -39,13 +49,14 @@ SAME_ROW = 1e-9
 
 def declared(
     mechanism: Mechanism, model: Model, data: Any, rows: Array, softness: Softness | None, pose: Array, twist: Array
-) -> tuple[Array, Array, Array, float]:
+) -> tuple[Array, Array, Array, Array]:
     """How the rows give way (rows, rows), what they aim at beside their velocity term, which of them the solver has,
-    and the stiffest of them [1/s^2], all as MuJoCo declares. Raises Fault where rows are lacking.
+    and by how much rounding changes what they aim at, all as MuJoCo declares. Raises Fault where rows are lacking.
     """
     compiled = model.compiled
-    give, aimed, stiffest = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), 0.0
+    give, aimed, doubt = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows))
     solved = np.zeros(len(rows), dtype=bool)
+    gap_rounded, slip_rounded = rounded(mechanism, rows, pose, twist)
     in_tree = rows @ directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
@@ -79,17 +90,30 @@ def declared(
             # A row that callbacks write; a skate's brings a damping of its own.
             damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
             aimed[own] = -softness.stiffness * gap[own] - damping * slip[own]
-            stiffest = max(stiffest, softness.stiffness)
+            doubt[own] = softness.stiffness * gap_rounded[own] + damping * slip_rounded[own]
         else:  # each of MuJoCo's rows has a stiffness of its own
             stiffness, damping, impedance, _ = data.efc_KBIP[found].T
             # A clock is not quite where the rate would have it: forces accelerate even so large an inertia a little.
             ahead, faster = (lines[found][:, beside] @ late for late in _clocks_ahead(joint, data, beside))
             asked = -stiffness * impedance * (factors @ gap[own] + ahead) - damping * (factors @ slip[own] + faster)
             aimed[own] = np.linalg.solve(factors, asked)
-            stiffest = max(stiffest, float(np.max(stiffness * impedance)))
+            doubt[own] = np.max(stiffness * impedance) * gap_rounded[own] + np.max(damping) * slip_rounded[own]
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
-    return give, aimed, solved, stiffest
+    return give, aimed, solved, doubt
+
+
+def rounded(mechanism: Mechanism, rows: Array, pose: Array, twist: Array) -> tuple[Array, Array]:
+    """By how much two programs may differ in gaps and slips (rows,) of the same state, when both compute in doubles.
+
+    A pose is a sum along a chain of at most all bodies. Each sum is rounded by eps / 2 of itself at most, in each of
+    the two programs, and a row turns that into a gap: n eps |J| |pose|. Taking the difference of two points adds once
+    more eps of them, which |J| |pose| and the arms, no longer than the mechanism's length, hold. Of slips the same.
+    """
+    part = (len(mechanism.bodies) + 1) * np.finfo(float).eps
+    arm = np.where(mechanism.turning, 0.0, mechanism.length_scale)
+    places = np.abs(rows) @ np.abs(pose).reshape(-1) + arm
+    return part * np.where(mechanism.holonomic, places, 0.0), part * (np.abs(rows) @ np.abs(twist).reshape(-1))
 
 
 def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
@@ -120,6 +144,7 @@ def directions(model: Model, data: Any) -> Array:
     return out
 
 
+Solver = TypeVar("Solver", MuJoCo, Mjx)
 STEP = 0.01  # of the mechanism's own time scale
 STEPS = 5  # after which the second instant lies: at the first one every coordinate of the tree is zero
 # Rounding, and what it becomes where a model is hardened: the primal solver adds J^T J / R to the inertia.
@@ -163,6 +188,21 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     return out
 
 
+def solved(engine: Solver) -> Solver:
+    """The engine with a tolerance so small that its solver leaves nothing but rounding.
+
+    What a solver leaves is bounded by the tolerance that the engine declares. Newton ends where a step lessens the cost
+    c by less than tolerance I, with I the trace of M. It converges quadratically, so c - c_min is less by then. As the
+    Hessian is M + J^T D J, accelerations that are off by e cost e^T M e / 2 at least: e^T M e <= 2 tolerance I (at most
+    0.96 of it was met in 1115 starts and steps with blades, by a test in `tests/reports/test_search_oracles.py`). So as
+    shipped, 1e-8, a body alone may be off by 2e-4 m/s^2, and a light one beside heavy ones by more: in a slow motion by
+    a tenth of all. Springs alone cost a parabola, which one step of Newton's solves; friction does not.
+    """
+    if isinstance(engine, Mjx):
+        return replace(engine, settings=solved(engine.settings))
+    return replace(engine, tolerance=min(engine.tolerance, ROUNDED**2))
+
+
 def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> None:
     """Raises NotAsked for constructions that obey no law of an instant."""
     if engine.drive != "inertia" and any(joint.labels == ("torque",) for joint in mechanism.joints):
@@ -203,17 +243,15 @@ class Instant:
     aimed: Array  # (rows,): what J a is to be, beside the velocity term
     give: Array
     solved: Array  # (rows,): which rows are the solver's, the others being held by the tree
-    floor: float  # m/s^2: what rounded gaps make of stiff rows, beyond the law
+    doubt: Array  # (rows,): of `aimed`, what rounded gaps make of stiff rows
 
     @classmethod
     def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Softness | None) -> Instant:
         """What `data` holds after mj_forward. Raises Fault where rows are lacking."""
         pose, twist, _ = _motion(model, data, data.qacc)
-        give, aimed, solved, stiffest = declared(mechanism, model, data, mechanism.rows(pose), softness, pose, twist)
-        # A gap is rounded, and what a stiff row makes of that is no fault: beyond the law, where this is the largest.
-        floor = stiffest * np.finfo(float).eps * mechanism.length_scale / LAW
+        give, aimed, solved, doubt = declared(mechanism, model, data, mechanism.rows(pose), softness, pose, twist)
         free = mechanism.unconstrained(pose, twist)
-        return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, floor)
+        return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, doubt)
 
     def law(self, velocity_term: bool = True) -> Constrained:
         """Accelerations (bodies, 3) and forces (rows,); without it, the solver's rows lack their `velocity_term`.
@@ -227,6 +265,12 @@ class Instant:
             right = np.where(self.solved, rows @ coasting.reshape(-1), right)
         return constrained(rows, right + self.aimed, self.mechanism.inertias, self.free, self.give)
 
+    @cached_property
+    def floor(self) -> Constrained:
+        """What rounded gaps make of accelerations and forces, in the sizes of which LAW is a part."""
+        least = carried(self.mechanism.rows(self.pose), self.doubt, self.mechanism.inertias, self.give)
+        return Constrained(least.motion / LAW, least.force / LAW)
+
     def accelerations(self) -> Array:
         """The accelerations (tree coordinates,) of the law."""
         _, _, coasting = _motion(self.model, self.data, np.zeros(self.model.compiled.nv))
@@ -238,13 +282,14 @@ class Instant:
         """By what accelerations (nv,) miss the law, relative to the largest."""
         _, _, change = _motion(self.model, self.data, accelerations)
         # What a motion needs is compared with what acts, and with what the motion itself asks for.
-        others = (self.free, self.twist / self.mechanism.time_scale, np.array([[self.floor, 0.0, 0.0]]))
+        others = (self.free, self.twist / self.mechanism.time_scale, self.floor.motion)
         return difference(self.mechanism, change, (law or self.law()).motion, others)
 
     def missed_force(self, reaction: Array) -> float:
         """By what reactions (rows,) miss the law, relative to the largest force."""
         force = driving_force(self.mechanism, self.twist)
-        others = (force, self.floor * float(self.mechanism.inertias[:, 0].max()))
+        size = np.where(self.mechanism.turning, 1 / self.mechanism.length_scale, 1.0)
+        others = (force, float((self.floor.force * size).max(initial=0.0)))
         return force_difference(self.mechanism, reaction, self.law().force, others)
 
 
@@ -270,9 +315,7 @@ def mjx_errors(engine: Mjx, mechanism: Mechanism) -> dict[str, float]:
     Raises NotAsked where no law is declared, Fault for a row that is lacking, and Unsupported.
     """
     dt = STEP * mechanism.time_scale
-    # What a solver leaves within the tolerance that is declared is no fault, so none is left.
-    tolerance = min(engine.settings.tolerance, ROUNDED**2)
-    engine = replace(engine, settings=replace(engine.settings, tolerance=tolerance))
+    engine = solved(engine)  # what a solver leaves within the tolerance that is declared is no fault
     model, held = engine.model(mechanism, dt)
     refuse_without_a_law(engine.settings, mechanism, dt)
     if model.halves:
