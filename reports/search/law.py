@@ -39,34 +39,15 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     """
     if not len(rows):
         return Constrained(free, np.zeros(0))
-    root, norm, left, sizes, turned = _factored(rows, inertias, give)
-    lacking = left.T @ ((right - rows @ free.reshape(-1)) / norm)
-    change = (turned.T @ (lacking / sizes))[: len(root)]
-    return Constrained(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
-
-
-def carried(rows: Array, doubt: Array, inertias: Array, give: Array) -> Constrained:
-    """What `right` of `constrained` being off by `doubt` (rows,) or less makes of motion and forces, at the most.
-
-    Both are linear in `right`: f = f0 + A right and a = a0 + M^(-1) J^T A right, A = (J M^(-1) J^T + give give^T)^(-1).
-    So each is off by the absolute values of its matrix times `doubt`: much, where rows are nearly dependent.
-    """
-    if not len(rows):
-        return Constrained(np.zeros(inertias.shape), np.zeros(0))
-    root, norm, left, sizes, turned = _factored(rows, inertias, give)
-    change = ((turned.T / sizes) @ left.T)[: len(root)] / root[:, None] / norm
-    force = (left / sizes**2) @ left.T / norm[:, None] / norm
-    return Constrained((np.abs(change) @ doubt).reshape(-1, 3), np.abs(force) @ doubt)
-
-
-def _factored(rows: Array, inertias: Array, give: Array | None) -> tuple[Array, Array, Array, Array, Array]:
-    """The root of M, the rows' lengths, and the SVD of J M^(-1/2) with rows of length one."""
     root = np.sqrt(inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
     if give is not None:  # further coordinates of unit mass, which the forces move
         matrix = np.hstack([matrix, give])
-    return root, norm, *np.linalg.svd(matrix / norm[:, None], full_matrices=False)
+    left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
+    lacking = left.T @ ((right - rows @ free.reshape(-1)) / norm)
+    change = (turned.T @ (lacking / sizes))[: len(root)]
+    return Constrained(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:
