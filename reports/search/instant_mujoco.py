@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -30,6 +30,7 @@ from engines.mujoco.model import Model
 from reference.joints import Drive, Joint, Skate
 from reference.mechanism import Mechanism
 from reports.search.law import (
+    ROUNDINGS,
     Constrained,
     Fault,
     NotAsked,
@@ -38,6 +39,7 @@ from reports.search.law import (
     difference,
     driving_force,
     force_difference,
+    place,
 )
 from reports.search.raw_law import jacobian
 
@@ -51,12 +53,11 @@ def declared(
     mechanism: Mechanism, model: Model, data: Any, rows: Array, softness: Softness | None, pose: Array, twist: Array
 ) -> tuple[Array, Array, Array, Array]:
     """How the rows give way (rows, rows), what they aim at beside their velocity term, which of them the solver has,
-    and by how much rounding changes what they aim at, all as MuJoCo declares. Raises Fault where rows are lacking.
+    and how stiff each is [1/s^2], all as MuJoCo declares. Raises Fault where rows are lacking.
     """
     compiled = model.compiled
-    give, aimed, doubt = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows))
+    give, aimed, stiff = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows))
     solved = np.zeros(len(rows), dtype=bool)
-    gap_rounded, slip_rounded = rounded(mechanism, rows, pose, twist)
     in_tree = rows @ directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
@@ -90,30 +91,17 @@ def declared(
             # A row that callbacks write; a skate's brings a damping of its own.
             damping = slip_damping(mechanism) if isinstance(joint, Skate) else softness.damping
             aimed[own] = -softness.stiffness * gap[own] - damping * slip[own]
-            doubt[own] = softness.stiffness * gap_rounded[own] + damping * slip_rounded[own]
+            stiff[own] = softness.stiffness
         else:  # each of MuJoCo's rows has a stiffness of its own
             stiffness, damping, impedance, _ = data.efc_KBIP[found].T
             # A clock is not quite where the rate would have it: forces accelerate even so large an inertia a little.
             ahead, faster = (lines[found][:, beside] @ late for late in _clocks_ahead(joint, data, beside))
             asked = -stiffness * impedance * (factors @ gap[own] + ahead) - damping * (factors @ slip[own] + faster)
             aimed[own] = np.linalg.solve(factors, asked)
-            doubt[own] = np.max(stiffness * impedance) * gap_rounded[own] + np.max(damping) * slip_rounded[own]
+            stiff[own] = np.max(stiffness * impedance)
     if waiting:
         raise Fault(f"constraint {waiting[0]} of MuJoCo's is none of the mechanism's rows")
-    return give, aimed, solved, doubt
-
-
-def rounded(mechanism: Mechanism, rows: Array, pose: Array, twist: Array) -> tuple[Array, Array]:
-    """By how much two programs may differ in gaps and slips (rows,) of the same state, when both compute in doubles.
-
-    A pose is a sum along a chain of at most all bodies. Each sum is rounded by eps / 2 of itself at most, in each of
-    the two programs, and a row turns that into a gap: n eps |J| |pose|. Taking the difference of two points adds once
-    more eps of them, which |J| |pose| and the arms, no longer than the mechanism's length, hold. Of slips the same.
-    """
-    part = (len(mechanism.bodies) + 1) * np.finfo(float).eps
-    arm = np.where(mechanism.turning, 0.0, mechanism.length_scale)
-    places = np.abs(rows) @ np.abs(pose).reshape(-1) + arm
-    return part * np.where(mechanism.holonomic, places, 0.0), part * (np.abs(rows) @ np.abs(twist).reshape(-1))
+    return give, aimed, solved, stiff
 
 
 def _clocks_ahead(joint: Joint, data: Any, beside: list[int]) -> tuple[Array, Array]:
@@ -144,7 +132,6 @@ def directions(model: Model, data: Any) -> Array:
     return out
 
 
-Solver = TypeVar("Solver", MuJoCo, Mjx)
 STEP = 0.01  # of the mechanism's own time scale
 STEPS = 5  # after which the second instant lies: at the first one every coordinate of the tree is zero
 # Rounding, and what it becomes where a model is hardened: the primal solver adds J^T J / R to the inertia.
@@ -188,7 +175,7 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     return out
 
 
-def solved(engine: Solver) -> Solver:
+def solved(engine: MuJoCo) -> MuJoCo:
     """The engine with a tolerance so small that its solver leaves nothing but rounding.
 
     What a solver leaves is bounded by the tolerance that the engine declares. Newton ends where a step lessens the cost
@@ -198,8 +185,6 @@ def solved(engine: Solver) -> Solver:
     shipped, 1e-8, a body alone may be off by 2e-4 m/s^2, and a light one beside heavy ones by more: in a slow motion by
     a tenth of all. Springs alone cost a parabola, which one step of Newton's solves; friction does not.
     """
-    if isinstance(engine, Mjx):
-        return replace(engine, settings=solved(engine.settings))
     return replace(engine, tolerance=min(engine.tolerance, ROUNDED**2))
 
 
@@ -243,15 +228,15 @@ class Instant:
     aimed: Array  # (rows,): what J a is to be, beside the velocity term
     give: Array
     solved: Array  # (rows,): which rows are the solver's, the others being held by the tree
-    doubt: Array  # (rows,): of `aimed`, what rounded gaps make of stiff rows
+    stiff: Array  # (rows,) [1/s^2]
 
     @classmethod
     def of(cls, mechanism: Mechanism, model: Model, data: Any, softness: Softness | None) -> Instant:
         """What `data` holds after mj_forward. Raises Fault where rows are lacking."""
         pose, twist, _ = _motion(model, data, data.qacc)
-        give, aimed, solved, doubt = declared(mechanism, model, data, mechanism.rows(pose), softness, pose, twist)
+        give, aimed, solved, stiff = declared(mechanism, model, data, mechanism.rows(pose), softness, pose, twist)
         free = mechanism.unconstrained(pose, twist)
-        return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, doubt)
+        return cls(mechanism, model, data, pose, twist, free, aimed, give, solved, stiff)
 
     def law(self, velocity_term: bool = True) -> Constrained:
         """Accelerations (bodies, 3) and forces (rows,); without it, the solver's rows lack their `velocity_term`.
@@ -267,8 +252,9 @@ class Instant:
 
     @cached_property
     def floor(self) -> Constrained:
-        """What rounded gaps make of accelerations and forces, in the sizes of which LAW is a part."""
-        least = carried(self.mechanism.rows(self.pose), self.doubt, self.mechanism.inertias, self.give)
+        """What stiff rows make of rounded gaps in accelerations and forces, in the sizes of which LAW is a part."""
+        gap = ROUNDINGS * np.finfo(float).eps * place(self.mechanism, self.pose)
+        least = carried(self.mechanism, self.pose, self.stiff * gap, self.give)
         return Constrained(least.motion / LAW, least.force / LAW)
 
     def accelerations(self) -> Array:
@@ -315,7 +301,7 @@ def mjx_errors(engine: Mjx, mechanism: Mechanism) -> dict[str, float]:
     Raises NotAsked where no law is declared, Fault for a row that is lacking, and Unsupported.
     """
     dt = STEP * mechanism.time_scale
-    engine = solved(engine)  # what a solver leaves within the tolerance that is declared is no fault
+    engine = replace(engine, settings=solved(engine.settings))
     model, held = engine.model(mechanism, dt)
     refuse_without_a_law(engine.settings, mechanism, dt)
     if model.halves:

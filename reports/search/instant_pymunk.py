@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.pymunk import Pymunk
-from engines.pymunk.contraction import contraction
-from engines.pymunk.model import Model
+from engines.pymunk.contraction import contraction, contraction_at
+from engines.pymunk.model import ROWS, Model
 from engines.pymunk.running import Recording, record
 from reference.forces import Damper, TorsionDamper
 from reference.joints import Drive, Roll, Skate, Slot
 from reference.mechanism import Mechanism
-from reports.search.law import Fault, NotAsked, constrained, difference
+from reports.search.law import ROUNDINGS, Fault, NotAsked, carried, constrained, difference, place
 
 Array = NDArray[np.float64]
 
@@ -50,22 +50,31 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
     if any(isinstance(force, Damper | TorsionDamper) for force in mechanism.forces):
         raise NotAsked("a damper takes part in the sweeps, and obeys no law of a step")
     dt = STEP * mechanism.time_scale
-    rho = contraction(mechanism)
-    sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
-    if sweeps > MOST_SWEEPS:
-        raise NotAsked(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
-    model = engine.swept_model(mechanism, dt, replace(engine.sweeping(mechanism, 0.0), iterations=sweeps))
-    told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
-    if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
-        raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+    model, told = _converged(engine, mechanism, dt)
     # Gaps are rounded, and closing one within a step makes a velocity of that, which is no fault.
-    far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
-    floor = np.array([[np.finfo(float).eps * far / dt / LAW, 0.0, 0.0]])
+    gap = ROUNDINGS * np.finfo(float).eps * place(mechanism, told.pose)
     worst = 0.0
     for step in range(1, STEPS + 1):
         law, free = _law(model, mechanism, told, step, dt)
+        floor = carried(mechanism, told.pose[step], gap / dt).motion / LAW
         worst = max(worst, difference(mechanism, told.after[step], law, (free, floor)))
     return {"velocity": worst}
+
+
+def _converged(engine: Pymunk, mechanism: Mechanism, dt: float) -> tuple[Model, Recording]:
+    """The first steps, with as many sweeps as the worst pose of theirs needs: it may be far from that of the start."""
+    rho = contraction(mechanism)
+    while True:
+        sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
+        if sweeps > MOST_SWEEPS:
+            raise NotAsked(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
+        model = engine.swept_model(mechanism, dt, replace(engine.sweeping(mechanism, 0.0), iterations=sweeps))
+        told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
+        if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
+            raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+        rho = max(contraction_at(mechanism, pose) for pose in told.pose)
+        if rho**sweeps <= CONVERGED:
+            return model, told
 
 
 def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
@@ -79,8 +88,9 @@ def _law(model: Model, mechanism: Mechanism, told: Recording, step: int, dt: flo
     closed = np.zeros(mechanism.row_count)
     closing = [not isinstance(joint, Skate | Drive) for joint in mechanism.joints for _ in range(joint.size)]
     held = np.array(closing, dtype=bool)
-    # A blade, which has no gap, closes none.
-    bias = min((constraint.error_bias for constraint in model.space.constraints), default=0.0)
+    # A blade, which has no gap, closes none; a spring has an error_bias that it makes no use of.
+    joints = [constraint for constraint in model.space.constraints if type(constraint) in ROWS]
+    bias = min((constraint.error_bias for constraint in joints), default=0.0)
     closed[held] = 1 - bias ** (dt / model.unit)
     pose = told.pose[step]
     gap = np.nan_to_num(mechanism.gap(pose, step * dt))

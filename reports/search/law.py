@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+ROUNDINGS = 10.0  # of a place or a velocity
 
 
 class NotAsked(Exception):
@@ -48,6 +49,38 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     lacking = left.T @ ((right - rows @ free.reshape(-1)) / norm)
     change = (turned.T @ (lacking / sizes))[: len(root)]
     return Constrained(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
+
+
+def carried(mechanism: Mechanism, pose: Array, speed: float | Array, give: Array | None = None) -> Constrained:
+    """What rounding of a `speed` [m/s] in every number leaves in velocities (bodies, 3), and in impulses (rows,).
+
+    Of rounding that is not alike in all rows (rows,). Where these give way, A has give give^T beside it, as in
+    `constrained`; of accelerations and forces the same is true.
+
+    Each row's rate is then wrong by about e = speed times the row's size, and joints change velocities by
+    M^-1 J^T A^-1 e with impulses A^-1 e, A = J M^-1 J^T: the more the more nearly rows depend on each other, and the
+    heavier what they hold. Rounding has no sign, so that squares are added. Velocities, themselves rounded, are wrong
+    by the speed at least.
+    """
+    size = np.tile([1.0, 1.0, mechanism.length_scale], len(mechanism.bodies))
+    least = (np.max(speed, initial=0.0) / size).reshape(-1, 3)
+    rows, root = mechanism.rows(pose), np.sqrt(mechanism.inertias.reshape(-1))
+    if not len(rows):
+        return Constrained(least, np.zeros(0))
+    matrix = rows / root
+    norm = np.linalg.norm(matrix, axis=1)
+    if give is not None:
+        matrix = np.hstack([matrix, give])
+    left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
+    wrong = np.linalg.norm(rows / size, axis=1) * speed / norm
+    change = np.linalg.norm(((turned.T / sizes) @ left.T)[: len(root)] * wrong, axis=1) / root
+    impulse = np.linalg.norm(((left / sizes**2) @ left.T) * wrong, axis=1) / norm
+    return Constrained(np.maximum(least, change.reshape(-1, 3)), impulse)
+
+
+def place(mechanism: Mechanism, pose: Array) -> float:
+    """How large the numbers [m] are in which places are written."""
+    return max(mechanism.length_scale, float(np.abs(pose[..., :2]).max()))
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:

@@ -13,7 +13,16 @@ from engines.lagrange import TRUTH
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
+from reports.search.law import (
+    ROUNDINGS,
+    Fault,
+    NotAsked,
+    carried,
+    difference,
+    driving_force,
+    force_difference,
+    place,
+)
 
 Array = NDArray[np.float64]
 
@@ -24,7 +33,6 @@ SAMPLES, COARSE = 4, 10  # and steps between samples
 ROOM = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
 LEAST = {"motion": 1e-8, "reactions": 1e-5}
-ROUNDINGS = 10.0  # of a place or a velocity
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 ESTIMATED = 10.0  # times its own estimate an error may be
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
@@ -50,11 +58,12 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     fine = _run(engine, mechanism, dt / 2, 2 * COARSE)
     if coarse.warnings or fine.warnings:
         raise NotAsked("it says itself that something is wrong")
-    found = [_apart(mechanism, run, truth, promise) for run in (coarse, fine)]
+    found, finest = [_apart(mechanism, run, truth, promise) for run in (coarse, fine)], dt / 2
     if _misses(promise, found):  # a coarser error may be small by chance: it must not fall between the next two either
-        found = [found[1], _apart(mechanism, _run(engine, mechanism, dt / 4, 4 * COARSE), truth, promise)]
+        finest = dt / 4
+        found = [found[1], _apart(mechanism, _run(engine, mechanism, finest, 4 * COARSE), truth, promise)]
     out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
-    rounded = _rounded_reactions(mechanism, promise, truth, dt / 4)
+    rounded = _rounded_reactions(mechanism, promise, truth, finest)
     out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
@@ -82,15 +91,9 @@ def _size(mechanism: Mechanism, truth: Trajectory, promise: Promise) -> float:
     moved = float(np.abs((truth.pose - mechanism.pose) * size).max())
     pulled = np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * size).max()
     free = float(pulled) * (SPAN * mechanism.time_scale) ** 2 / 2
-    place = _place(mechanism)
     steps = SAMPLES * 4 * COARSE * promise.differences if promise.amplified > 1 else 1
-    carried = promise.amplified * max(steps, 1) ** 0.5
-    return max(moved, free, carried * ROUNDINGS * np.finfo(float).eps * place / LEAST["motion"])
-
-
-def _place(mechanism: Mechanism) -> float:
-    """How large the numbers [m] are in which a mechanism's places are written."""
-    return max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    rounded = ROUNDINGS * np.finfo(float).eps * promise.amplified * max(steps, 1) ** 0.5
+    return max(moved, free, rounded * place(mechanism, mechanism.pose) / LEAST["motion"])
 
 
 def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory, promise: Promise) -> dict[str, float]:
@@ -125,11 +128,14 @@ def _may_be(promise: Promise, name: str, coarser: float) -> float:
 def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory, dt: float) -> float:
     """What rounding of velocities [m/s], divided by a step [s], leaves in reactions, as a part of them.
 
-    An engine that reads them so closes in every step what it sees of a gap, and that is rounded as places are.
+    An engine that reads them so closes in every step what it sees of a gap, and that is rounded as places are. What
+    joints make of it grows with how nearly their rows depend on each other: see `carried`.
     """
     size = np.array([1.0, 1.0, mechanism.length_scale])
-    speed = float(np.abs(truth.twist * size).max()) + _place(mechanism) * promise.differences / dt
-    force = ROUNDINGS * np.finfo(float).eps * speed / dt * mechanism.inertias[:, 0].max()
+    speed = float(np.abs(truth.twist * size).max()) + place(mechanism, truth.pose) * promise.differences / dt
+    rounded = ROUNDINGS * np.finfo(float).eps * speed / dt
+    arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    force = max(float((carried(mechanism, pose, rounded).force * arms).max(initial=0.0)) for pose in truth.pose)
     return promise.amplified * promise.differences * force / _force_size(mechanism, truth)
 
 
