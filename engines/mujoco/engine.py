@@ -175,6 +175,10 @@ class MuJoCo(Engine, Valid):
         model = self.model(mechanism, dt)
         data = model.start()
         _refuse_what_is_huge(data)
+        if self.estimates:
+            # From nothing, Newton's method ends where it sees the cost no longer fall: accelerations of light bodies
+            # then miss 1e-5 of themselves. From there it goes on, as from step to step.
+            data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,
             coordinates=model.compiled.nq,

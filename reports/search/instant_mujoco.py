@@ -34,12 +34,13 @@ from reports.search.law import (
     Constrained,
     Fault,
     NotAsked,
-    carried,
     constrained,
     difference,
     driving_force,
     force_difference,
     place,
+    rounded,
+    turned_in_a_step,
 )
 from reports.search.raw_law import jacobian
 
@@ -157,6 +158,8 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
         raise NotAsked("a body that is cut into halves is another mechanism at one instant")
     start = model.start()
     told = run(1, STEPS)
+    if told.warnings and turned_in_a_step(mechanism, dt) > 1:
+        raise NotAsked("it says that something is wrong, and steps are too long for what turns")
     if told.reset_at is not None or not np.isfinite(told.pose).all():
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
     if any("the solver missed" in warning for warning in told.warnings):
@@ -202,17 +205,23 @@ def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> Non
 def _refine(model: Model, data: Any, tolerance: float) -> None:
     """Let the solver go on, where what it left is within the tolerance that the engine declares: that is no fault.
 
-    The tolerance is told of the inertia without what only keeps a drive's rate.
+    See `solved`; the tolerance is told of the inertia without what only keeps a drive's rate. Nor does a solver that
+    compares costs see what rounding hides in them, which are sums of a^T M a.
     """
-    compiled = model.compiled
-    left = np.empty(compiled.nv)
-    mujoco.mj_mulM(compiled, data, left, data.qacc)
-    left -= data.qfrc_smooth + data.qfrc_constraint
+    compiled, before, kept = model.compiled, data.qacc.copy(), model.compiled.opt.tolerance
+    data.qacc_warmstart[:], compiled.opt.tolerance = before, min(kept, ROUNDED**2)
+    mujoco.mj_forward(compiled, data)
+    compiled.opt.tolerance = kept
+
+    def energy(acceleration: Array) -> float:
+        momentum = np.empty(compiled.nv)
+        mujoco.mj_mulM(compiled, data, momentum, acceleration)
+        return float(acceleration @ momentum)
+
     inertia = float((compiled.dof_M0 - compiled.dof_armature)[model.address].sum())
-    if np.linalg.norm(left) <= tolerance * inertia:
-        kept, compiled.opt.tolerance = compiled.opt.tolerance, min(compiled.opt.tolerance, ROUNDED**2)
-        mujoco.mj_forward(compiled, data)
-        compiled.opt.tolerance = kept
+    hidden = ROUNDINGS * np.finfo(float).eps * (energy(before) + energy(data.qacc_smooth))
+    if not energy(before - data.qacc) <= 2 * tolerance * inertia + hidden:
+        data.qacc[:] = before
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,9 +261,20 @@ class Instant:
 
     @cached_property
     def floor(self) -> Constrained:
-        """What stiff rows make of rounded gaps in accelerations and forces, in the sizes of which LAW is a part."""
-        gap = ROUNDINGS * np.finfo(float).eps * place(self.mechanism, self.pose)
-        least = carried(self.mechanism, self.pose, self.stiff * gap, self.give)
+        """What rounding makes of accelerations and forces, as parts of LAW: most of all of gaps in stiff rows, and of
+        light bodies far away, whose inertias MuJoCo adds up about the centre of mass of their tree.
+        """
+        mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
+        rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
+        gap = self.stiff * place(mechanism, self.pose)
+        own = [self.model.compiled.body(f"body {index}").id for index in range(len(mechanism.bodies))]
+        centre = data.subtree_com[self.model.compiled.body_rootid[own]]
+        arm = np.hypot(*(data.xipos[own] - centre)[:, :2].T)
+        pull = np.hypot(law.motion[:, 0], law.motion[:, 1]) + arm * (np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2)
+        torque = np.zeros_like(law.motion)
+        torque[:, 2] = mechanism.inertias[:, 0] * arm * pull
+        doubt = unit * gap, unit * torque
+        least = rounded(rows, law, right, mechanism.inertias, self.free, self.give, doubt)
         return Constrained(least.motion / LAW, least.force / LAW)
 
     def accelerations(self) -> Array:
