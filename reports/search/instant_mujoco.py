@@ -38,7 +38,6 @@ from reports.search.law import (
     difference,
     driving_force,
     force_difference,
-    place,
     rounded,
     turned_in_a_step,
 )
@@ -158,7 +157,7 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
         raise NotAsked("a body that is cut into halves is another mechanism at one instant")
     start = model.start()
     told = run(1, STEPS)
-    if told.warnings and turned_in_a_step(mechanism, dt) > 1:
+    if told.warnings and turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) > 1:
         raise NotAsked("it says that something is wrong, and steps are too long for what turns")
     if told.reset_at is not None or not np.isfinite(told.pose).all():
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
@@ -266,7 +265,7 @@ class Instant:
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
-        gap = self.stiff * place(mechanism, self.pose)
+        gap = self.stiff * max(mechanism.length_scale, float(np.abs(self.pose[:, :2]).max()))
         own = [self.model.compiled.body(f"body {index}").id for index in range(len(mechanism.bodies))]
         centre = data.subtree_com[self.model.compiled.body_rootid[own]]
         arm = np.hypot(*(data.xipos[own] - centre)[:, :2].T)

@@ -151,17 +151,17 @@ def force_difference(mechanism: Mechanism, found: Array, expected: Array, others
     return error / largest if largest > 0 else (np.inf if error > 0 else 0.0)
 
 
-def turned_in_a_step(mechanism: Mechanism, dt: float) -> float:
-    """By how much the fastest body, or the direction of a row, turns in the first step of dt [s]: rad.
+def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
+    """By how much the fastest body, or the direction of a row, turns in a step of dt [s] from a state on: rad.
 
     A row turns at about the rate |J' v| / (|J| |v|), with the velocities of its bodies: a short rod, say, whose ends
     move apart. Above a radian no integrator follows, and what comes of the motion is rounding.
     """
-    rows, twist = mechanism.rows(mechanism.pose), mechanism.twist
-    bias, size = mechanism.bias(mechanism.pose, twist), np.array([1.0, 1.0, mechanism.length_scale])
-    parts = np.abs(rows.reshape(len(rows), -1, 3) / size).max(axis=-1, initial=0.0)  # (rows, bodies)
+    rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
+    size = np.array([1.0, 1.0, mechanism.length_scale])
+    parts = np.abs(rows.reshape(len(rows), *twist.shape) / size).max(axis=-1, initial=0.0)  # (rows, bodies)
     moving = parts.max(axis=1, initial=0.0) * ((parts > 0) @ np.abs(twist * size).max(axis=-1))
-    law = constrained(rows, bias, mechanism.inertias, mechanism.unconstrained(mechanism.pose, twist))
+    law = constrained(rows, bias, mechanism.inertias, mechanism.unconstrained(pose, twist))
     spin = np.abs(twist[:, 2]).max() * dt + np.abs(law.motion[:, 2]).max() * dt**2
     return float(max(spin, dt * (np.abs(bias) / np.where(moving > 0, moving, np.inf)).max(initial=0.0)))
 

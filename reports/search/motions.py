@@ -18,10 +18,12 @@ from reports.search.law import (
     Fault,
     NotAsked,
     carried,
+    constrained,
     difference,
     driving_force,
     force_difference,
     place,
+    turned_in_a_step,
 )
 
 Array = NDArray[np.float64]
@@ -55,6 +57,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     truth = TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
     if not np.isfinite(truth.pose).all():
         raise NotAsked("the judge itself finds no motion")
+    if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
+        raise NotAsked("steps are too long for what turns, so that no order is seen")
     fine = _run(engine, mechanism, dt / 2, 2 * COARSE)
     if coarse.warnings or fine.warnings:
         raise NotAsked("it says itself that something is wrong")
@@ -63,6 +67,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         finest = dt / 4
         found = [found[1], _apart(mechanism, _run(engine, mechanism, finest, 4 * COARSE), truth, promise)]
     out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
+    soft = ROOM * _given_way(engine, mechanism, finest, truth) / _size(mechanism, truth, promise)
+    out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
     rounded = _rounded_reactions(mechanism, promise, truth, finest)
     out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
@@ -141,6 +147,28 @@ def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory
 
 def _misses(promise: Promise, found: list[dict[str, float]]) -> bool:
     return any(found[1][name] > _may_be(promise, name, found[0][name]) for name in found[1])
+
+
+def _given_way(engine: Engine, mechanism: Mechanism, dt: float, truth: Trajectory) -> float:
+    """How far bodies are off [m] since joints give way as the engine declares, where that falls with no power of dt.
+
+    A row obeys J a = ... - damping slip - stiffness gap - R f with R a share of its own A = J M^-1 J^T: its gap is
+    R f / stiffness at most, a blade's slip R f / damping. A light body's row that carries the force of a heavy one
+    gives way far, for its A is large. Joints make the smallest motion of it, M^-1 J^T (J M^-1 J^T)^-1 gap.
+    """
+    softness = engine.softness(mechanism, dt)
+    if softness is None:
+        return 0.0
+    rows, size = mechanism.rows(mechanism.pose), np.array([1.0, 1.0, mechanism.length_scale])
+    own = np.sum(rows**2 / mechanism.inertias.reshape(-1), axis=1)
+    pulled = softness.compliance * own * np.abs(np.nan_to_num(truth.reaction)).max(axis=0)
+    gap = pulled / np.where(mechanism.holonomic, softness.stiffness, softness.damping / truth.t[-1])
+    still = np.zeros_like(mechanism.pose)
+    moved = [
+        np.abs(constrained(rows, gap * (np.arange(len(rows)) == row), mechanism.inertias, still).motion)
+        for row in np.flatnonzero(softness.rows)
+    ]
+    return float((sum(moved, still) * size).max())
 
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:

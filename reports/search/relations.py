@@ -64,7 +64,7 @@ def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
         raise NotAsked("whether two shapes that just touch do touch depends on rounding")
-    if turned_in_a_step(mechanism, STEP * mechanism.time_scale) > 1:
+    if turned_in_a_step(mechanism, STEP * mechanism.time_scale, mechanism.pose, mechanism.twist) > 1:
         raise NotAsked("steps are too long for what turns, so that rounding grows at will")
     name = NAMES[number % len(NAMES)]
     if name in UNITS:

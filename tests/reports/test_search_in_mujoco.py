@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
-from engines.mujoco import DEFAULT, TUNED, MuJoCo
+from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco import engine as mujoco_engine
 from engines.mujoco.model import Model
 from reference.joints import Skate
 from reports.search.instant_mujoco import solved
+from reports.search.law import constrained, turned_in_a_step
 from reports.search.parts import EVERY, Recipe
 from reports.search.recipe import build
 from reports.search.subjects import Adapted
@@ -114,3 +115,57 @@ def test_a_start_that_mujoco_would_reset_is_refused() -> None:
     subject = Adapted(TUNED)
     with pytest.raises(Unsupported, match="mjMAXVAL"):
         TUNED.build(build(subject.draw(1199539626, 29, EVERY, 2)), 1e-3)
+
+
+def test_a_light_bodys_equations_are_solved_to_its_own_digits_beside_heavy_ones() -> None:
+    """From masses of 1e-13 to 1e9 kg: what is left of M (a - free) = J^T f, beside the terms of each of its lines."""
+    mechanism = build(Adapted(TUNED).draw(1199539626, 8, EVERY, 4))
+    rows, inertias = mechanism.rows(mechanism.pose), mechanism.inertias.reshape(-1)
+    free = mechanism.unconstrained(mechanism.pose, mechanism.twist)
+    law = constrained(rows, mechanism.bias(mechanism.pose, mechanism.twist), mechanism.inertias, free)
+    left = inertias * (law.motion - free).reshape(-1) - rows.T @ law.force
+    terms = inertias * np.abs(law.motion).reshape(-1) + np.abs(rows.T) @ np.abs(law.force)
+    assert np.max(inertias) > 1e15 * np.min(inertias)
+    assert np.abs(left[terms > 0] / terms[terms > 0]).max() < 1e-14
+
+
+def test_the_inertia_of_a_light_body_far_away_is_asked_for_as_sharply_as_mujoco_adds_it_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its 2e-5 kg m^2 stand 70 km from the centre of mass of their tree, so MuJoCo rounds them away from 1e8."""
+    subject = Adapted(TUNED)
+    case = subject.draw(1199539626, 26, EVERY, 4)
+    assert subject.ask(case, 26, ("instant",)).faults == ()
+
+    def heavier(model: Model) -> None:
+        model.compiled.body_inertia[model.compiled.body("body 4").id] *= 1 + 1e-3
+
+    wrong(monkeypatch, heavier)
+    assert subject.ask(case, 26, ("instant",)).faults[0] == "acceleration"
+
+
+def test_a_light_row_that_carries_a_heavy_body_gives_way_as_declared_and_ten_times_as_much_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A gear of 2.5e-6 kg m^2 holds a torque of 1 N m, which acts on a body of 0.5 kg m^2."""
+    subject = Adapted(EXTENDED)
+    case = subject.draw(1199539626, 75, EVERY, 2)
+    assert subject.ask(case, 75, ("motions",)).faults == ()
+
+    def softer(model: Model) -> None:
+        model.compiled.tendon_invweight0[:] *= 10
+
+    wrong(monkeypatch, softer)
+    assert "motion" in subject.ask(case, 75, ("motions",)).faults
+
+
+def test_of_a_short_rod_whose_ends_move_apart_no_motion_is_asked_for_at_steps_of_many_radians() -> None:
+    subject = Adapted(EXTENDED)
+    case = subject.draw(1199539626, 53, EVERY, 2)  # 0.1 mm long, at some metres a second
+    mechanism = build(case)
+    step = 0.01 * mechanism.time_scale
+    assert turned_in_a_step(mechanism, step, mechanism.pose, mechanism.twist) > 1
+    assert turned_in_a_step(mechanism, step / 100, mechanism.pose, mechanism.twist) < 1
+    told = subject.ask(case, 53, ("instant", "relations"))
+    assert told.faults == ()
+    assert len(told.not_asked) == 2
