@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Literal
 
@@ -28,7 +27,7 @@ from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.written_model import Written, new_specification
 from engines.tree import Tree, spanning_tree
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from engines.units import counted_in, power_of_two
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -116,7 +115,7 @@ class Model:
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
     whole, unit = mechanism, 1.0 if settings.as_text else unit_of_mass(mechanism)
-    mechanism = lighter(mechanism, unit)
+    mechanism = counted_in(mechanism, unit)
     for joint in mechanism.joints:
         if not isinstance(joint, Pin | Slot | Weld | Rod | Gear | Drive | Skate | Roll):
             raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
@@ -245,27 +244,8 @@ def user_rows() -> Any:
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:
-    """About the mechanism's mass [kg]: a power of two, so that no number is rounded for it.
+    """About the mechanism's mass [kg].
 
     A regularisation below mjMINVAL (1e-15) is not taken, and it has a unit: that of an inverse mass.
     """
-    return 2.0 ** round(math.log2(sum(body.mass for body in mechanism.bodies)))
-
-
-def lighter(mechanism: Mechanism, unit: float) -> Mechanism:
-    """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
-    bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
-    return replace(mechanism, bodies=tuple(bodies), forces=tuple(_weaker(force, unit) for force in mechanism.forces))
-
-
-def _weaker(force: ForceElement, unit: float) -> ForceElement:
-    """The same element where masses are counted in this unit [kg]."""
-    match force:
-        case Spring() | TorsionSpring():
-            return replace(force, stiffness=force.stiffness / unit)
-        case Damper() | TorsionDamper():
-            return replace(force, damping=force.damping / unit)
-        case Torque():
-            return replace(force, torque=force.torque / unit)
-        case Force():
-            return replace(force, force=(force.force[0] / unit, force.force[1] / unit))
+    return power_of_two(sum(body.mass for body in mechanism.bodies))
