@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Promise, Unpromised
+from engines import Engine, Promise, Softness, Unpromised
 from engines.lagrange import TRUTH
 from reference.joints import Roll
 from reference.mechanism import Mechanism
@@ -67,9 +67,12 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         finest = dt / 4
         found = [found[1], _apart(mechanism, _run(engine, mechanism, finest, 4 * COARSE), truth, promise)]
     out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
-    soft = ROOM * _given_way(engine, mechanism, finest, truth) / _size(mechanism, truth, promise)
-    out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
     rounded = _rounded_reactions(mechanism, promise, truth, finest)
+    softness = engine.softness(mechanism, finest)
+    if softness is not None:
+        soft = ROOM * _given_way(softness, mechanism, truth) / _size(mechanism, truth, promise)
+        out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
+        rounded = max(rounded, _rounded_gaps(softness, mechanism) / _force_size(mechanism, truth))
     out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
@@ -149,26 +152,36 @@ def _misses(promise: Promise, found: list[dict[str, float]]) -> bool:
     return any(found[1][name] > _may_be(promise, name, found[0][name]) for name in found[1])
 
 
-def _given_way(engine: Engine, mechanism: Mechanism, dt: float, truth: Trajectory) -> float:
+def _given_way(softness: Softness, mechanism: Mechanism, truth: Trajectory) -> float:
     """How far bodies are off [m] since joints give way as the engine declares, where that falls with no power of dt.
 
     A row obeys J a = ... - damping slip - stiffness gap - R f with R a share of its own A = J M^-1 J^T: its gap is
     R f / stiffness at most, a blade's slip R f / damping. A light body's row that carries the force of a heavy one
     gives way far, for its A is large. Joints make the smallest motion of it, M^-1 J^T (J M^-1 J^T)^-1 gap.
     """
-    softness = engine.softness(mechanism, dt)
-    if softness is None:
-        return 0.0
-    rows, size = mechanism.rows(mechanism.pose), np.array([1.0, 1.0, mechanism.length_scale])
-    own = np.sum(rows**2 / mechanism.inertias.reshape(-1), axis=1)
+    own = np.sum(mechanism.rows(mechanism.pose) ** 2 / mechanism.inertias.reshape(-1), axis=1)
     pulled = softness.compliance * own * np.abs(np.nan_to_num(truth.reaction)).max(axis=0)
     gap = pulled / np.where(mechanism.holonomic, softness.stiffness, softness.damping / truth.t[-1])
-    still = np.zeros_like(mechanism.pose)
-    moved = [
-        np.abs(constrained(rows, gap * (np.arange(len(rows)) == row), mechanism.inertias, still).motion)
-        for row in np.flatnonzero(softness.rows)
-    ]
-    return float((sum(moved, still) * size).max())
+    return float((_answer(mechanism, gap, softness.rows)[0] * [1.0, 1.0, mechanism.length_scale]).max())
+
+
+def _rounded_gaps(softness: Softness, mechanism: Mechanism) -> float:
+    """What force [N] stiff rows make of rounded gaps: (J M^-1 J^T)^-1 stiffness eps, a unit of the places' numbers."""
+    far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    gap = ROUNDINGS * np.finfo(float).eps * np.where(mechanism.turning, 1.0, far)
+    arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    asked = softness.stiffness * gap * mechanism.holonomic
+    return float((_answer(mechanism, asked, softness.rows)[1] * arms).max(initial=0.0))
+
+
+def _answer(mechanism: Mechanism, right: Array, which: tuple[bool, ...]) -> tuple[Array, Array]:
+    """The most that `right` (rows,) of these rows makes of motions (bodies, 3) and of forces (rows,)."""
+    rows, still = mechanism.rows(mechanism.pose), np.zeros_like(mechanism.pose)
+    motion, force = still, np.zeros(len(rows))
+    for row in np.flatnonzero(which):
+        law = constrained(rows, right * (np.arange(len(rows)) == row), mechanism.inertias, still)
+        motion, force = motion + np.abs(law.motion), force + np.abs(law.force)
+    return motion, force
 
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
