@@ -260,18 +260,29 @@ class Instant:
 
     @cached_property
     def floor(self) -> Constrained:
-        """What rounding makes of accelerations and forces, as parts of LAW: most of all of gaps in stiff rows, and of
-        light bodies far away, whose inertias MuJoCo adds up about the centre of mass of their tree.
+        """What rounding makes of accelerations and forces, as parts of LAW.
+
+        Beside what `rounded` knows: gaps of stiff rows are differences of places, and so are arms, eps of a place off.
+        And MuJoCo adds up the inertias of all that hangs on a body, about the centre of mass of the tree: a light body
+        far away is lost there.
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
-        gap = self.stiff * max(mechanism.length_scale, float(np.abs(self.pose[:, :2]).max()))
-        own = [self.model.compiled.body(f"body {index}").id for index in range(len(mechanism.bodies))]
-        centre = data.subtree_com[self.model.compiled.body_rootid[own]]
-        arm = np.hypot(*(data.xipos[own] - centre)[:, :2].T)
-        pull = np.hypot(law.motion[:, 0], law.motion[:, 1]) + arm * (np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2)
+        mass, places = mechanism.inertias[:, 0], np.hypot(self.pose[:, 0], self.pose[:, 1])
+        touched = np.abs(rows.reshape(len(rows), len(mass), 3)[..., :2]).max(axis=-1)  # (rows, bodies)
+        spin = np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2
+        gap = self.stiff * max(mechanism.length_scale, float(places.max())) + touched @ (places * spin)
+        own = [self.model.compiled.body(f"body {index}").id for index in range(len(mass))]
+        far = np.hypot(*(data.xipos[own] - data.subtree_com[self.model.compiled.body_rootid[own]])[:, :2].T)
+        moved, pulled = (np.hypot(each[:, 0], each[:, 1]) for each in (law.motion, self.free))
+        hanging, inertial = mass.copy(), mass * far * (moved + far * spin)
+        for link in reversed(self.model.tree.links):  # what hangs on a body is added to its own
+            if link.parent is not None:
+                hanging[link.parent] += hanging[link.body]
+                inertial[link.parent] += inertial[link.body]
+        inertial += hanging * far * (moved + far * spin)
         torque = np.zeros_like(law.motion)
-        torque[:, 2] = mechanism.inertias[:, 0] * arm * pull
+        torque[:, 2] = inertial + places * (touched.T @ np.abs(law.force) + mass * pulled)
         doubt = unit * gap, unit * torque
         least = rounded(rows, law, right, mechanism.inertias, self.free, self.give, doubt)
         return Constrained(least.motion / LAW, least.force / LAW)

@@ -70,8 +70,9 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     rounded = _rounded_reactions(mechanism, promise, truth, finest)
     softness = engine.softness(mechanism, finest)
     if softness is not None:
-        soft = ROOM * _given_way(softness, mechanism, truth) / _size(mechanism, truth, promise)
-        out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
+        if softness == engine.softness(mechanism, dt):  # else it is tied to the step, and so to the promised order
+            soft = ROOM * _given_way(softness, mechanism, truth) / _size(mechanism, truth, promise)
+            out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
         rounded = max(rounded, _rounded_gaps(softness, mechanism) / _force_size(mechanism, truth))
     out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
