@@ -157,15 +157,14 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
         raise NotAsked("a body that is cut into halves is another mechanism at one instant")
     start = model.start()
     told = run(1, STEPS)
-    if told.warnings and turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) > 1:
-        raise NotAsked("it says that something is wrong, and steps are too long for what turns")
-    if told.reset_at is not None or not np.isfinite(told.pose).all():
+    followed = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1  # else the start alone is asked
+    if followed and (told.reset_at is not None or not np.isfinite(told.pose).all()):
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
     if any("the solver missed" in warning for warning in told.warnings):
         raise NotAsked("it says itself that its solver ended too early")
     out = {"acceleration": 0.0, "reaction": 0.0}
     with model.hooked():
-        for sample, data in enumerate((start, run.data)):
+        for sample, data in enumerate((start, run.data) if followed else (start,)):
             mujoco.mj_forward(model.compiled, data)
             _refine(model, data, engine.tolerance)
             here = Instant.of(mechanism, model, data, softness)
