@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any
 from unittest import mock
 
@@ -30,6 +31,7 @@ from reports.gate.change import Altered
 from reports.gate.judge import projected
 from reports.model.tasks import Task, Values
 from reports.search import relations
+from reports.search.mechanisms import RUN, SHAPES
 from reports.search.parts import EVERY
 from reports.search.plan import taken
 from reports.search.subjects import Adapted, Told
@@ -243,7 +245,9 @@ def found(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tupl
             case = right.draw(SEED, number, kinds, 0)
             if change.kind in EVERY and change.kind not in case.kinds:
                 continue
-            for oracle in ("relations",) if relation else ("instant", "motions"):
+            # Where a program is compiled for each shape, one is enough.
+            own_oracles = ("instant",) if engine.building else ("instant", "motions")
+            for oracle in ("relations",) if relation else own_oracles:
                 try:
                     if oracle == "instant":
                         with planting(change):
@@ -263,4 +267,8 @@ def found(engines: tuple[Engine, ...], change: Off, cases: int) -> Iterator[tupl
 
 def controls() -> list[Control]:
     """A control for each fault in each engine."""
-    return [Control(name, fault) for name in LEAST for fault in FAULTS]
+    out = []
+    for (name, engines), fault in product(LEAST.items(), FAULTS):
+        shaped = any(engine.building for engine in engines)  # after all shapes come the first ones again
+        out.append(Control(name, fault, cases=SHAPES * RUN if shaped else CASES))
+    return out
