@@ -41,7 +41,7 @@ from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
-ENOUGH = 1e10  # N or N m, of a point that closes a loop and of a motor
+ENOUGH = 1e30  # N or N m, of a point that closes a loop and of a motor: what a mechanism of any unit asks for is less
 FAST = 1e9  # rad/s, beyond what a joint reaches
 STEP_COST = 9e-6  # s of a step of three bodies, as shipped
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy

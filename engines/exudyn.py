@@ -44,6 +44,7 @@ from engines.extrapolated import Extrapolated
 from engines.lagrange.dynamics import Dynamics
 from engines.motions import is_prescribed, over_three
 from engines.single_run import Optional, Recorded, SingleRun, quiet
+from engines.units import counted_in, power_of_two
 from reference.checks import Name, Positive, validated
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
@@ -63,7 +64,8 @@ class Exudyn(Optional):
     `relative` and `absolute` are the tolerances of Newton's method, 1e-8 and 1e-10 as shipped; `damping`: the spectral
     radius of GeneralizedAlpha at infinite frequency, 0.9 as shipped (1 damps nothing). `consistent`: the start's
     accelerations are given to the engine, and not computed by it. `sparse`: Newton's matrix is factored as sparse.
-    `own_units`: lengths in the model are counted in the mechanism's own, and `absolute` in its own forces.
+    `own_units`: the model is counted in the mechanism's own length, mass and time, and so are `absolute`, and what the
+    engine takes for no time at all: it ends a step below 1e-8 and tells a sensor's instants to 1e-10.
     """
 
     name = "exudyn"
@@ -108,13 +110,23 @@ class Exudyn(Optional):
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:
         """A system for steps of dt [s]; raises Unsupported, and ValueError for a bad dt."""
         self.require()
-        length, solving = 1.0, self
+        length, mass, seconds = 1.0, 1.0, 1.0
         if self.own_units:
-            length = 2.0 ** round(math.log2(mechanism.length_scale))
-            force = max(body.mass for body in mechanism.bodies) / mechanism.time_scale**2
-            solving = replace(self, absolute=self.absolute * force)
-        system = System(mechanism, length)
-        return SingleRun(mechanism, dt, system.size, lambda samples, every: system.record(solving, dt, samples, every))
+            length, seconds = power_of_two(mechanism.length_scale), power_of_two(mechanism.time_scale)
+            mass = power_of_two(max(body.mass for body in mechanism.bodies))
+        system = System(counted_in(mechanism, mass, seconds), length)
+
+        def record(samples: int, every: int) -> Recorded:
+            found = system.record(self, dt / seconds, samples, every)
+            return replace(
+                found,
+                twist=found.twist / seconds,
+                acceleration=found.acceleration / seconds**2,
+                inertias=mechanism.inertias,
+                gravity=np.array(mechanism.gravity),
+            )
+
+        return SingleRun(mechanism, dt, system.size, record)
 
 
 def holds_velocities(mechanism: Mechanism) -> bool:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import mujoco
+import numpy as np
 
-from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised
+from engines import EXACT, Engine, Holder, Promise, Size, Softness, Unpromised, Unsupported
 from engines.finer import Division, division
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco.joints.drive import DriveBy
@@ -173,6 +174,11 @@ class MuJoCo(Engine, Valid):
         """See the contract of `engines`. Raises Unsupported, or ValueError for a bad step."""
         model = self.model(mechanism, dt)
         data = model.start()
+        _refuse_what_is_huge(data)
+        if self.estimates:
+            # From nothing, Newton's method ends where it sees the cost no longer fall: accelerations of light bodies
+            # then miss 1e-5 of themselves. From there it goes on, as from step to step.
+            data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,
             coordinates=model.compiled.nq,
@@ -236,6 +242,16 @@ class MuJoCo(Engine, Valid):
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
             ease(model, self.stiffness.softening, start)
         return model
+
+
+def _refuse_what_is_huge(data: Any) -> None:
+    """Raise Unsupported for a start that MuJoCo's first step would take for an instability, and reset."""
+    largest = max(float(np.abs(values).max(initial=0.0)) for values in (data.qvel, data.qacc))
+    if largest > mujoco.mjMAXVAL:
+        raise Unsupported(
+            f"a rate or an acceleration of the start is {largest:.1e} in SI units, and MuJoCo resets a state with any "
+            f"above {mujoco.mjMAXVAL:.0e} (mjMAXVAL); describe it in larger units of time"
+        )
 
 
 @validated

@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Literal
 
@@ -28,12 +27,13 @@ from engines.mujoco.releases import NO_ISLANDS
 from engines.mujoco.stiffness import Stiffness
 from engines.mujoco.written_model import Written, new_specification
 from engines.tree import Tree, spanning_tree
-from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
+from engines.units import counted_in, power_of_two
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Coordinates = Literal["tree", "free"]
+LIGHTEST = 1e13  # units of mass in which a body's own mass and inertia are still far above mjMINVAL
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Model:
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
     whole, unit = mechanism, 1.0 if settings.as_text else unit_of_mass(mechanism)
-    mechanism = lighter(mechanism, unit)
+    mechanism = counted_in(mechanism, unit)
     for joint in mechanism.joints:
         if not isinstance(joint, Pin | Slot | Weld | Rod | Gear | Drive | Skate | Roll):
             raise Unsupported(f"joint {joint.name!r} is a {type(joint).__name__}; MuJoCo has no such joint")
@@ -198,9 +198,25 @@ def _compiled(building: Building) -> Any:
             "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
         )
     try:
-        return building.spec.compile()
+        compiled = building.spec.compile()
     except ValueError as error:
         raise Unsupported(f"MuJoCo refuses this mechanism: {' '.join(str(error).split())}") from error
+    _keep_small_offsets(compiled)
+    return compiled
+
+
+def _keep_small_offsets(compiled: Any) -> None:
+    """Let MuJoCo read where sites and shapes are: it puts those within 1e-6 m of their body's origin there.
+
+    It marks them as in their body's frame when it compiles, and never reads `site_pos`: a spring at an arm of a tenth
+    of a micrometre then turns nothing (4.0.1, asked by a test in `tests/engines/test_mujoco.py`).
+    """
+    for place, same in (
+        (compiled.site_pos, compiled.site_sameframe),
+        (compiled.geom_pos, compiled.geom_sameframe),
+    ):
+        whole = np.isin(same, (int(mujoco.mjtSameFrame.mjSAMEFRAME_BODY), int(mujoco.mjtSameFrame.mjSAMEFRAME_INERTIA)))
+        same[whole & place.any(axis=1)] = int(mujoco.mjtSameFrame.mjSAMEFRAME_NONE)
 
 
 def _add_bodies(spec: Any, tree: Tree) -> None:
@@ -245,27 +261,10 @@ def user_rows() -> Any:
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:
-    """About the mechanism's mass [kg]: a power of two, so that no number is rounded for it.
+    """About the mechanism's mass [kg], or its inertia [kg m^2] where that is the larger number.
 
-    A regularisation below mjMINVAL (1e-15) is not taken, and it has a unit: that of an inverse mass.
+    A regularisation below mjMINVAL (1e-15) is not taken, and it has a unit: that of an inverse mass, or inertia. Nor is
+    a body lighter than that.
     """
-    return 2.0 ** round(math.log2(sum(body.mass for body in mechanism.bodies)))
-
-
-def lighter(mechanism: Mechanism, unit: float) -> Mechanism:
-    """The mechanism with its masses in this unit [kg]: it moves alike, and all its forces are smaller."""
-    bodies = [replace(body, mass=body.mass / unit, inertia=body.inertia / unit) for body in mechanism.bodies]
-    return replace(mechanism, bodies=tuple(bodies), forces=tuple(_weaker(force, unit) for force in mechanism.forces))
-
-
-def _weaker(force: ForceElement, unit: float) -> ForceElement:
-    """The same element where masses are counted in this unit [kg]."""
-    match force:
-        case Spring() | TorsionSpring():
-            return replace(force, stiffness=force.stiffness / unit)
-        case Damper() | TorsionDamper():
-            return replace(force, damping=force.damping / unit)
-        case Torque():
-            return replace(force, torque=force.torque / unit)
-        case Force():
-            return replace(force, force=(force.force[0] / unit, force.force[1] / unit))
+    mass, least = sum(body.mass for body in mechanism.bodies), min(min(b.mass, b.inertia) for b in mechanism.bodies)
+    return power_of_two(max(mass, min(mass * mechanism.length_scale**2, least * LIGHTEST)))

@@ -13,6 +13,16 @@ For one mode with gap g, velocity v and kept impulse l, of which k sweeps leave 
 which is stable up to gamma = (1 - r)/r: all of the gap may be closed if r is below 1/2, and well beyond the limit a
 chain explodes. A pendulum of ten links, with 2, 5 and 10 sweeps, has the limits 0.05, 0.13 and 0.28 by this formula,
 and begins to grow between two and three times these within 2 s; with all of the gap closed it explodes.
+
+Sweeps over three joints or more that all feel each other have complex modes too: sigma = rho exp(i theta), of which k
+sweeps leave r = rho^k exp(i k theta). With all of the gap closed the map above has an eigenvalue mu where
+
+    r = mu^3 / (3 mu^2 - 3 mu + 1),
+
+so that mu = exp(i phi), phi from pi/3 to pi, is the rim of what is stable: from 1/2 at the angle 0 of r down to 1/7 at
+pi. And with a gap that closes slowly, or with none to close, it is r = mu^2 / (2 mu - 1), from 1 down to 1/3: there an
+angle of 0.1 is too much if 0.82 is left. The kept impulses then grow in every step, however short it is.
+A complex mode counts here as the real one that needs as many sweeps, half of what is stable being left of either.
 """
 
 from __future__ import annotations
@@ -42,7 +52,13 @@ FEWEST, MOST = 5, 300  # beyond 300 a step of a hundred links costs more than a 
 DENSE = 100  # rows up to which all eigenvalues are found, and beyond if rows depend on others
 # The first steps of a run are few, so that they may take more work than the others.
 CONVERGED_WORK, ROUNDING = 1_000_000, 1e-16
+GROWING = 1e-6  # of itself in a step: beyond, it is no rounding of a mode
 STAGES = 6  # more of them show less, but longer: what shows of these is over at the tenth step, often the first sample
+# The rim of what is stable of a complex mode, at angles from 0 to a half turn: by which power of e sweeps must shrink a
+# mode until half of that is left, and the angle over this power.
+_RIM = 1 / np.polyval([1, -3, 3, 0], np.exp(-1j * np.linspace(np.pi / 3, np.pi, 64)))
+_NEEDED = -np.log(np.abs(_RIM) * LEFT / 0.5)
+_TURNED = np.abs(np.angle(_RIM)) / _NEEDED
 # What the points of a contact, each with a row along its normal and one along its tangent, pass to each other is no
 # part of rho: five sweeps leave a disc on a plane without half of its force, ten leave nothing to be seen.
 CONTACT_CONVERGED = 1000
@@ -78,8 +94,31 @@ def contractions(mechanism: Mechanism, poses: Numbers) -> Array:
     if not starts:
         return np.zeros(len(poses))
     changed = np.linalg.eigvals(np.linalg.solve(_lower(matrix, starts), matrix))
-    left = np.where(np.abs(changed) > RANK_TOLERANCE, np.abs(1 - changed), 0.0)
+    left = np.where(np.abs(changed) > RANK_TOLERANCE, as_real(1 - changed), 0.0)
     return np.clip(left.max(axis=-1), 0.0, 1 - 1e-12)
+
+
+def as_real(modes: NDArray[np.complex128] | Array) -> Array:
+    """The real factors of a sweep that need as many sweeps as these, which may be complex; see the module."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        falls = -np.log(np.abs(modes))
+        needed = np.interp(np.abs(np.angle(modes)) / falls, _TURNED, _NEEDED)
+    return np.where((falls > 0) & np.isfinite(falls), np.abs(modes) ** (-log(LEFT) / needed), np.abs(modes))
+
+
+@validated
+def grows(mechanism: Mechanism, iterations: Count) -> bool:
+    """Whether impulses that are kept grow from step to step with so many sweeps, whatever the step.
+
+    By mu^2 - 2 r mu + r = 0 for each mode, as no gap is closed within a step that is short enough. Not told for more
+    than DENSE rows.
+    """
+    matrix, starts = _joint_matrix(mechanism, mechanism.pose)
+    if not starts or len(matrix) > DENSE:
+        return False
+    left = np.asarray(_modes(matrix, _lower(matrix, starts)), dtype=complex) ** iterations
+    root = np.sqrt(left * left - left)
+    return bool(np.maximum(np.abs(left + root), np.abs(left - root)).max(initial=0.0) > 1 + GROWING)
 
 
 def _spectral_radius(matrix: Array, starts: list[int]) -> float:
@@ -91,9 +130,13 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
             return 1 - _smallest(matrix, lower)
         except RuntimeError:  # exactly singular
             pass
-    # What dependent rows can't agree on is no mode of the motion: there A is zero, and a sweep changes nothing.
+    return float(as_real(_modes(matrix, lower)).max(initial=0.0))
+
+
+def _modes(matrix: Array, lower: Array) -> NDArray[np.complex128] | Array:
+    """What a sweep leaves of each mode; those of dependent rows are none of the motion: there A is zero."""
     changed = np.linalg.eigvals(np.linalg.pinv(lower) @ matrix)
-    return float(np.abs(1 - changed[np.abs(changed) > RANK_TOLERANCE]).max(initial=0.0))
+    return 1 - changed[np.abs(changed) > RANK_TOLERANCE]
 
 
 def _lower(matrix: Array, starts: list[int]) -> Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from engines import EXACT, Holder, Promise, Unpromised
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
+from engines.pymunk.contraction import grows
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.pymunk.joints.skate import along_blade
 from engines.pymunk.joints.slot import groove_is_exact
@@ -42,6 +43,10 @@ def promise(engine: Pymunk, mechanism: Mechanism) -> Promise | Unpromised:
     if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
         return Unpromised(
             "a velocity that is zeroed without the turning of a force at the blade is another body's, at any step"
+        )
+    if isinstance(engine.iterations, int) and grows(mechanism, engine.iterations):
+        return Unpromised(
+            f"{engine.iterations} sweeps that begin with the impulses of the step before let these grow, at any step"
         )
     closing = isinstance(engine.error_bias, str) or engine.error_bias == 0
     if rolling and engine.roll == "contact":

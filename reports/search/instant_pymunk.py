@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.pymunk import Pymunk
-from engines.pymunk.contraction import contraction
+from engines.pymunk.contraction import contraction, contraction_at
 from engines.pymunk.joints.slot import REACH
-from engines.pymunk.model import Model
+from engines.pymunk.model import ROWS, Model
 from engines.pymunk.running import Recording, record
 from reference.forces import Damper, TorsionDamper
 from reference.joints import Drive, Roll, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
-from reports.search.law import Fault, NotAsked, constrained, difference
+from reports.search.law import ROUNDINGS, Fault, NotAsked, carried, constrained, difference, place
 
 Array = NDArray[np.float64]
 
@@ -52,27 +52,37 @@ def errors(engine: Pymunk, mechanism: Mechanism) -> dict[str, float]:
     if any(isinstance(force, Damper | TorsionDamper) for force in mechanism.forces):
         raise NotAsked("a damper takes part in the sweeps, and obeys no law of a step")
     dt = STEP * mechanism.time_scale
-    rho = contraction(mechanism)
-    sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
-    if sweeps > MOST_SWEEPS:
-        raise NotAsked(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
-    if engine.slot == "groove":  # the contraction is of rows that push as they see
-        sweeps = MOST_SWEEPS
-    model = engine.swept_model(mechanism, dt, replace(engine.sweeping(mechanism, 0.0), iterations=sweeps))
-    told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
-    far = max(float(np.abs(told.pose[..., :2]).max()), mechanism.length_scale)  # NaN stays
-    if engine.slot == "groove" and not far < REACH * mechanism.length_scale:
-        raise NotAsked("a groove that pushes wrongly, as is known, drove the motion beyond its ends")
-    if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
-        raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+    model, told = _converged(engine, mechanism, dt)
     # Gaps are rounded, and closing one within a step makes a velocity of that, which is no fault.
-    floor = np.array([[np.finfo(float).eps * far / dt / LAW, 0.0, 0.0]])
+    gap = ROUNDINGS * np.finfo(float).eps * place(mechanism, told.pose)
     checks = ("velocity", PUSHED) if engine.slot == "groove" else ("velocity",)
     worst: dict[str, float] = dict.fromkeys(checks, 0.0)
     for step, check in product(range(1, STEPS + 1), checks):
         law, free = _law(model, mechanism, told, step, dt, grooves=check == PUSHED)
+        floor = carried(mechanism, told.pose[step], gap / dt).motion / LAW
         worst[check] = max(worst[check], difference(mechanism, told.after[step], law, (free, floor)))
     return worst
+
+
+def _converged(engine: Pymunk, mechanism: Mechanism, dt: float) -> tuple[Model, Recording]:
+    """The first steps, with as many sweeps as the worst pose of theirs needs: it may be far from that of the start."""
+    rho = contraction(mechanism)
+    while True:
+        sweeps = math.ceil(math.log(CONVERGED) / math.log(rho)) + 5 if rho > 0 else 5
+        if sweeps > MOST_SWEEPS:
+            raise NotAsked(f"sweeps leave {rho:.6f} of the slowest mode each, so that they don't converge")
+        if engine.slot == "groove":  # the contraction is of rows that push as they see
+            sweeps = MOST_SWEEPS
+        model = engine.swept_model(mechanism, dt, replace(engine.sweeping(mechanism, 0.0), iterations=sweeps))
+        told = record(model, dt, STEPS, 1, raw=engine.leapfrog)
+        far = np.abs(told.pose[..., :2]).max()
+        if engine.slot == "groove" and not far < REACH * mechanism.length_scale:
+            raise NotAsked("a groove that pushes wrongly, as is known, drove the motion beyond its ends")
+        if not (np.isfinite(told.pose).all() and np.isfinite(told.after).all()):
+            raise Fault(f"it was lost within {STEPS} steps {told.stopped}".strip())
+        rho = max(contraction_at(mechanism, pose) for pose in told.pose)
+        if rho**sweeps <= CONVERGED:
+            return model, told
 
 
 def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
@@ -93,8 +103,9 @@ def _law(
     closed = np.zeros(mechanism.row_count)
     closing = [not isinstance(joint, Skate | Drive) for joint in mechanism.joints for _ in range(joint.size)]
     held = np.array(closing, dtype=bool)
-    # A blade, which has no gap, closes none.
-    bias = min((constraint.error_bias for constraint in model.space.constraints), default=0.0)
+    # A blade, which has no gap, closes none; a spring has an error_bias that it makes no use of.
+    joints = [constraint for constraint in model.space.constraints if type(constraint) in ROWS]
+    bias = min((constraint.error_bias for constraint in joints), default=0.0)
     closed[held] = 1 - bias ** (dt / model.unit)
     pose = told.pose[step]
     gap = np.nan_to_num(mechanism.gap(pose, step * dt))

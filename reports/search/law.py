@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+ROUNDINGS = 10.0  # of a place or a velocity
+REFINED = 3
 
 
 class NotAsked(Exception):
@@ -39,7 +41,8 @@ class Constrained:
 def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Constrained:
     """J a = right - give give^T f with M (a - free) = J^T f, for rows (rows, 3 bodies) and `give` (rows, any number).
 
-    By the SVD of J M^(-1/2), never through its square.
+    By the SVD of J M^(-1/2), never through its square. That is right to rounding of the largest part of M^(1/2) a, in
+    which a light body's is small: so what both equations leave is solved for again (iterative refinement; Skeel 1980).
     """
     if not len(rows):
         return Constrained(free, np.zeros(0))
@@ -49,9 +52,78 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     if give is not None:  # further coordinates of unit mass, which the forces move
         matrix = np.hstack([matrix, give])
     left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
-    lacking = left.T @ ((right - rows @ free.reshape(-1)) / norm)
-    change = (turned.T @ (lacking / sizes))[: len(root)]
-    return Constrained(free + (change / root).reshape(-1, 3), left @ (lacking / sizes**2) / norm)
+    own, motion, force = free.reshape(-1), np.zeros(len(root)), np.zeros(len(rows))
+    for _ in range(1 + REFINED):
+        pushed = own - motion + (rows.T @ force) / root**2
+        short = right - rows @ motion - (0.0 if give is None else give @ (give.T @ force))
+        lacking = left.T @ ((short - rows @ pushed) / norm)
+        motion = motion + pushed + (turned.T @ (lacking / sizes))[: len(root)] / root
+        force = force + left @ (lacking / sizes**2) / norm
+    return Constrained(motion.reshape(-1, 3), force)
+
+
+def carried(mechanism: Mechanism, pose: Array, speed: float) -> Constrained:
+    """What rounding of a `speed` [m/s] in every number leaves in velocities (bodies, 3), and in impulses (rows,).
+
+    Each row's rate is then wrong by about e = speed times the row's size, and joints change velocities by
+    M^-1 J^T A^-1 e with impulses A^-1 e, A = J M^-1 J^T: the more the more nearly rows depend on each other, and the
+    heavier what they hold. Rounding has no sign, so that squares are added. Velocities, themselves rounded, are wrong
+    by the speed at least.
+    """
+    size = np.tile([1.0, 1.0, mechanism.length_scale], len(mechanism.bodies))
+    least = (speed / size).reshape(-1, 3)
+    rows, root = mechanism.rows(pose), np.sqrt(mechanism.inertias.reshape(-1))
+    if not len(rows):
+        return Constrained(least, np.zeros(0))
+    matrix = rows / root
+    norm = np.linalg.norm(matrix, axis=1)
+    left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
+    wrong = np.linalg.norm(rows / size, axis=1) * speed / norm
+    change = np.linalg.norm(((turned.T / sizes) @ left.T) * wrong, axis=1) / root
+    impulse = np.linalg.norm(((left / sizes**2) @ left.T) * wrong, axis=1) / norm
+    return Constrained(np.maximum(least, change.reshape(-1, 3)), impulse)
+
+
+def rounded(
+    rows: Array,
+    law: Constrained,
+    right: Array,
+    inertias: Array,
+    free: Array,
+    give: Array,
+    doubt: tuple[Array, Array],
+) -> Constrained:
+    """What rounding of everything that enters `constrained` leaves in its motion and its forces, `law`.
+
+    `doubt` (rows,) and (bodies, 3): by how much `right`, and M a, may be wrong beside their own rounding.
+
+    With e the unit of rounding, dJ = e |J|, M, J, f and a as there and G = give give^T, the first order of
+    M a - J^T f = M free and J a + G f = right is
+
+        M da - J^T df = u, u = e (|J^T f| + |M free|) + doubt;  J da + G df = w, w = e (|J a| + |right|) + doubt
+        da = S M^-1 u + M^-1 J^T A^-1 w,  df = A^-1 (w - J M^-1 u),  A = J M^-1 J^T + G,  S = 1 - M^-1 J^T A^-1 J
+
+    where products of absolute values are meant. Rounding has no sign, so squares are added.
+    """
+    unit = ROUNDINGS * np.finfo(float).eps
+    root, motion = np.sqrt(inertias.reshape(-1)), law.motion.reshape(-1)
+    pushed = unit * np.sqrt((rows**2).T @ law.force**2 + (root**2 * free.reshape(-1)) ** 2)
+    pushed = (pushed + doubt[1].reshape(-1)) / root
+    if not len(rows):
+        return Constrained((pushed / root).reshape(-1, 3), np.zeros(0))
+    matrix = rows / root
+    norm = np.linalg.norm(matrix, axis=1)
+    left, sizes, turned = np.linalg.svd(np.hstack([matrix, give]) / norm[:, None], full_matrices=False)
+    lacking = (unit * np.sqrt(rows**2 @ motion**2 + right**2) + doubt[0]) / norm
+    held, back = turned[:, : len(root)], left.T * lacking
+    moved = np.hstack([(held.T / sizes) @ back, (np.eye(len(root)) - held.T @ held) * pushed])
+    pulled = np.hstack([(left / sizes**2) @ back, (left / sizes) @ (held * pushed)])
+    return Constrained((np.linalg.norm(moved, axis=1) / root).reshape(-1, 3), np.linalg.norm(pulled, axis=1) / norm)
+
+
+def place(mechanism: Mechanism, pose: Array) -> float:
+    """How large the numbers [m] are in which places are written."""
+    return max(mechanism.length_scale, float(np.abs(pose[..., :2]).max()))
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:
@@ -81,6 +153,21 @@ def force_difference(mechanism: Mechanism, found: Array, expected: Array, others
     if not np.isfinite(error):
         return np.inf
     return error / largest if largest > 0 else (np.inf if error > 0 else 0.0)
+
+
+def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
+    """By how much the fastest body, or the direction of a row, turns in a step of dt [s] from a state on: rad.
+
+    A row turns at about the rate |J' v| / (|J| |v|), with the velocities of its bodies: a short rod, say, whose ends
+    move apart. Above a radian no integrator follows, and what comes of the motion is rounding.
+    """
+    rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
+    size = np.array([1.0, 1.0, mechanism.length_scale])
+    parts = np.abs(rows.reshape(len(rows), *twist.shape) / size).max(axis=-1, initial=0.0)  # (rows, bodies)
+    moving = parts.max(axis=1, initial=0.0) * ((parts > 0) @ np.abs(twist * size).max(axis=-1))
+    law = constrained(rows, bias, mechanism.inertias, mechanism.unconstrained(pose, twist))
+    spin = np.abs(twist[:, 2]).max() * dt + np.abs(law.motion[:, 2]).max() * dt**2
+    return float(max(spin, dt * (np.abs(bias) / np.where(moving > 0, moving, np.inf)).max(initial=0.0)))
 
 
 def driving_force(mechanism: Mechanism, twist: Array) -> float:

@@ -8,13 +8,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Promise, Unpromised
-from engines.lagrange import HELD, TRUTH
+from engines import Engine, Promise, Softness, Unpromised
+from engines.lagrange import TRUTH
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.gate.judge import TABLEAUS, in_numpy
-from reports.search.law import Fault, NotAsked, difference, driving_force, force_difference
+from reports.search.law import (
+    ROUNDINGS,
+    Fault,
+    NotAsked,
+    carried,
+    constrained,
+    difference,
+    driving_force,
+    force_difference,
+    place,
+    turned_in_a_step,
+)
 
 Array = NDArray[np.float64]
 
@@ -25,8 +35,6 @@ SAMPLES, COARSE = 4, 10  # and steps between samples
 ROOM = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
 LEAST = {"motion": 1e-8, "reactions": 1e-5}
-ROUNDINGS = 10.0  # of a place or a velocity
-FINEST = 16  # parts of the coarse step
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 ESTIMATED = 10.0  # times its own estimate an error may be
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
@@ -49,24 +57,24 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     truth = TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
     if not np.isfinite(truth.pose).all():
         raise NotAsked("the judge itself finds no motion")
-    if truth.unresolved_at is not None:
-        raise NotAsked(f"the judge itself does not hold {HELD:g}, as it says")
+    if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
+        raise NotAsked("steps are too long for what turns, so that no order is seen")
     fine = _run(engine, mechanism, dt / 2, 2 * COARSE)
     if coarse.warnings or fine.warnings:
         raise NotAsked("it says itself that something is wrong")
-    found, parts = [_apart(mechanism, run, truth, promise) for run in (coarse, fine)], 2
-    finest = FINEST if promise.amplified == 1 else 4
-    while _misses(promise, found, _rounded(mechanism, promise, truth, parts)) and parts < finest:
-        # A coarser error may be small by chance, and an order is that of short steps: a fault shows it at none of them.
-        parts *= 2
-        run = _run(engine, mechanism, dt / parts, parts * COARSE)
-        if run.warnings:
-            raise NotAsked("it says itself that something is wrong")
-        found = [found[1], _apart(mechanism, run, truth, promise)]
-    rounded = _rounded(mechanism, promise, truth, parts)
-    if _misses(promise, found, rounded) and not _resolved(mechanism, promise, truth, parts):
-        raise NotAsked("something passes within a step: a textbook method shows no order at these steps either")
-    out = {name: (found[1][name], _may_be(promise, name, found[0][name], rounded[name])) for name in found[1]}
+    found, finest = [_apart(mechanism, run, truth, promise) for run in (coarse, fine)], dt / 2
+    if _misses(promise, found):  # a coarser error may be small by chance: it must not fall between the next two either
+        finest = dt / 4
+        found = [found[1], _apart(mechanism, _run(engine, mechanism, finest, 4 * COARSE), truth, promise)]
+    out = {name: (found[1][name], _may_be(promise, name, found[0][name])) for name in found[1]}
+    rounded = _rounded_reactions(mechanism, promise, truth, finest)
+    softness = engine.softness(mechanism, finest)
+    if softness is not None:
+        if softness == engine.softness(mechanism, dt):  # else it is tied to the step, and so to the promised order
+            soft = ROOM * _given_way(softness, mechanism, truth) / _size(mechanism, truth, promise)
+            out["motion"] = (out["motion"][0], min(max(out["motion"][1], soft), LOST))
+        rounded = max(rounded, _rounded_gaps(softness, mechanism) / _force_size(mechanism, truth))
+    out["reactions"] = (out["reactions"][0], max(out["reactions"][1], rounded))
     if fine.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
         told = float(np.abs(fine.estimate * size).max()) / _size(mechanism, truth, promise)
@@ -93,15 +101,9 @@ def _size(mechanism: Mechanism, truth: Trajectory, promise: Promise) -> float:
     moved = float(np.abs((truth.pose - mechanism.pose) * size).max())
     pulled = np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * size).max()
     free = float(pulled) * (SPAN * mechanism.time_scale) ** 2 / 2
-    place = _place(mechanism)
     steps = SAMPLES * 4 * COARSE * promise.differences if promise.amplified > 1 else 1
-    carried = promise.amplified * max(steps, 1) ** 0.5
-    return max(moved, free, carried * ROUNDINGS * np.finfo(float).eps * place / LEAST["motion"])
-
-
-def _place(mechanism: Mechanism) -> float:
-    """How large the numbers [m] are in which a mechanism's places are written."""
-    return max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    rounded = ROUNDINGS * np.finfo(float).eps * promise.amplified * max(steps, 1) ** 0.5
+    return max(moved, free, rounded * place(mechanism, mechanism.pose) / LEAST["motion"])
 
 
 def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory, promise: Promise) -> dict[str, float]:
@@ -128,70 +130,59 @@ def _moves(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> list[tup
     ]
 
 
-def _may_be(promise: Promise, name: str, coarser: float, rounded: float) -> float:
+def _may_be(promise: Promise, name: str, coarser: float) -> float:
     order = promise.of("angle" if name == "motion" else "reaction")
-    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name], rounded), LOST)
-
-
-def _rounded(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: int) -> dict[str, float]:
-    """What rounding leaves in the errors of a run whose steps are these parts of the coarse one."""
-    dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
-    return {
-        "motion": _drifted(mechanism, truth, SAMPLES * COARSE * parts) / _size(mechanism, truth, promise),
-        "reactions": _rounded_reactions(mechanism, promise, truth, dt / max(parts, 4)),
-    }
+    return min(max(ROOM * coarser * 0.5 ** min(order, 20.0), LEAST[name]), LOST)
 
 
 def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory, dt: float) -> float:
     """What rounding of velocities [m/s], divided by a step [s], leaves in reactions, as a part of them.
 
-    An engine that reads them so closes in every step what it sees of a gap, and that is rounded as places are.
+    An engine that reads them so closes in every step what it sees of a gap, and that is rounded as places are. What
+    joints make of it grows with how nearly their rows depend on each other: see `carried`.
     """
     size = np.array([1.0, 1.0, mechanism.length_scale])
-    speed = float(np.abs(truth.twist * size).max()) + _place(mechanism) * promise.differences / dt
-    force = ROUNDINGS * np.finfo(float).eps * speed / dt * mechanism.inertias[:, 0].max()
+    speed = float(np.abs(truth.twist * size).max()) + place(mechanism, truth.pose) * promise.differences / dt
+    rounded = ROUNDINGS * np.finfo(float).eps * speed / dt
+    arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    force = max(float((carried(mechanism, pose, rounded).force * arms).max(initial=0.0)) for pose in truth.pose)
     return promise.amplified * promise.differences * force / _force_size(mechanism, truth)
 
 
-def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: int) -> bool:
-    """Whether a textbook method of the promised order, or 4, shows it from the steps before these parts to these.
+def _misses(promise: Promise, found: list[dict[str, float]]) -> bool:
+    return any(found[1][name] > _may_be(promise, name, found[0][name]) for name in found[1])
 
-    A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of that
-    depends on where its stages fall, and its error on no power of the step.
+
+def _given_way(softness: Softness, mechanism: Mechanism, truth: Trajectory) -> float:
+    """How far bodies are off [m] since joints give way as the engine declares, where that falls with no power of dt.
+
+    A row obeys J a = ... - damping slip - stiffness gap - R f with R a share of its own A = J M^-1 J^T: its gap is
+    R f / stiffness at most, a blade's slip R f / damping. A light body's row that carries the force of a heavy one
+    gives way far, for its A is large. Joints make the smallest motion of it, M^-1 J^T (J M^-1 J^T)^-1 gap.
     """
-    order = max((each for each in TABLEAUS if each <= promise.order), default=1)
-    spacing = SPAN * mechanism.time_scale / SAMPLES
-    try:
-        runs = [in_numpy(mechanism, SAMPLES, spacing, order, n * COARSE, None, True) for n in (parts // 2, parts)]
-    except ValueError:  # it went where curves can't touch
-        return False
-    found = [_apart(mechanism, run, truth, Promise(order)) for run in runs]
-    return not _misses(Promise(order), found, _rounded(mechanism, Promise(order), truth, parts))
+    own = np.sum(mechanism.rows(mechanism.pose) ** 2 / mechanism.inertias.reshape(-1), axis=1)
+    pulled = softness.compliance * own * np.abs(np.nan_to_num(truth.reaction)).max(axis=0)
+    gap = pulled / np.where(mechanism.holonomic, softness.stiffness, softness.damping / truth.t[-1])
+    return float((_answer(mechanism, gap, softness.rows)[0] * [1.0, 1.0, mechanism.length_scale]).max())
 
 
-def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
-    """How far [m] so many steps may carry anything by their rounding, which joints close what it opens.
-
-    A step writes each number of a pose twice, as its sum and after joints are closed, and rounds it by half a unit each
-    time: e = eps |q|, and eps |v| t of a velocity. Where motions hardly change so do roundings, and they add up as
-    steps do. Of e a step leaves P e, P = 1 - H with H = M^-1 J^T (J M^-1 J^T)^-1 J, which the next ones keep; rounding
-    of the last gap leaves H e. So a rounded place turns a body by it over its arm, far more than an angle is rounded.
-    """
-    root, turn = np.sqrt(mechanism.inertias.reshape(-1)), np.array([1.0, 1.0, mechanism.length_scale])
-    least = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])  # arms, and the cosine of an angle
-    worst = 0.0
-    for pose, twist in zip(truth.pose, truth.twist, strict=True):
-        numbers = np.maximum(np.abs(pose), least) + np.abs(twist) * SPAN * mechanism.time_scale
-        rows = mechanism.rows(pose) / root
-        turned = np.linalg.svd(rows / np.linalg.norm(rows, axis=1)[:, None], full_matrices=False)[2]
-        held = turned.T @ turned
-        carried = (steps * np.abs(np.eye(len(root)) - held) + np.abs(held)) @ (root * numbers.reshape(-1)) / root
-        worst = max(worst, float((carried.reshape(-1, 3) * turn).max()))
-    return np.finfo(float).eps * worst
+def _rounded_gaps(softness: Softness, mechanism: Mechanism) -> float:
+    """What force [N] stiff rows make of rounded gaps: (J M^-1 J^T)^-1 stiffness eps, a unit of the places' numbers."""
+    far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    gap = ROUNDINGS * np.finfo(float).eps * np.where(mechanism.turning, 1.0, far)
+    arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+    asked = softness.stiffness * gap * mechanism.holonomic
+    return float((_answer(mechanism, asked, softness.rows)[1] * arms).max(initial=0.0))
 
 
-def _misses(promise: Promise, found: list[dict[str, float]], rounded: dict[str, float]) -> bool:
-    return any(found[1][name] > _may_be(promise, name, found[0][name], rounded[name]) for name in found[1])
+def _answer(mechanism: Mechanism, right: Array, which: tuple[bool, ...]) -> tuple[Array, Array]:
+    """The most that `right` (rows,) of these rows makes of motions (bodies, 3) and of forces (rows,)."""
+    rows, still = mechanism.rows(mechanism.pose), np.zeros_like(mechanism.pose)
+    motion, force = still, np.zeros(len(rows))
+    for row in np.flatnonzero(which):
+        law = constrained(rows, right * (np.arange(len(rows)) == row), mechanism.inertias, still)
+        motion, force = motion + np.abs(law.motion), force + np.abs(law.force)
+    return motion, force
 
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:

@@ -19,6 +19,7 @@ from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo, Shipped, 
 from engines.mujoco.releases import MARK, known_wrong
 from engines.mujoco.solver_check import unsolved
 from engines.tree import spanning_tree
+from reference.forces import Torque
 from reference.joints import Drive, Joint, Pin, Rod
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
@@ -309,10 +310,12 @@ def test_a_hundred_links_closed_by_one_loop_are_solved_by_the_first_solver_and_n
 
 def test_a_reset_is_noticed_and_the_samples_after_it_are_not_numbers(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, 5e11, 1e12))  # MuJoCo resets at rates above 1e10
-    mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),))
+    rate = 0.999e10  # rad/s: MuJoCo resets above 1e10, and a torque brings it there
+    body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, rate / 2, rate))
+    torque = Torque("torque", None, "bar", 3e9)
+    mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),), (0.0, 0.0), (torque,))
     motion = DEFAULT.build(mechanism, 1e-3)(4, 10)
-    assert motion.reset_at == 0.0
+    assert motion.reset_at == pytest.approx(2e-3)
     assert np.isnan(motion.pose[1:]).all()
     assert np.isnan(motion.twist[1:]).all()
     assert np.isnan(motion.reaction[1:]).all()

@@ -140,7 +140,7 @@ found = []
 for scene in (CarAndTrailer(), RollingEllipse(), SlottedLever()):
     motion = EXTENDED.build(scene.mechanism(), 1e-3)(3, 20)
     found.append([motion.pose.tolist(), motion.reaction.tolist(), motion.warnings])
-wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (1e9, 0.0, 1e9))
+wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (9e4, 0.0, 9e4))
 lost = EXTENDED.build(Mechanism((wild,), (Skate("skate", None, "sleigh", (0.0, 0.0)),)), 0.1)(5, 10)
 print(json.dumps([found, lost.reset_at, lost.warnings]))
 """
@@ -171,7 +171,7 @@ def test_a_row_that_is_no_number_makes_the_reference_none() -> None:
 
 
 def test_a_motion_that_blows_up_inside_a_callback_ends_as_a_reset() -> None:
-    wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (1e9, 0.0, 1e9))
+    wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (9e4, 0.0, 9e4))
     mechanism = Mechanism((wild,), (Skate("skate", None, "sleigh", (0.0, 0.0)),))
     motion = EXTENDED.build(mechanism, 1e-1)(20, 10)
     assert motion.reset_at is not None

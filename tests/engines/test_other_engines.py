@@ -19,6 +19,9 @@ from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio import Model
 from reference.joints import Drive, Gear, Pin, Rod
+from engines.units import counted_in
+from reference.forces import Force, Torque, TorsionSpring
+from reference.joints import Drive, Gear, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.scenes.catalogue import scene
@@ -107,6 +110,46 @@ def test_accelerations_given_at_the_start_are_what_exudyns_reactions_need():
     assert np.abs(errors[True].reaction - truth.reaction).max() < 1e-3 * largest
     assert np.isnan(errors[False].reaction).all()
     assert any("ignore velocity constraints" in each for each in errors[False].warnings)
+
+
+UNITS = {"mass": 2.0**-40, "time": 2.0**40}  # kg, s: of powers of two, so that nothing is rounded
+
+
+def test_other_units_of_mass_and_time_leave_the_motion_as_it_is():
+    """Every kind of joint and of force has to be counted in them, or the judge moves it otherwise."""
+    for number in range(30):
+        own = mechanism(5, number, (*LINKS, *FORCES, "pin", "slot", "skate", "drive"))
+        other, span = counted_in(own, **UNITS), 0.1 * own.time_scale
+        right, found = TRUTH.build(own, span)(2, 1), TRUTH.build(other, span / UNITS["time"])(2, 1)
+        assert np.allclose(found.pose, right.pose, rtol=0.0, atol=1e-9 * own.length_scale)
+        assert np.allclose(found.twist / UNITS["time"], right.twist, rtol=1e-6, atol=1e-9 / own.time_scale)
+
+
+def test_exudyn_moves_alike_in_any_unit_but_as_shipped():
+    """It takes no step below 1e-8 s, and tells the instants of samples to 1e-10 s: as shipped it told another pose."""
+    from engines.exudyn import TUNED
+
+    shipped("exudyn")
+    own = mechanism(5, 1, ("pin", "damper", "torque"))
+    dt = 0.01 * own.time_scale
+    right = TUNED.build(own, dt)(5, 1)
+    for time in (2.0**-40, 2.0**40):
+        found = TUNED.build(counted_in(own, 2.0**-40, time), dt / time)(5, 1)
+        assert np.array_equal(found.pose, right.pose)
+        assert np.array_equal(found.twist / time, right.twist)
+
+
+def test_a_motor_of_bullet_gives_whatever_torque_is_asked_for():
+    """As a force of 1e10 N m it let a rate of 25 rad/s slip by a third where masses are of a million tonnes."""
+    from engines.bullet import DEFAULT
+
+    shipped("bullet")
+    drive = Drive("drive", None, "wheel", 25.0, 0.0)
+    wheel = Body("wheel", 1e9, 1e9, (0.5, 0.0, 0.0), (0.0, 12.5, 25.0))
+    forces = (Torque("torque", None, "wheel", -1e11),)
+    driven = Mechanism((wheel,), (Pin("pin", None, "wheel", (0.0, 0.0), (-0.5, 0.0)), drive), (0.0, 0.0), forces)
+    run = DEFAULT.build(driven, 1e-3)(10, 10)
+    assert np.abs(run.pose[:, 0, 2] - 25.0 * run.t).max() < 1e-12
 
 
 def test_a_disc_rolls_on_a_line_in_a_body_that_moves_in_exudyn_too():

@@ -12,6 +12,10 @@ from pymunk.constraints import GrooveJoint
 
 from engines.pymunk import LEAPFROG, METHODS, Pymunk
 from engines.pymunk.contraction import contraction, contraction_at, contractions, gain, sweeps
+from engines import Promise, Size, Unsupported
+from engines.lagrange import TRUTH, Lagrange
+from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk
+from engines.pymunk.contraction import LEFT, as_real, contraction, contraction_at, contractions, gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from reference.joints import Drive, Pin, Slot
 from reference.mechanism import Body, Mechanism
@@ -21,6 +25,9 @@ from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import energy, joint_gap
+from reference.trajectory import Trajectory, energy, joint_gap
+from reports.search.mechanisms import mechanism
+from reports.search.parts import EVERY
 from tests.mechanisms import four_bar
 
 every_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.variant)
@@ -113,6 +120,42 @@ def test_the_gain_by_rule_is_stable_and_closing_all_of_a_gap_with_as_few_sweeps_
     # J; the ten links of 1 kg and 1 m fall by 5 m: about 490 J turn from potential to kinetic.
     assert gained(gain(contraction(mechanism), iterations)) < 1
     assert gained(1.0) > 500
+
+
+def kept_impulses(left: complex) -> float:
+    """How gap, velocity and kept impulse of a mode grow in a step that closes all of the gap; sweeps leave `left`."""
+    change = [[1, 1, 0], [left - 1, 2 * left - 1, left], [left - 1, 2 * left - 2, left]]
+    return float(np.abs(np.linalg.eigvals(np.array(change))).max())
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-4, 0.01, 0.04, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize("size", [0.5, 0.9, 0.99])
+def test_of_a_complex_mode_so_many_sweeps_are_made_that_half_of_what_is_stable_is_left(size, angle):
+    mode = size * np.exp(1j * angle)
+    count = math.log(LEFT) / math.log(as_real(np.array([mode]))[0])
+    turned = min(count * angle, math.pi)
+    left = size**count * np.exp(1j * turned)
+    assert kept_impulses(1.99 * left) < 1
+    assert kept_impulses(2.02 * left) > 1
+    # With whole numbers of sweeps, and more of them, it stays stable: the angle goes on, and what is left falls.
+    assert all(kept_impulses(mode**more) < 1 for more in range(math.ceil(count), 3 * math.ceil(count)))
+
+
+@pytest.mark.parametrize("number", [239, 255, 266])
+def test_a_weld_among_other_joints_does_not_blow_up_however_short_steps_are_and_where_it_does_nothing_is_promised(
+    number,
+):
+    """Their modes are complex: swept as if these were real, 255 missed its motion by a thousandfold of it."""
+    own = mechanism(77777, number, EVERY)
+    span = 0.4 * own.time_scale
+    truth = TRUTH.build(own, span)(1, 1)
+
+    def missed(engine: Pymunk, steps: int) -> float:
+        return largest(engine.build(own, span / steps)(1, steps).pose[-1] - truth.pose[-1])
+
+    assert missed(TUNED, 640) < 0.3 * missed(TUNED, 160)
+    assert isinstance(TUNED.order(own), Promise)
+    assert isinstance(DEFAULT.order(own), Promise) == (missed(DEFAULT, 640) < missed(DEFAULT, 160))
 
 
 def test_a_small_gain_does_not_underflow_to_a_gain_of_one_at_small_steps():

@@ -12,15 +12,19 @@ import pytest
 
 from engines import Promise, Run
 from engines.lagrange import Judge, Lagrange
+from engines import Around, Promise, Run
+from engines.lagrange import TRUTH, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.user_rows import RowWriter
+from engines.pymunk import EXTENDED as PYMUNK_EXTENDED
 from engines.pymunk import LEAPFROG
+from engines.pymunk import TUNED as PYMUNK_TUNED
 from engines.pymunk import model as pymunk_model
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.gate.change import Altered
-from reports.search import instant_mujoco, motions, plan, raw, raw_law, relations
+from reports.search import instant_mujoco, instant_pymunk, mechanisms, motions, plan, raw, raw_law, relations
 from reports.search.instant_pymunk import PUSHED
 from reports.search.mechanisms import ALL
 from reports.search.parts import EVERY
@@ -372,6 +376,61 @@ def test_a_weld_that_leaves_out_its_row_of_angles_is_found(monkeypatch: pytest.M
     right = pymunk_model.weld
     monkeypatch.setattr(pymunk_model, "weld", lambda *given: right(*given)[:1])
     assert faults(LEAPFROG, ("pin", "weld"), 12)
+
+
+@dataclass(frozen=True)
+class Beside(Around):
+    """Its reactions, or its velocities along x, are off by this."""
+
+    engine: Any
+    variant: str = "off"
+    reaction: float = 0.0
+    speed: float = 0.0
+
+    def build(self, mechanism: Mechanism, dt: float) -> Any:
+        def off(run: Trajectory) -> Trajectory:
+            return replace(run, twist=run.twist + self.speed * np.eye(3)[0], reaction=run.reaction + self.reaction)
+
+        return Spoiled(self.engine.build(mechanism, dt), off)
+
+
+@pytest.mark.parametrize(("seed", "number", "oracle"), [(77777, 456, "motions"), (4242, 105, "relations")])
+def test_what_rounding_leaves_where_rows_nearly_depend_on_each_other_is_no_fault_and_twice_as_much_is(
+    seed: int, number: int, oracle: str
+) -> None:
+    """Eight runs of a step, whose weights are 66: a bound that knew neither rows nor weights took this for a fault."""
+
+    def faults_of(engine: Any) -> tuple[str, ...]:
+        return Adapted(engine).ask(mechanisms.recipe(seed, number, EVERY), number, (oracle,)).faults
+
+    own = mechanisms.mechanism(seed, number, EVERY)
+    step = relations.STEP * own.time_scale
+    shaken, fastest = relations._shaken(PYMUNK_EXTENDED, own, 0.0)
+    speed = relations.SAME * float(np.abs(shaken * [1, 1, own.length_scale]).max()) * fastest / step
+    span = motions.SPAN * own.time_scale / motions.SAMPLES
+    truth = TRUTH.build(own, span)(motions.SAMPLES, 1)
+    promise = PYMUNK_EXTENDED.order(own)
+    force = motions._force_size(own, truth)
+    assert isinstance(promise, Promise)
+    force *= motions._rounded_reactions(own, promise, truth, span / motions.COARSE / 2)
+    assert faults_of(PYMUNK_EXTENDED) == ()
+    assert faults_of(Beside(PYMUNK_EXTENDED, reaction=4 * force, speed=3 * speed))
+
+
+@pytest.mark.parametrize(("seed", "number"), [(77777, 14), (4242, 146)])
+def test_velocities_off_by_twice_what_the_law_lets_pass_are_found_beside_springs_and_in_poses_that_need_more_sweeps(
+    seed: int, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = mechanisms.recipe(seed, number, EVERY)
+    assert Adapted(PYMUNK_TUNED).ask(case, number, ("instant",)).errors["velocity"][0] < instant_pymunk.LAW / 10
+    right = instant_pymunk.record
+
+    def off(*given: Any, **named: Any) -> Any:
+        told = right(*given, **named)
+        return replace(told, after=told.after + 3 * instant_pymunk.LAW * np.abs(told.after).max() * np.eye(3)[0])
+
+    monkeypatch.setattr(instant_pymunk, "record", off)
+    assert Adapted(PYMUNK_TUNED).ask(case, number, ("instant",)).faults == ("velocity",)
 
 
 # --------------------------------------------------------------------------------------------- faults of MuJoCo's own
