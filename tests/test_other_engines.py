@@ -181,6 +181,16 @@ def test_a_rod_shorter_than_box2ds_slop_is_refused_since_it_would_be_longer():
         engine.build(Mechanism((body,), (Rod("rod", None, "bob", (0.0, 0.0), (0.0, 0.0), 0.002),)), 1e-3)
 
 
+@pytest.mark.parametrize(("speed", "rate", "told"), [(1e7, 78.0, False), (0.0, 79.0, True)])
+def test_box2d_slows_no_body_down_but_one_that_turns_by_more_than_an_eighth_of_a_turn_in_a_step(speed, rate, told):
+    """That is 78.5 rad/s. Found by the search: speeds above 1e6 m/s were cut by our own limit."""
+    body = Body("free", 1.0, 1.0, (0.0, 0.0, 0.0), (speed, 0.0, rate))
+    run = shipped("box2d").build(Mechanism((body,), ()), 1e-2)(3, 1)
+    assert run.twist[-1, 0, 0] == pytest.approx(speed, rel=1e-6)
+    assert (run.twist[-1, 0, 2] == pytest.approx(rate, rel=1e-6)) != told
+    assert bool(run.warnings) == told
+
+
 def test_an_engine_that_loses_its_numbers_says_when():
     lost = np.array([[[0.0, 0.0, 0.0]], [[np.nan, 0.0, 0.0]], [[0.0, 0.0, 0.0]]])
     body = Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ())

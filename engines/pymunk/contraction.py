@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,7 @@ from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, ranks
 
 Array = NDArray[np.float64]
+Modes = NDArray[np.complex128]  # what a sweep leaves of each
 
 LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose
 MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
@@ -97,7 +98,7 @@ def contractions(mechanism: Mechanism, poses: Numbers) -> Array:
     return np.clip(as_real(modes).max(axis=-1), 0.0, 1 - 1e-12)
 
 
-def as_real(modes: NDArray[np.complex128] | Array) -> Array:
+def as_real(modes: Modes) -> Array:
     """The real factors of a sweep that need as many sweeps as these, which may be complex; see the module."""
     with np.errstate(divide="ignore", invalid="ignore"):
         falls = -np.log(np.abs(modes))
@@ -116,7 +117,7 @@ def grows(mechanism: Mechanism, iterations: Count) -> bool:
     if not starts or len(matrix) > DENSE:
         return False
     change = np.linalg.pinv(_lower(matrix, starts)) @ matrix
-    left = _left(change, rows, mechanism.length_scale).astype(complex) ** iterations
+    left = _left(change, rows, mechanism.length_scale) ** iterations
     root = np.sqrt(left * left - left)
     return bool(np.maximum(np.abs(left + root), np.abs(left - root)).max(initial=0.0) > 1 + GROWING)
 
@@ -133,13 +134,13 @@ def _spectral_radius(matrix: Array, starts: list[int], rows: Array, length: floa
     return float(as_real(_left(np.linalg.pinv(lower) @ matrix, rows, length)).max())
 
 
-def _left(change: Array, rows: Array, length: float) -> NDArray[np.complex128] | Array:
+def _left(change: NDArray[np.floating[Any]], rows: Array, length: float) -> Modes:
     """What a sweep leaves (..., rows) of each mode of L^-1 A (..., rows, rows), 0 of those of dependent rows.
 
     These are none of the motion: there A is zero, and a sweep changes nothing. But where masses are far apart a sweep
     may change as little of a mode that is one. So it is the rank of the rows that tells them apart.
     """
-    changed = np.linalg.eigvals(change)
+    changed = np.linalg.eigvals(change).astype(np.complex128)
     small = np.abs(changed)
     if np.all(small > RANK_TOLERANCE):
         return 1 - changed

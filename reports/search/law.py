@@ -15,6 +15,7 @@ from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 ROUNDINGS = 10.0  # of a place or a velocity
+ESTIMATED = 10.0  # times its own estimate an error may be
 
 
 class NotAsked(Exception):

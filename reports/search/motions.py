@@ -14,6 +14,7 @@ from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.law import (
+    ESTIMATED,
     ROUNDINGS,
     Fault,
     NotAsked,
@@ -39,7 +40,6 @@ LEAST = {"motion": 1e-8, "reactions": 1e-5}
 # rounding that grows with shorter steps excuses no more than it does at the first.
 FINEST = 64
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
-ESTIMATED = 10.0  # times its own estimate an error may be
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
 
 

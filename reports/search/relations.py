@@ -12,12 +12,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine
+from engines import CLAIM, Engine
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from reference.joints import Roll, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search.law import ROUNDINGS, Fault, NotAsked, difference
+from reports.search.law import ESTIMATED, ROUNDINGS, Fault, NotAsked, difference
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
@@ -106,6 +106,11 @@ def _apart(
         raise NotAsked("descriptions differ, and it says itself that something is wrong")
     if engine.variant != "default" and not np.isfinite(own.pose[-1]).all():
         raise Fault(f"it was lost within {STEPS} steps, and says nothing")
+    if own.estimate is not None:  # what rounding makes of a motion has to be in it
+        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        claimed = max(CLAIM, ESTIMATED * float((own.estimate / size).max()))
+        if not np.abs((pose - own.pose[-1]) / size).max() <= claimed:
+            return found
     for change in _nudges(engine, mechanism, away):
         changed, back = change(mechanism)
         pose, twist, _ = back(_run(engine, changed))
