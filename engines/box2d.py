@@ -26,6 +26,8 @@ contacts at most; at a half a chain of ten pins blows up. So stiff a pin makes f
 off places: the shorter the step, the noisier are reactions. The page of engines shows what each of the two, frequency
 and sub-steps, does.
 
+No body turns by more than an eighth of a turn in a step: a faster one is slowed down, which a warning tells.
+
 Numbers are of single precision, so that an error below about 1e-6 of the motion, and an acceleration below 1e-7 of the
 speed over the step, can't be told. Its own functions between angles and rotations are approximations, off by 1.6e-3 and
 3e-5 rad, so both are worked out here; whole turns, which a rotation does not keep, are taken back. Nothing is printed,
@@ -56,7 +58,8 @@ STEP_COST = 3e-6  # s of a step of three bodies, without its sub-steps
 SUBSTEP_COST = 0.8e-6  # s
 SLOP = 0.005  # m: the shortest distance of a joint
 ENOUGH = 1e30  # N m, of a motor: single precision ends at 3e38
-FASTEST = 1e6  # m/s, which the engine would cut to 400
+FASTEST = 1e18  # m/s, which the engine would cut to 400; single precision holds no larger square
+TURNED = math.pi / 4  # in a step: what is faster the engine cuts to it, and its binding has no switch for that
 FORCES_COST = 150e-6  # s, of force elements, which are worked out by numpy
 SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would be the stiffest
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
@@ -244,7 +247,10 @@ class _World:
         masses = [body.mass_data for body in bodies]
         inertias = np.array([(each.mass, each.mass, each.rotational_inertia) for each in masses])
         gravity = np.array([world.gravity.x, world.gravity.y])
-        return Recorded(pose, twist, differences(twist, before, dt), stepping, inertias, gravity)
+        with np.errstate(all="ignore"):
+            turned = np.fmax.reduce(np.abs([twist[..., 2], before[..., 2]]), axis=None) * dt
+        warnings = ("upstream: a rate was cut to an eighth of a turn in a step",) if turned > 0.999 * TURNED else ()
+        return Recorded(pose, twist, differences(twist, before, dt), stepping, inertias, gravity, warnings)
 
 
 DEFAULT = Box2D("default")

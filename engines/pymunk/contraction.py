@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,9 +42,10 @@ from reference.checks import LARGEST_COUNT, Count, Numbers, validated
 from reference.joints import Joint, Weld
 from reference.kinds import Rule, from_to
 from reference.mechanism import Mechanism
-from reference.rows import RANK_TOLERANCE
+from reference.rows import RANK_TOLERANCE, ranks
 
 Array = NDArray[np.float64]
+Modes = NDArray[np.complex128]  # what a sweep leaves of each
 
 LEFT = 0.25  # of the slowest mode after a step's sweeps: half of what is stable, because rho changes with the pose
 MARGIN = 0.8  # of the stable gain, where the sweeps don't reach that
@@ -78,7 +79,7 @@ def contraction(mechanism: Mechanism) -> float:
 def contraction_at(mechanism: Mechanism, pose: Numbers) -> float:
     """The same at a pose (bodies, 3) [m, m, rad]."""
     try:
-        rho = _spectral_radius(*_joint_matrix(mechanism, pose))
+        rho = _spectral_radius(*_joint_matrix(mechanism, pose), mechanism.length_scale)
     except np.linalg.LinAlgError:  # masses so far apart that no number is left
         rho = 0.0
     return min(max(rho, 0.0), 1 - 1e-12)
@@ -90,15 +91,14 @@ def contractions(mechanism: Mechanism, poses: Numbers) -> Array:
 
     All in one go: for few rows a fifth of the time.
     """
-    matrix, starts = _joint_matrix(mechanism, poses)
+    matrix, starts, rows = _joint_matrix(mechanism, poses)
     if not starts:
         return np.zeros(len(poses))
-    changed = np.linalg.eigvals(np.linalg.solve(_lower(matrix, starts), matrix))
-    left = np.where(np.abs(changed) > RANK_TOLERANCE, as_real(1 - changed), 0.0)
-    return np.clip(left.max(axis=-1), 0.0, 1 - 1e-12)
+    modes = _left(np.linalg.solve(_lower(matrix, starts), matrix), rows, mechanism.length_scale)
+    return np.clip(as_real(modes).max(axis=-1), 0.0, 1 - 1e-12)
 
 
-def as_real(modes: NDArray[np.complex128] | Array) -> Array:
+def as_real(modes: Modes) -> Array:
     """The real factors of a sweep that need as many sweeps as these, which may be complex; see the module."""
     with np.errstate(divide="ignore", invalid="ignore"):
         falls = -np.log(np.abs(modes))
@@ -113,15 +113,16 @@ def grows(mechanism: Mechanism, iterations: Count) -> bool:
     By mu^2 - 2 r mu + r = 0 for each mode, as no gap is closed within a step that is short enough. Not told for more
     than DENSE rows.
     """
-    matrix, starts = _joint_matrix(mechanism, mechanism.pose)
+    matrix, starts, rows = _joint_matrix(mechanism, mechanism.pose)
     if not starts or len(matrix) > DENSE:
         return False
-    left = np.asarray(_modes(matrix, _lower(matrix, starts)), dtype=complex) ** iterations
+    change = np.linalg.pinv(_lower(matrix, starts)) @ matrix
+    left = _left(change, rows, mechanism.length_scale) ** iterations
     root = np.sqrt(left * left - left)
     return bool(np.maximum(np.abs(left + root), np.abs(left - root)).max(initial=0.0) > 1 + GROWING)
 
 
-def _spectral_radius(matrix: Array, starts: list[int]) -> float:
+def _spectral_radius(matrix: Array, starts: list[int], rows: Array, length: float) -> float:
     if not starts:
         return 0.0
     lower = _lower(matrix, starts)
@@ -130,13 +131,21 @@ def _spectral_radius(matrix: Array, starts: list[int]) -> float:
             return 1 - _smallest(matrix, lower)
         except RuntimeError:  # exactly singular
             pass
-    return float(as_real(_modes(matrix, lower)).max(initial=0.0))
+    return float(as_real(_left(np.linalg.pinv(lower) @ matrix, rows, length)).max())
 
 
-def _modes(matrix: Array, lower: Array) -> NDArray[np.complex128] | Array:
-    """What a sweep leaves of each mode; those of dependent rows are none of the motion: there A is zero."""
-    changed = np.linalg.eigvals(np.linalg.pinv(lower) @ matrix)
-    return 1 - changed[np.abs(changed) > RANK_TOLERANCE]
+def _left(change: NDArray[np.floating[Any]], rows: Array, length: float) -> Modes:
+    """What a sweep leaves (..., rows) of each mode of L^-1 A (..., rows, rows), 0 of those of dependent rows.
+
+    These are none of the motion: there A is zero, and a sweep changes nothing. But where masses are far apart a sweep
+    may change as little of a mode that is one. So it is the rank of the rows that tells them apart.
+    """
+    changed = np.linalg.eigvals(change).astype(np.complex128)
+    small = np.abs(changed)
+    if np.all(small > RANK_TOLERANCE):
+        return 1 - changed
+    place = np.argsort(np.argsort(-small, axis=-1), axis=-1)
+    return np.where(place < ranks(rows, np.asarray(length))[..., None], 1 - changed, 0.0)
 
 
 def _lower(matrix: Array, starts: list[int]) -> Array:
@@ -147,10 +156,10 @@ def _lower(matrix: Array, starts: list[int]) -> Array:
     return lower
 
 
-def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
+def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int], Array]:
     """A at poses (..., bodies, 3), without the rows that are prescribed motions; where each constraint's block begins.
 
-    (..., rows, rows), and the beginnings.
+    (..., rows, rows), the beginnings, and the rows (..., rows, 3 bodies) of what is not prescribed.
     """
     weights = 1 / mechanism.inertias
     for name in find_turned(mechanism):
@@ -166,7 +175,8 @@ def _joint_matrix(mechanism: Mechanism, pose: Array) -> tuple[Array, list[int]]:
         if np.any(matrix[..., block, block] > 0):
             starts.append(len(kept))
             kept += block
-    return matrix[..., np.array(kept, dtype=int)[:, None], kept], starts
+    held = np.where(weights.reshape(-1) > 0, rows, 0.0)[..., kept, :]
+    return matrix[..., np.array(kept, dtype=int)[:, None], kept], starts, held
 
 
 def _parts(joint: Joint) -> tuple[int, ...]:

@@ -15,6 +15,7 @@ from reference.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 ROUNDINGS = 10.0  # of a place or a velocity
+ESTIMATED = 10.0  # times its own estimate an error may be
 REFINED = 3
 
 
@@ -24,10 +25,6 @@ class NotAsked(Exception):
 
 class Fault(Exception):
     """Something is not there that has to be; the message is one sentence that says what."""
-
-
-class Lost(Fault):
-    """The motion ended early, and the engine says so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,26 +59,23 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     return Constrained(motion.reshape(-1, 3), force)
 
 
-def carried(mechanism: Mechanism, pose: Array, speed: float) -> Constrained:
-    """What rounding of a `speed` [m/s] in every number leaves in velocities (bodies, 3), and in impulses (rows,).
+def carried(mechanism: Mechanism, pose: Array, wrong: Array) -> Constrained:
+    """What numbers that are `wrong` (bodies, 3) by so much leave in motions (bodies, 3), and in impulses (rows,).
 
-    Each row's rate is then wrong by about e = speed times the row's size, and joints change velocities by
+    Each row is then wrong by e, the sum of its sizes times these, and joints that set it right move bodies by
     M^-1 J^T A^-1 e with impulses A^-1 e, A = J M^-1 J^T: the more the more nearly rows depend on each other, and the
-    heavier what they hold. Rounding has no sign, so that squares are added. Velocities, themselves rounded, are wrong
-    by the speed at least.
+    farther masses are apart. Rounding has no sign, so squares are added. A motion is wrong by its numbers at least.
     """
-    size = np.tile([1.0, 1.0, mechanism.length_scale], len(mechanism.bodies))
-    least = (speed / size).reshape(-1, 3)
     rows, root = mechanism.rows(pose), np.sqrt(mechanism.inertias.reshape(-1))
     if not len(rows):
-        return Constrained(least, np.zeros(0))
+        return Constrained(wrong, np.zeros(0))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
     left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
-    wrong = np.linalg.norm(rows / size, axis=1) * speed / norm
-    change = np.linalg.norm(((turned.T / sizes) @ left.T) * wrong, axis=1) / root
-    impulse = np.linalg.norm(((left / sizes**2) @ left.T) * wrong, axis=1) / norm
-    return Constrained(np.maximum(least, change.reshape(-1, 3)), impulse)
+    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1) / norm
+    change = np.linalg.norm(((turned.T / sizes) @ left.T) * missed, axis=1) / root
+    impulse = np.linalg.norm(((left / sizes**2) @ left.T) * missed, axis=1) / norm
+    return Constrained(np.maximum(wrong, change.reshape(-1, 3)), impulse)
 
 
 def rounded(
@@ -121,9 +115,12 @@ def rounded(
     return Constrained((np.linalg.norm(moved, axis=1) / root).reshape(-1, 3), np.linalg.norm(pulled, axis=1) / norm)
 
 
-def place(mechanism: Mechanism, pose: Array) -> float:
-    """How large the numbers [m] are in which places are written."""
-    return max(mechanism.length_scale, float(np.abs(pose[..., :2]).max()))
+def written(mechanism: Mechanism, away: float = 0.0) -> Array:
+    """How large the numbers (bodies, 3) are in which it is written [m, m, and 1 for a cosine]; at least `away` [m]."""
+    out = np.ones_like(mechanism.pose)
+    far = np.abs(mechanism.pose[:, :2]).max(axis=1)
+    out[:, :2] = np.maximum(far, max(mechanism.length_scale, away))[:, None]
+    return out
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, others: tuple[Array, ...] = ()) -> float:

@@ -6,19 +6,21 @@ The changes are those of the conformance kit, on mechanisms that nobody chose. O
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Engine, Unpromised
+from engines import CLAIM, Engine
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
-from reference.joints import Roll
+from reference.joints import Roll, Weld
 from reference.mechanism import Mechanism
+from reference.trajectory import Trajectory
 from reports.search.instant_mujoco import solved
-from reports.search.law import ROUNDINGS, Fault, Lost, NotAsked, carried, difference, place, turned_in_a_step
+from reports.search.law import ESTIMATED, ROUNDINGS, Fault, NotAsked, difference, turned_in_a_step
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
@@ -30,6 +32,10 @@ STEPS = 5
 SAME = 1e-7
 # The same of an engine that computes with fewer digits, and says so as its `precision`: of what moves, places keep few.
 ROUGHLY = 1e4
+NUDGES = 3
+# rad: what Box2D reads of a weld's angle is off by half of this, in each direction by another (`instant_box2d`); it is
+# the only one with so few digits that has welds.
+MISREAD = 2 * 2.8e-5
 ROUNDED = 1e-6  # of a place: beside a motion that is smaller, its rounding is seen
 SEEN = 20.0  # roundings of a place; six, and in one of 600 mechanisms thirteen, were met
 
@@ -75,49 +81,76 @@ def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
         changed, back = CHANGES[name](mechanism)
     except ValueError as reason:
         raise NotAsked(str(reason)) from None
-    pose, twist, _ = back(_run(engine, changed))
-    return {name: _apart(mechanism, engine, pose[-1], twist[-1], float(np.abs(changed.pose[:, :2]).max()))}
+    run = _run(engine, changed)
+    pose, twist, _ = back(run)
+    away = float(np.abs(changed.pose[:, :2]).max())
+    return {name: _apart(mechanism, engine, pose[-1], twist[-1], run.warnings, away)}
 
 
-def _run(engine: Engine, mechanism: Mechanism):
+def _run(engine: Engine, mechanism: Mechanism) -> Trajectory:
     run = engine.build(mechanism, STEP * mechanism.time_scale)(1, STEPS)
     if run.unresolved_at is not None and np.isfinite(run.pose).all():
         raise NotAsked("it says itself that it is unresolved in one of the descriptions")
     return run
 
 
-def _apart(mechanism: Mechanism, engine: Engine, pose: Array, twist: Array, away: float = 0.0) -> float:
+def _apart(
+    mechanism: Mechanism, engine: Engine, pose: Array, twist: Array, warnings: Sequence[str], away: float = 0.0
+) -> float:
     """How different a pose and a twist are from those of the mechanism itself; `away` [m] is how far the other stood.
 
-    A shift costs digits of a place, those of its distance; and a velocity those of a place divided by a step.
+    A shift costs digits of a place, those of its distance; and a velocity those of a place divided by a step. Raises
+    NotAsked where they differ and either run has `warnings`, or a start that is rounded makes as much of a difference.
     """
     own = _run(engine, mechanism)
-    moved, turned = own.pose[-1] - mechanism.pose, pose - mechanism.pose
-    if not np.isfinite(own.pose[-1]).all():
-        words = f"it was lost within {STEPS} steps: {'; '.join(own.warnings)}"
-        raise Lost(words) if own.warnings else Fault(words)
+    moved = own.pose[-1] - mechanism.pose
     step = STEP * mechanism.time_scale
     rounded = _rounded(engine, mechanism) * max(away, float(np.abs(mechanism.pose[:, :2]).max()))
-    far, fast = np.array([[rounded, 0.0, 0.0]]), np.array([[rounded / step, 0.0, 0.0]])
-    shaken, fastest = _shaken(engine, mechanism, away)
-    return max(
-        difference(mechanism, turned, moved, (mechanism.twist * STEPS * step, 1e-6 * mechanism.pose, far, shaken)),
-        difference(mechanism, twist, own.twist[-1], (mechanism.twist, fast, shaken * fastest / step)),
-    )
+    misread = MISREAD / bound(engine) if engine.precision and _welded(mechanism) else 0.0
+    rest, far = 1e-6 * mechanism.pose, np.array([[rounded, 0.0, misread]])
+    fast = far / step
+
+    def error(pose: Array, twist: Array) -> float:
+        return max(
+            difference(mechanism, pose - mechanism.pose, moved, (mechanism.twist * STEPS * step, rest, far)),
+            difference(mechanism, twist, own.twist[-1], (mechanism.twist, fast)),
+        )
+
+    found = error(pose, twist)
+    if found <= bound(engine):
+        return found
+    if own.warnings or warnings:
+        raise NotAsked("descriptions differ, and it says itself that something is wrong")
+    if engine.variant != "default" and not np.isfinite(own.pose[-1]).all():
+        raise Fault(f"it was lost within {STEPS} steps, and says nothing")
+    if own.estimate is not None:  # what rounding makes of a motion has to be in it
+        size = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
+        claimed = max(CLAIM, ESTIMATED * float((own.estimate / size).max()))
+        if not np.abs((pose - own.pose[-1]) / size).max() <= claimed:
+            return found
+    for change in _nudges(engine, mechanism, away):
+        changed, back = change(mechanism)
+        pose, twist, _ = back(_run(engine, changed))
+        if found <= ROUNDINGS * error(pose[-1], twist[-1]):
+            raise NotAsked("descriptions differ by no more than what it makes of rounding")
+    return found
 
 
-def _shaken(engine: Engine, mechanism: Mechanism, away: float) -> tuple[Array, int]:
-    """Motions (bodies, 3) beside which rounded gaps are below SAME, and how many steps of the finest run make one.
+def _nudges(engine: Engine, mechanism: Mechanism, away: float) -> Iterator[Change]:
+    """Shifts and turns by a rounding: what an engine makes of them is its condition.
 
-    An engine whose reactions are changes of velocity closes in each step what it sees of a gap, rounded as places are:
-    velocities are wrong by that over the finest step. The weights of combined runs come on top, and what nearly
-    dependent rows make of it (`carried`).
+    That is of nearly dependent rows, masses far apart, weights of combined runs, gaps that are closed although they are
+    but rounded, and of steps in which a light body is flung about.
     """
-    promise = engine.order(mechanism)
-    if isinstance(promise, Unpromised) or not promise.differences:
-        return np.zeros_like(mechanism.pose), 1
-    rounded = ROUNDINGS * np.finfo(float).eps * promise.amplified * max(away, place(mechanism, mechanism.pose))
-    return carried(mechanism, mechanism.pose, rounded / SAME).motion, promise.differences
+    random = np.random.default_rng(NUDGES)
+    digit = max(float(np.finfo(float).eps), engine.precision)
+    far = digit * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    for x, y, turn in random.uniform(-1.0, 1.0, (NUDGES, 3)).tolist():
+        yield Isometry(turn=digit * turn, shift=(far * x, far * y))
+
+
+def _welded(mechanism: Mechanism) -> bool:
+    return any(isinstance(joint, Weld) for joint in mechanism.joints)
 
 
 def _rounded(engine: Engine, mechanism: Mechanism) -> float:
@@ -140,7 +173,7 @@ def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tup
         raise NotAsked("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
     run = _run(engine, other)
     unit = np.array([length, length, 1.0])
-    return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit)
+    return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit, run.warnings)
 
 
 def _has_lengths(engine: Engine) -> bool:

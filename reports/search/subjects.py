@@ -15,7 +15,7 @@ from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from reference.mechanism import Mechanism
 from reports.search import instant_box2d, instant_mujoco, instant_pymunk, mechanisms, motions, raw, raw_law, relations
-from reports.search.law import Fault, Lost, NotAsked
+from reports.search.law import Fault, NotAsked
 from reports.search.mechanisms import of_a_shape
 from reports.search.parts import EVERY, TOGGLE, Recipe, as_text, from_text
 from reports.search.recipe import LEAST_RANK, build, dependence
@@ -77,7 +77,7 @@ class Adapted:
             },
             "motions": lambda: motions.errors(self.engine, mechanism),
         }
-        told = _asked({name: asked[name] for name in ORACLES if name in oracles}, self.engine, room > 1)
+        told = _asked({name: asked[name] for name in ORACLES if name in oracles}, self.engine)
         if room == 1:
             return told
         allowed = {name: (error, min(room * bound, max(MOST, bound))) for name, (error, bound) in told.errors.items()}
@@ -146,9 +146,7 @@ def is_shaped(subject: Subject) -> bool:
     return isinstance(subject, Adapted) and subject.engine.building > 0
 
 
-def _asked(
-    oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], engine: Engine | None, may_give_up: bool = False
-) -> Told:
+def _asked(oracles: dict[str, Callable[[], dict[str, tuple[float, float]]]], engine: Engine | None) -> Told:
     """What these say of an engine, None for MuJoCo alone; an exception is a fault of whoever raised it."""
     errors: dict[str, tuple[float, float]] = {}
     left, words = [], []
@@ -161,9 +159,6 @@ def _asked(
             except Unsupported as reason:
                 return Told(errors, (f"unsupported: {reason}",), "; ".join(words))
             except Fault as reason:
-                if may_give_up and isinstance(reason, Lost):
-                    left.append(f"{name}: {reason}")
-                    continue
                 errors[name] = (np.inf, 0.0)
                 words.append(str(reason))
             except Exception as error:  # whatever an adapter raises that is no refusal is a fault of its own

@@ -18,10 +18,9 @@ from engines import Promise, Size, Unsupported, mjx, registry, single_run
 from engines.conformance.worlds import WORLDS
 from engines.lagrange.engine import TRUTH
 from engines.pinocchio import Model
-from reference.joints import Drive, Gear, Pin, Rod
 from engines.units import counted_in
-from reference.forces import Force, Torque, TorsionSpring
-from reference.joints import Drive, Gear, Pin, Rod, Slot
+from reference.forces import Torque
+from reference.joints import Drive, Gear, Pin, Rod
 from reference.mechanism import Body, Mechanism
 from reference.rolling.roll import Roll
 from reference.scenes.catalogue import scene
@@ -30,6 +29,7 @@ from reports.model.catalogue import PAGES
 from reports.model.cells import QUICK, beside_cells
 from reports.model.ending import BadInput
 from reports.search.mechanisms import mechanism
+from reports.search.parts import FORCES, LINKS
 from tests import mechanisms
 from tests.all_elements import ALONE
 from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
@@ -82,6 +82,16 @@ def test_a_rod_shorter_than_box2ds_slop_is_refused_since_it_would_be_longer():
     body = Body("bob", 1.0, 1e-6, (0.002, 0.0, 0.0))
     with pytest.raises(Unsupported, match=r"'rod'.*0\.002 m"):
         engine.build(Mechanism((body,), (Rod("rod", None, "bob", (0.0, 0.0), (0.0, 0.0), 0.002),)), 1e-3)
+
+
+@pytest.mark.parametrize(("speed", "rate", "told"), [(1e7, 78.0, False), (0.0, 79.0, True)])
+def test_box2d_slows_no_body_down_but_one_that_turns_by_more_than_an_eighth_of_a_turn_in_a_step(speed, rate, told):
+    """That is 78.5 rad/s. Found by the search: speeds above 1e6 m/s were cut by our own limit."""
+    body = Body("free", 1.0, 1.0, (0.0, 0.0, 0.0), (speed, 0.0, rate))
+    run = shipped("box2d").build(Mechanism((body,), ()), 1e-2)(3, 1)
+    assert run.twist[-1, 0, 0] == pytest.approx(speed, rel=1e-6)
+    assert (run.twist[-1, 0, 2] == pytest.approx(rate, rel=1e-6)) != told
+    assert bool(run.warnings) == told
 
 
 def test_an_engine_that_loses_its_numbers_says_when():

@@ -10,11 +10,9 @@ import pymunk
 import pytest
 from pymunk.constraints import GrooveJoint
 
-from engines.pymunk import LEAPFROG, METHODS, Pymunk
-from engines.pymunk.contraction import contraction, contraction_at, contractions, gain, sweeps
-from engines import Promise, Size, Unsupported
-from engines.lagrange import TRUTH, Lagrange
-from engines.pymunk import DEFAULT, EXTENDED, LEAPFROG, METHODS, TUNED, Pymunk
+from engines import Promise
+from engines.lagrange import TRUTH
+from engines.pymunk import DEFAULT, LEAPFROG, METHODS, TUNED, Pymunk
 from engines.pymunk.contraction import LEFT, as_real, contraction, contraction_at, contractions, gain, sweeps
 from engines.pymunk.expected import worst_contraction
 from reference.joints import Drive, Pin, Slot
@@ -25,7 +23,6 @@ from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
 from reference.trajectory import energy, joint_gap
-from reference.trajectory import Trajectory, energy, joint_gap
 from reports.search.mechanisms import mechanism
 from reports.search.parts import EVERY
 from tests.mechanisms import four_bar

@@ -10,10 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from engines import Promise, Run
-from engines.lagrange import Judge, Lagrange
 from engines import Around, Promise, Run
-from engines.lagrange import TRUTH, Lagrange
+from engines.lagrange import TRUTH, Judge, Lagrange
 from engines.mujoco import DEFAULT, EXTENDED, TUNED
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.user_rows import RowWriter
@@ -394,27 +392,24 @@ class Beside(Around):
         return Spoiled(self.engine.build(mechanism, dt), off)
 
 
-@pytest.mark.parametrize(("seed", "number", "oracle"), [(77777, 456, "motions"), (4242, 105, "relations")])
-def test_what_rounding_leaves_where_rows_nearly_depend_on_each_other_is_no_fault_and_twice_as_much_is(
-    seed: int, number: int, oracle: str
-) -> None:
+def test_what_rounding_leaves_where_rows_nearly_depend_on_each_other_is_no_fault_and_twice_as_much_is() -> None:
     """Eight runs of a step, whose weights are 66: a bound that knew neither rows nor weights took this for a fault."""
-
-    def faults_of(engine: Any) -> tuple[str, ...]:
-        return Adapted(engine).ask(mechanisms.recipe(seed, number, EVERY), number, (oracle,)).faults
-
-    own = mechanisms.mechanism(seed, number, EVERY)
-    step = relations.STEP * own.time_scale
-    shaken, fastest = relations._shaken(PYMUNK_EXTENDED, own, 0.0)
-    speed = relations.SAME * float(np.abs(shaken * [1, 1, own.length_scale]).max()) * fastest / step
+    case, own = mechanisms.recipe(77777, 456, EVERY), mechanisms.mechanism(77777, 456, EVERY)
     span = motions.SPAN * own.time_scale / motions.SAMPLES
     truth = TRUTH.build(own, span)(motions.SAMPLES, 1)
     promise = PYMUNK_EXTENDED.order(own)
-    force = motions._force_size(own, truth)
     assert isinstance(promise, Promise)
-    force *= motions._rounded_reactions(own, promise, truth, span / motions.COARSE / 2)
-    assert faults_of(PYMUNK_EXTENDED) == ()
-    assert faults_of(Beside(PYMUNK_EXTENDED, reaction=4 * force, speed=3 * speed))
+    rounded = motions._rounded_reactions(own, promise, truth, span / motions.COARSE / 2)
+    force = 2 * rounded * motions._force_size(own, truth)
+    assert Adapted(PYMUNK_EXTENDED).ask(case, 456, ("motions",)).faults == ()
+    assert Adapted(Beside(PYMUNK_EXTENDED, reaction=force)).ask(case, 456, ("motions",)).faults == ("reactions",)
+
+
+def test_descriptions_that_differ_by_what_rounding_makes_are_no_fault_and_by_much_more_are() -> None:
+    case, own = mechanisms.recipe(4242, 105, EVERY), mechanisms.mechanism(4242, 105, EVERY)
+    speed = 1e-4 * float(np.abs(own.twist).max())
+    assert Adapted(PYMUNK_EXTENDED).ask(case, 105, ("relations",)).faults == ()
+    assert Adapted(Beside(PYMUNK_EXTENDED, speed=speed)).ask(case, 105, ("relations",)).faults == ("turned",)
 
 
 @pytest.mark.parametrize(("seed", "number"), [(77777, 14), (4242, 146)])
