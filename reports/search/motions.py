@@ -5,6 +5,8 @@ The judge moves one mechanism at a time: no two cases are of one shape.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -182,23 +184,25 @@ def _rounded_reactions(mechanism: Mechanism, promise: Promise, truth: Trajectory
 
 
 def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: int) -> bool:
-    """Whether a textbook method of the promised order, or 4, shows it from the steps before these parts to these.
+    """Whether a textbook method of the promised order, or 4, shows it up to these parts: twice, for once may be luck.
 
     A spring that shrinks to nothing for less than a step pushes one way and then the other: what a method makes of that
     depends on where its stages fall, and its error on no power of the step.
     """
-    order = max((each for each in TABLEAUS if each <= promise.order), default=1)
+    own = Promise(max((each for each in TABLEAUS if each <= promise.order), default=1))
     spacing = SPAN * mechanism.time_scale / SAMPLES
+    halved = (parts // 4, parts // 2, parts)
     try:
-        runs = [in_numpy(mechanism, SAMPLES, spacing, order, n * COARSE, None, True) for n in (parts // 2, parts)]
+        runs = [in_numpy(mechanism, SAMPLES, spacing, int(own.order), n * COARSE, None, True) for n in halved]
     except ValueError:  # it went where curves can't touch
         return False
-    coarse, fine = (_apart(mechanism, run, truth, Promise(order)) for run in runs)
-    least = {
-        "motion": _drifted(mechanism, truth, SAMPLES * COARSE * parts) / _size(mechanism, truth, promise),
-        "reactions": _rounded_reactions(mechanism, Promise(order), truth, spacing / COARSE / 2),
-    }
-    return not _misses({n: (fine[n], _may_be(Promise(order), n, coarse[n], least[n])) for n in fine})
+    found = [_apart(mechanism, run, truth, own) for run in runs]
+    drifted = _drifted(mechanism, truth, SAMPLES * COARSE * parts) / _size(mechanism, truth, promise)
+    least = {"motion": drifted, "reactions": _rounded_reactions(mechanism, own, truth, spacing / COARSE / 2)}
+    return not any(
+        _misses({name: (fine[name], _may_be(own, name, coarse[name], least[name])) for name in fine})
+        for coarse, fine in pairwise(found)
+    )
 
 
 def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
