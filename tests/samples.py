@@ -8,7 +8,7 @@ import numpy as np
 
 from engines import Size, registry
 from engines.extrapolated import Extrapolated
-from engines.lagrange import Lagrange
+from engines.lagrange import Judge, Lagrange
 from engines.mujoco.joints.roll import RollContact
 from engines.mujoco.methods import limited_tendon
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
@@ -91,6 +91,6 @@ INSTANCES: tuple[Any, ...] = (
     *(CarWithTrailers(1.0, (1.0,), (0.5,)), Extrapolated(Lagrange(), "mine", (1, 2), (1,))),
     *(Pymunk("mine"), SHIPPED_CONTACT, RollContact()),
     *(limited_groove(5.0), limited_tendon(5.0)),
-    *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9)),
+    *(Shipped(), TiedToStep(), Hardened(), Lagrange("dop853", "projection", 1e-9), Judge()),
     Cell(SCENES[0], registry.ENGINES[0], 1, samples=3),
 )

@@ -221,6 +221,7 @@ def idle(checks: Iterable[Check]) -> Counter[str]:
 # The report's quick steps, and one finer where it is cheap (COST_LIMIT: one run's estimated seconds): the order of a
 # fast motion shows only below its time scale.
 STEPS = (*QUICK, 3 * QUICK[-1])
+FINER = (*FULL, 1000)
 COST_LIMIT = 0.5
 
 
@@ -263,7 +264,7 @@ class Case:
         mechanism = mechanism_of(self.scene)
         alone = is_prescribed(mechanism) and isinstance(self.promise, Promise) and self.promise.of("reaction") == 1
         rigid = self.engine.softness(mechanism, self.scene.spacing) is None
-        steps = FULL if alone and rigid else STEPS
+        steps = FINER if alone and rigid else STEPS
         return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT)
 
 

@@ -85,7 +85,7 @@ def untimed(row):
 
 def test_a_local_cluster_gives_the_same_rows_as_the_pool():
     cells = [Cell(FreeFourBar(), engine, 1, samples=20) for engine in VARIANTS[::3]]
-    cells += [Cell(Disc(), FailingToy(variant), 1) for variant in ("abort", "refuse", "raise")]
+    cells += [Cell(Disc(), toy, 1) for toy in (Toy(), *map(FailingToy, ("abort", "refuse", "raise")))]
     with cluster("local:2") as own:
         there = {row.key: untimed(row) for row in run_cells(cells, supervised=own.supervise)}
         assert own.threads == 2
