@@ -105,7 +105,10 @@ def script(name: str) -> Script:
 
 RECORDED = Path(__file__).parent / "versions.csv"
 FIELDS = ("script", "package", "version", "expected", "found")
-MUJOCO = ("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality")
+MUJOCO = (
+    *("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality"),
+    "mujoco_site_near_origin",
+)
 PYMUNK = ("pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy")
 
 
