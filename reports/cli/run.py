@@ -48,7 +48,7 @@ def run(
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines
     from reports.cli.terminal import Terminal, opened
     from reports.run.cluster import elsewhere, pool
 
@@ -60,6 +60,11 @@ def run(
     cells = choose_cells(scenes, engines, known.pages, full, every or (), step or ())
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
+    if not items:
+        compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
+        methods = ", ".join(dict.fromkeys(f"{each.name} {each.variant}" for each in compared))
+        longer = "" if full else "; --full has what takes longer"
+        raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
     console = Terminal(140)
     with elsewhere(scheduler) as crew, opened(results / STORE) as store:
         store.remember(each.text() for each in known.given)

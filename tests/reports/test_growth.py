@@ -214,7 +214,11 @@ def test_a_cost_is_the_least_of_several_runs_the_first_left_out_and_a_long_run_i
     found = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
     assert found == (pytest.approx(1e-3), 5, pytest.approx(1e-3))
     engine = Slow(clock, [2.5e-3] * 3, [1e-2, 1.5e-2, 5e-3])
-    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (1e-2, 2, pytest.approx(2.5e-3))
+    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (
+        1e-2,
+        2,
+        pytest.approx(2.5e-3),
+    )
     never = Slow(clock, [], [])
     assert repeated_stepping(Cell(Disc(), never, 1), Disc().mechanism(), 0.5, 4e-3) == (0.5, 1, 4e-3)
     assert measuring.process_seconds(lambda: setattr(clock, "now", clock.now + 3.0)) == (pytest.approx(3.0), None)
