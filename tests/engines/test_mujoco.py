@@ -20,7 +20,7 @@ from engines.mujoco.releases import MARK, known_wrong
 from engines.mujoco.solver_check import unsolved
 from engines.tree import spanning_tree
 from reference.forces import Torque
-from reference.joints import Drive, Joint, Pin, Rod
+from reference.joints import Drive, Joint, Pin, Rod, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.n_four_bar import NFourBar
@@ -125,6 +125,34 @@ def test_who_listened_to_mujocos_warnings_before_a_run_does_so_afterwards() -> N
 def test_no_more_is_built_than_the_mechanism_has(engine: MuJoCo, own: Mechanism, size: tuple[int, ...]) -> None:
     built = engine.build(own, 1e-3).size
     assert (built.bodies, built.coordinates, built.rows, built.solver_rows) == size
+
+
+def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_first() -> None:
+    mechanism = FREE.mechanism()
+    turned = tuple(
+        replace(pin, first=pin.second, second=None, first_point=pin.second_point, second_point=pin.first_point)
+        if isinstance(pin, Pin) and pin.first is None
+        else pin
+        for pin in mechanism.joints
+    )
+    motions = [FREE_COORDINATES.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
+    # The rows are the negative ones, and the anchor is rounded in another frame.
+    assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
+    grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
+    signs = np.where(grounded, -1.0, 1.0)
+    assert np.abs(motions[0].reaction - signs * motions[1].reaction).max() < 1e-6
+
+
+def test_a_resting_line_at_any_angle_holds_the_centre_of_a_free_body() -> None:
+    angle, along = 0.6, np.array([np.cos(0.6), np.sin(0.6)])
+    bead = Body("bead", 2.0, 0.1, (0.2, 0.3, 0.0), (0.5 * along[0], 0.5 * along[1], 3.0))
+    slot = Slot("wire", None, "bead", (0.2, 0.3), angle, (0.0, 0.0))
+    mechanism = Mechanism((bead,), (slot,), (0.0, -9.81))
+    motion = FREE_COORDINATES.build(mechanism, 1e-3)(20, 10)
+    way = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
+    # What is left of the compliance: the weight across the wire over the hardened spring's stiffness.
+    assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - way[:, None] * along).max() < 1e-7
+    assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
 
 def test_a_weld_is_no_coordinate_of_the_tree() -> None:
