@@ -208,8 +208,7 @@ def test_tuned_mujoco_solves_the_softer_problem_of_the_worst_random_tree():
     rows, soft = rows[held], data.efc_R[held]
     mass = full_inertia(compiled, data)
     felt = rows @ np.linalg.solve(mass, rows.T)
-    assert np.linalg.eigvalsh(felt)[0] == pytest.approx(0.0046, abs=5e-5)
-    assert soft.max() == pytest.approx(0.0033, abs=5e-5)
+    assert soft.max() / np.linalg.eigvalsh(felt)[0] == pytest.approx(0.71, abs=5e-3)
     fall = np.linalg.solve(mass, data.qfrc_smooth)
     force = np.linalg.solve(felt + np.diag(soft), data.efc_aref[held] - rows @ fall)
     wanted = fall + np.linalg.solve(mass, rows.T @ force)
