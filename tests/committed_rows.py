@@ -31,7 +31,7 @@ def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
     found: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for errors, timings in zip(_lines("errors.csv"), _lines("timings.csv"), strict=True):
         line = errors | timings
-        key = (line["scene"], line["engine"], line["variant"], line["purpose"], line["samples"], line["every"])
+        key = (line["scene"], line["engine"], line["variant"], line["samples"], line["every"])
         found.setdefault(key, []).append(line)
     return found
 
@@ -64,7 +64,7 @@ def answer_to(task: Task) -> Answer:
 
 def _lines_of(cell: Cell) -> list[dict[str, str]]:
     engine = cell.engine
-    named = (cell.scene.name, engine.name, engine.variant, cell.purpose, str(cell.sample_count), str(cell.every))
+    named = (cell.scene.name, engine.name, engine.variant, str(cell.sample_count), str(cell.every))
     return _stored().get(named, [])
 
 
