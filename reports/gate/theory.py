@@ -265,7 +265,7 @@ class Case:
         alone = is_prescribed(mechanism) and isinstance(self.promise, Promise) and self.promise.of("reaction") == 1
         rigid = self.engine.softness(mechanism, self.scene.spacing) is None
         steps = FINER if alone and rigid else STEPS
-        return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT)
+        return sweep_cells((self.scene,), (self.engine,), steps, COST_LIMIT, math.inf)
 
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:

@@ -126,15 +126,19 @@ def mechanism_of(scene: Scene) -> Mechanism:
 
 
 def sweep_cells(
-    scenes: Iterable[Scene], engines: Iterable[Engine], steps: Iterable[int], cost_limit: float = COST_LIMIT
+    scenes: Iterable[Scene],
+    engines: Iterable[Engine],
+    steps: Iterable[int],
+    cost_limit: float = COST_LIMIT,
+    divided: float = DIVIDED,
 ) -> tuple[Cell, ...]:
     """Every scene in every engine at every number of steps per sample, cheap steps first.
 
     The coarsest step is always there, the other QUICK ones while their estimated cost stays below COST_LIMIT; finer
-    ones while it stays below `cost_limit`, and the promised order still has something to win (DIVIDED).
+    ones while it stays below `cost_limit`, and the promised order has divided the error by no more than `divided`.
     """
     engines, scenes = tuple(engines), tuple(scenes)
-    return tuple(_sweep(scenes, engines, tuple(steps), cost_limit))
+    return tuple(_sweep(scenes, engines, tuple(steps), cost_limit, divided))
 
 
 # Of engines that are extras: no cell that takes longer than this [s], building included.
@@ -158,7 +162,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
 
 
 def _sweep(
-    scenes: tuple[Scene, ...], engines: tuple[Engine, ...], steps: tuple[int, ...], cost_limit: float
+    scenes: tuple[Scene, ...], engines: tuple[Engine, ...], steps: tuple[int, ...], cost_limit: float, divided: float
 ) -> Iterator[Cell]:
     for every in sorted(steps):
         for scene in scenes:
@@ -167,7 +171,7 @@ def _sweep(
                 if every <= max(QUICK):
                     wanted = every == min(steps) or estimated_cost(cell) <= max(cost_limit, COST_LIMIT)
                 else:
-                    wanted = estimated_cost(cell) <= cost_limit and every ** _promised_order(scene, engine) <= DIVIDED
+                    wanted = estimated_cost(cell) <= cost_limit and every ** _promised_order(scene, engine) <= divided
                 if wanted:
                     yield cell
 

@@ -131,7 +131,8 @@ def render_all(
     made_by: dict[str, Engine] = {}
     for page, material in pages.items():
         files.update(made[page.name] if page.name in made else render_page(page, material, command))
-        rows.update({row.key: row for row in material.rows.values()})
+        # What one page takes for an experiment is another's sweep: the file has it there.
+        rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
         made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
     files["index.md"] = render_index(pages, command, files)
