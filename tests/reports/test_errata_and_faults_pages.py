@@ -28,7 +28,7 @@ from reports.pages.errata.page import SNIPPETS, digits, table
 from reports.pages.faults import experiments, scripts
 from reports.pages.faults.experiments import CASES, KINDS, Bead, Equalities, Grooves
 from reports.pages.faults.page import PAGE, SCRIPTS
-from reports.pages.faults.scripts import RELEASES, found_with, recorded
+from reports.pages.faults.scripts import ASKED, found_with, recorded
 from reports.pages.rendering import render_page
 from reports.write.templates import TEMPLATES
 from tests.committed_rows import answer_to
@@ -146,7 +146,7 @@ def test_a_script_whose_extra_is_missing_is_not_asked_for_and_its_page_and_answe
 
 def test_what_releases_find_is_in_step_with_the_scripts(material: Material) -> None:
     rows = {(row.script, row.package, row.version): row for row in recorded()}
-    assert set(rows) == {(name, package, version) for package, version, names in RELEASES for name in names}
+    assert set(rows) == {(name, package, version) for package, version, names in ASKED for name in names}
     for name, task in SCRIPTS.items():
         answer = material.answers[task]
         if not_here(name):
@@ -160,16 +160,16 @@ def test_each_fault_is_wrong_in_the_releases_that_the_page_names() -> None:
     def wrong(name: str) -> set[str]:
         return {row.version for row in recorded() if row.script == name and not row.right}
 
-    every = {version for package, version, _ in RELEASES if package != "pymunk"}
+    every = {version for package, version, _ in ASKED if package != "pymunk"}
     assert wrong("mujoco_loop") == {"3.3.0", "3.6.0"}
     assert wrong("mujoco_sparse") == {"4.0.0"}
     assert wrong("mujoco_joint_equality") == wrong("mujoco_tendon_equality") == every
     for name in ("pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy"):
-        assert wrong(name) == {version for package, version, _ in RELEASES if package == "pymunk"}
+        assert wrong(name) == {version for package, version, _ in ASKED if package == "pymunk"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("release", RELEASES, ids=lambda release: " ".join(release[:2]))
+@pytest.mark.parametrize("release", ASKED, ids=lambda release: " ".join(release[:2]))
 def test_releases_find_again_what_was_recorded(release: tuple[str, str, tuple[str, ...]]) -> None:
     kept = {row.script: row for row in recorded() if (row.package, row.version) == release[:2]}
     for row in found_with(*release):

@@ -122,7 +122,7 @@ def _telling(engine: str) -> list[str]:
 
 # (distribution, version, scripts). MuJoCo's distribution of this name is a bundle from its fourth version on.
 BUNDLED = numbers("4")
-RELEASES = (
+ASKED = (
     *(("mujoco-core" if numbers(each) >= BUNDLED else "mujoco", each, MUJOCO) for each in _telling("mujoco")),
     *(("pymunk", each, PYMUNK) for each in _telling("pymunk")),
 )
@@ -172,7 +172,7 @@ def found_with(package: str, version: str, scripts: Iterable[str]) -> list[Found
 
 def main() -> None:
     """Write the file anew; nothing is written unless every version could be run."""
-    rows = [found for release in RELEASES for found in found_with(*release)]
+    rows = [found for release in ASKED for found in found_with(*release)]
     with RECORDED.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(FIELDS)
