@@ -15,8 +15,11 @@ def starts_at_rest(mechanism: Mechanism) -> bool:
 
 @validated
 def is_prescribed(mechanism: Mechanism) -> bool:
-    """Whether joints and drives leave no freedom, so that forces have no say in the motion."""
-    return mechanism.degrees_of_freedom()[1] == 0
+    """Whether joints and drives leave no pose free, so that forces have no say, and nothing is left to be integrated.
+
+    With a skate velocities may be prescribed, and poses not: they are what the integrator makes of the velocities.
+    """
+    return mechanism.degrees_of_freedom()[0] == 0
 
 
 @validated

@@ -23,7 +23,7 @@ from engines.lagrange.dynamics import (
 )
 from engines.lagrange.loading import compiled, installed
 from engines.lagrange.machine import Machine, left_open, not_held
-from engines.motions import over_three
+from engines.motions import is_prescribed, over_three
 from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
 from reference.joints import Joint
 from reference.kinds import Rule
@@ -94,20 +94,19 @@ class Lagrange(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> Promise | Unpromised:
-        """The integrator's; a projection leaves no gap, and all of the motion is its own where poses are prescribed.
-        A skate may leave no velocity free and yet poses, which the integrator makes of the velocities.
+        """The integrator's; a projection leaves no gap, and all of the motion is its own where nothing is free.
 
         Baumgarte's spring is tied to the step, and turns a gap into an acceleration divided by the step squared: that
         costs two orders, and the reactions all.
         """
         if self.tolerance is not None:
             return Unpromised("its steps are its own: the error is that of its tolerance, whatever the step asked for")
-        order, posed = ORDERS[self.integrator], mechanism.degrees_of_freedom()[0] > 0
+        order, prescribed = ORDERS[self.integrator], is_prescribed(mechanism)
         match self.stabilisation:
             case "projection":
-                return Promise(order, gap=EXACT, slip=EXACT) if posed else Promise(EXACT)
+                return Promise(EXACT) if prescribed else Promise(order, gap=EXACT, slip=EXACT)
             case "baumgarte" if order == 1:
-                return Promise(1, gap=2) if posed else Promise(2, rate=1, slip=1, energy=1, reaction=1)
+                return Promise(2, rate=1, slip=1, energy=1, reaction=1) if prescribed else Promise(1, gap=2)
             case "baumgarte" if order == 4:
                 return Promise(2, rate=1, slip=1, energy=1, reaction=0)
             case "baumgarte":

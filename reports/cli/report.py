@@ -127,10 +127,12 @@ def search_files(results: Path, publish: bool = False) -> dict[str, str]:
         return {}
     from reports.pages.index import foot
     from reports.run.store import Store
+    from reports.search import plan
     from reports.search.page import files, read
 
+    planned = sum(piece.count for piece in plan.published()) if publish else 0
     with Store.read(place) as store:
-        return files(*read(store, publish), foot("crosscheck search"))
+        return files(*read(store, publish), foot("crosscheck search"), planned)
 
 
 def published() -> Path:

@@ -75,6 +75,10 @@ def search(
         raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
     if fresh and (seconds is None or published or seed is not None):
         raise BadInput("--fresh needs --seconds, and takes no --seed and no --published: it draws seeds until then")
+    if published and any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != ALL_ORACLES)):
+        raise BadInput(
+            "--published takes --seconds, --workers, --scheduler and --results alone: what is asked is fixed"
+        )
     every = (fresh or published) and engine is None and variant is None
     subjects = plan.everything() if every else chosen(engine, variant)
     if release is not None:

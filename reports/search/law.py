@@ -59,23 +59,40 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     return Constrained(motion.reshape(-1, 3), force)
 
 
+@dataclass(frozen=True, eq=False)
+class Response:
+    """What joints make of rows that miss by so much: motions M^-1 J^T A^-1 (3 bodies, rows), and forces A^-1 (rows,
+    rows), with A = J M^-1 J^T + give give^T."""
+
+    motion: Array
+    force: Array
+
+
+def response(rows: Array, inertias: Array, give: Array | None = None) -> Response:
+    """By the SVD of J M^(-1/2), as in `constrained`: the larger the more nearly rows depend on each other, and the
+    farther masses are apart."""
+    root = np.sqrt(inertias.reshape(-1))
+    matrix = rows / root
+    norm = np.linalg.norm(matrix, axis=1)
+    if not len(rows):
+        return Response(np.zeros((len(root), 0)), np.zeros((0, 0)))
+    given = matrix if give is None else np.hstack([matrix, give])
+    left, sizes, turned = np.linalg.svd(given / norm[:, None], full_matrices=False)
+    motion = (turned.T[: len(root)] / sizes) @ left.T / norm / root[:, None]
+    return Response(motion, (left / sizes**2) @ left.T / norm / norm[:, None])
+
+
 def carried(mechanism: Mechanism, pose: Array, wrong: Array) -> Constrained:
     """What numbers that are `wrong` (bodies, 3) by so much leave in motions (bodies, 3), and in impulses (rows,).
 
-    Each row is then wrong by e, the sum of its sizes times these, and joints that set it right move bodies by
-    M^-1 J^T A^-1 e with impulses A^-1 e, A = J M^-1 J^T: the more the more nearly rows depend on each other, and the
-    farther masses are apart. Rounding has no sign, so squares are added. A motion is wrong by its numbers at least.
+    Each row then misses by e, the sum of its sizes times these, and joints that set it right move bodies (`response`).
+    Rounding has no sign, so squares are added. A motion is wrong by its numbers at least.
     """
-    rows, root = mechanism.rows(pose), np.sqrt(mechanism.inertias.reshape(-1))
-    if not len(rows):
-        return Constrained(wrong, np.zeros(0))
-    matrix = rows / root
-    norm = np.linalg.norm(matrix, axis=1)
-    left, sizes, turned = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
-    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1) / norm
-    change = np.linalg.norm(((turned.T / sizes) @ left.T) * missed, axis=1) / root
-    impulse = np.linalg.norm(((left / sizes**2) @ left.T) * missed, axis=1) / norm
-    return Constrained(np.maximum(wrong, change.reshape(-1, 3)), impulse)
+    rows = mechanism.rows(pose)
+    back = response(rows, mechanism.inertias)
+    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1)
+    moved = np.linalg.norm(back.motion * missed, axis=1).reshape(-1, 3)
+    return Constrained(np.maximum(wrong, moved), np.linalg.norm(back.force * missed, axis=1))
 
 
 def rounded(
@@ -100,19 +117,12 @@ def rounded(
     where products of absolute values are meant. Rounding has no sign, so squares are added.
     """
     unit = ROUNDINGS * np.finfo(float).eps
-    root, motion = np.sqrt(inertias.reshape(-1)), law.motion.reshape(-1)
-    pushed = unit * np.sqrt((rows**2).T @ law.force**2 + (root**2 * free.reshape(-1)) ** 2)
-    pushed = (pushed + doubt[1].reshape(-1)) / root
-    if not len(rows):
-        return Constrained((pushed / root).reshape(-1, 3), np.zeros(0))
-    matrix = rows / root
-    norm = np.linalg.norm(matrix, axis=1)
-    left, sizes, turned = np.linalg.svd(np.hstack([matrix, give]) / norm[:, None], full_matrices=False)
-    lacking = (unit * np.sqrt(rows**2 @ motion**2 + right**2) + doubt[0]) / norm
-    held, back = turned[:, : len(root)], left.T * lacking
-    moved = np.hstack([(held.T / sizes) @ back, (np.eye(len(root)) - held.T @ held) * pushed])
-    pulled = np.hstack([(left / sizes**2) @ back, (left / sizes) @ (held * pushed)])
-    return Constrained((np.linalg.norm(moved, axis=1) / root).reshape(-1, 3), np.linalg.norm(pulled, axis=1) / norm)
+    inverse, motion, back = 1 / inertias.reshape(-1), law.motion.reshape(-1), response(rows, inertias, give)
+    pushed = unit * np.sqrt((rows**2).T @ law.force**2 + (free.reshape(-1) / inverse) ** 2) + doubt[1].reshape(-1)
+    lacking = unit * np.sqrt(rows**2 @ motion**2 + right**2) + doubt[0]
+    moved = np.hstack([back.motion * lacking, (np.eye(len(motion)) - back.motion @ rows) * inverse * pushed])
+    pulled = np.hstack([back.force * lacking, back.motion.T * pushed])
+    return Constrained(np.linalg.norm(moved, axis=1).reshape(-1, 3), np.linalg.norm(pulled, axis=1))
 
 
 def written(mechanism: Mechanism, away: float = 0.0) -> Array:

@@ -22,10 +22,10 @@ from reports.search.law import (
     Fault,
     NotAsked,
     carried,
-    constrained,
     difference,
     driving_force,
     force_difference,
+    response,
     turned_in_a_step,
     written,
 )
@@ -213,15 +213,14 @@ def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
     steps do. Of e a step leaves P e, P = 1 - H with H = M^-1 J^T (J M^-1 J^T)^-1 J, which the next ones keep; rounding
     of the last gap leaves H e. So a rounded place turns a body by it over its arm, far more than an angle is rounded.
     """
-    root, turn = np.sqrt(mechanism.inertias.reshape(-1)), np.array([1.0, 1.0, mechanism.length_scale])
+    turn = np.array([1.0, 1.0, mechanism.length_scale])
     least = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])  # arms, and the cosine of an angle
     worst = 0.0
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
         numbers = np.maximum(np.abs(pose), least) + np.abs(twist) * SPAN * mechanism.time_scale
-        rows = mechanism.rows(pose) / root
-        turned = np.linalg.svd(rows / np.linalg.norm(rows, axis=1)[:, None], full_matrices=False)[2]
-        held = turned.T @ turned
-        carried = (steps * np.abs(np.eye(len(root)) - held) + np.abs(held)) @ (root * numbers.reshape(-1)) / root
+        rows = mechanism.rows(pose)
+        held = response(rows, mechanism.inertias).motion @ rows
+        carried = (steps * np.abs(np.eye(len(held)) - held) + np.abs(held)) @ numbers.reshape(-1)
         worst = max(worst, float((carried.reshape(-1, 3) * turn).max()))
     return np.finfo(float).eps * worst
 
@@ -236,7 +235,8 @@ def _given_way(softness: Softness, mechanism: Mechanism, truth: Trajectory) -> f
     own = np.sum(mechanism.rows(mechanism.pose) ** 2 / mechanism.inertias.reshape(-1), axis=1)
     pulled = softness.compliance * own * np.abs(np.nan_to_num(truth.reaction)).max(axis=0)
     gap = pulled / np.where(mechanism.holonomic, softness.stiffness, softness.damping / truth.t[-1])
-    return float((_answer(mechanism, gap, softness.rows)[0] * [1.0, 1.0, mechanism.length_scale]).max())
+    moved = np.abs(response(mechanism.rows(mechanism.pose), mechanism.inertias).motion) @ (gap * softness.rows)
+    return float((moved.reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]).max())
 
 
 def _rounded_gaps(softness: Softness, mechanism: Mechanism) -> float:
@@ -244,18 +244,9 @@ def _rounded_gaps(softness: Softness, mechanism: Mechanism) -> float:
     far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
     gap = ROUNDINGS * np.finfo(float).eps * np.where(mechanism.turning, 1.0, far)
     arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
-    asked = softness.stiffness * gap * mechanism.holonomic
-    return float((_answer(mechanism, asked, softness.rows)[1] * arms).max(initial=0.0))
-
-
-def _answer(mechanism: Mechanism, right: Array, which: tuple[bool, ...]) -> tuple[Array, Array]:
-    """The most that `right` (rows,) of these rows makes of motions (bodies, 3) and of forces (rows,)."""
-    rows, still = mechanism.rows(mechanism.pose), np.zeros_like(mechanism.pose)
-    motion, force = still, np.zeros(len(rows))
-    for row in np.flatnonzero(which):
-        law = constrained(rows, right * (np.arange(len(rows)) == row), mechanism.inertias, still)
-        motion, force = motion + np.abs(law.motion), force + np.abs(law.force)
-    return motion, force
+    asked = softness.stiffness * gap * mechanism.holonomic * softness.rows
+    force = np.abs(response(mechanism.rows(mechanism.pose), mechanism.inertias).force) @ asked
+    return float((force * arms).max(initial=0.0))
 
 
 def _gives_way(engine: Engine, mechanism: Mechanism, dt: float) -> bool:

@@ -17,7 +17,8 @@ from reports.model.tasks import Answer
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.store import Store
 from reports.search import plan
-from reports.search.chunk import HEADER, Asked, asked, from_words, left_out, refused, stored, summary
+from reports.search.chunk import FOUND, HEADER, Asked, asked, from_words, left_out, refused, stored, summary
+from reports.search.chunk import findings as found_lines
 from reports.search.mechanisms import SHAPES
 from reports.search.planted import FAULTS, SIZES, Control, controls
 from reports.search.recipe import LEAST_RANK, NEAREST
@@ -42,8 +43,9 @@ def distribution(told: Iterable[Asked], theme: Theme = LIGHT) -> Figure | None:
     rows: list[tuple[list[str], list[str]]] = []  # (subjects, kinds) of a row of panels: those of one vocabulary
     for kinds in dict.fromkeys(vocabulary.values()):
         own = [name for name in found if vocabulary[name] == kinds]
-        shown = [kind for kind in kinds if any(kind in found[name] for name in own)]
-        rows += [(own[first : first + ACROSS], shown) for first in range(0, len(own), ACROSS)]
+        for first in range(0, len(own), ACROSS):
+            beside = own[first : first + ACROSS]
+            rows.append((beside, [kind for kind in kinds if any(kind in found[name] for name in beside)]))
     heights = [BETWEEN + LINE * len(kinds) for _, kinds in rows]
     with settings():
         figure = new_figure(0.5 + sum(heights), theme)
@@ -127,14 +129,16 @@ def files(
     findings: Sequence[tuple[Shrink, Answer]],
     planted: Mapping[Control, Answer],
     foot: str,
+    planned: int = 0,
 ) -> dict[str, str]:
-    """search.md and its picture, by name; nothing of a search that asked nothing."""
+    """search.md and its picture, by name; nothing of a search that asked nothing. `planned`: 0 for no plan."""
     if not told:
         return {}
     picture = distribution(told)
     out = {} if picture is None else {"search_errors.svg": svg(picture, "Errors by engine and kind of joint")}
     page = {
         "cases": len(told),
+        "planned": max(planned, len(told)),
         "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
         "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
         "rank": f"{LEAST_RANK:g}",
@@ -149,6 +153,8 @@ def files(
         "picture": next(iter(out), ""),
         "header": HEADER,
         "lines": summary(told),
+        "found_header": FOUND,
+        "found": [line for line in found_lines(told) if line[0] != plan.GROOVE.name],
         "findings": [_finding(task, answer) for task, answer in _one_of_each(findings)],
     }
     template = environment(Path(__file__).parent).get_template("own/page.md")

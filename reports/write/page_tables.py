@@ -227,7 +227,7 @@ def _table(
 def _cell(
     page: Page, scene: str, rows: Sequence[Measurement], engine: str, variant: str, steps: Mapping[str, float]
 ) -> str:
-    """'saturated, 0.044, 0.01; plateau 0.011; engine', or the outcomes where no step gave an answer."""
+    """'0.044, 0.01; plateau 0.011; engine', or the outcomes where no step gave an answer."""
     members = [row for row in rows if (row.engine, row.variant) == (engine, variant)]
     if not members:
         return NOTHING

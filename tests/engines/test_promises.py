@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 
 import pytest
@@ -15,7 +16,7 @@ from engines.mujoco.methods import DRIVES, ROLLS, SKATES
 from engines.pymunk import methods as pymunk_methods
 from engines.pymunk.methods import SKATE_PROJECTED
 from reference.forces import Torque
-from reference.joints import Drive, Joint, Pin, Slot
+from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.rolling.elliptic_gears import EllipticGears
@@ -50,6 +51,15 @@ def told(engine, mechanism) -> dict[str, float]:
 def test_a_motion_is_known_by_its_joints_loads_and_start():
     assert [starts_at_rest(each) for each in (FREE, MOVING, DRIVEN, SPINNING)] == [True, False, False, False]
     assert [is_prescribed(each) for each in (FREE, MOVING, DRIVEN, SKATE, GEARS)] == [False, False, True, False, True]
+    # Two blades leave a body one velocity, about the point where they meet across, and a drive none.
+    # Its poses are free.
+    blades = (Skate("right", None, "body", (1.0, 0.0), 0.0), Skate("up", None, "body", (0.0, 1.0), math.pi / 2))
+    body = Body("body", 1.0, 0.5, (0.0, 0.0, 0.0), (2.0, -2.0, 2.0))
+    driven = Mechanism((body,), (*blades, Drive("drive", None, "body", 2.0, 0.0)))
+    assert driven.degrees_of_freedom() == (2, 0)
+    assert not is_prescribed(driven)
+    lagrange = Lagrange("rk4", "projection")
+    assert lagrange.order(driven) == lagrange.order(SKATE) != lagrange.order(DRIVEN)
     assert [turns_steadily(each) for each in (SPINNING, HANGING, MOVING, SKATE)] == [True, False, False, False]
     assert not turns_steadily(replace(SPINNING, gravity=(0.0, -9.81)))
     assert not turns_steadily(replace(SPINNING, forces=(Torque("brake", None, "disc", -1.0),)))
