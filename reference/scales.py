@@ -6,13 +6,16 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
-from reference.joints import Body, Drive, Joint, Rod, Vector
+from reference.joints import Body, Drive, Joint, Rod, Roll, Vector
+
+ROUNDED = 1e-12  # of a curve's radius: less than that is what rounding makes of a contact at a centre of mass
 
 
 def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
     """The largest of rods and of distances between two points of one body at which something is joined or pulls [m].
 
-    The centre of mass is one of these points. Where all of them are one, the largest rest length; or 1.
+    The centre of mass is one of these points. Where all of them are one, the largest rest length or radius of curvature
+    where something rolls; or 1.
     """
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
     for joint in (*joints, *forces):
@@ -21,7 +24,17 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
                 points[name].add(getattr(joint, point))
     rods = [joint.length for joint in joints if isinstance(joint, Rod)]
     rests = [force.rest_length for force in forces if isinstance(force, Spring)]
-    return max((*map(diameter, points.values()), *rods), default=0.0) or max(rests, default=0.0) or 1.0
+    rolls = [joint.rolling for joint in joints if isinstance(joint, Roll)]
+    bent = [
+        abs(float(curve.curvature(arc)))
+        for rolling in rolls
+        for curve, arc in ((rolling.ground, rolling.ground_arc), (rolling.body, rolling.body_arc))
+    ]
+    radii = [1 / each for each in bent if each]
+    largest = max((*map(diameter, points.values()), *rods), default=0.0)
+    if largest <= ROUNDED * max(radii, default=0.0):
+        return max((*rests, *radii), default=0.0) or 1.0
+    return largest
 
 
 def time_scale(

@@ -81,6 +81,8 @@ class Windows:
         first, count = int(self._records[which, 1]), int(self._records[which, 2])
         if first <= wanted < first + count:  # it was there, so it is a cell without numbers
             return False
+        if abs(wanted - first) * table.width > 2 * math.pi:  # a motion that is lost asks far away, and never again
+            count = 0
         # A block on either side at first, then twice as far each time: cells take longer to make than short motions do.
         about = min(max(BLOCK, count), MOST_CELLS // 2)
         low, high = wanted - about, wanted + about

@@ -26,15 +26,18 @@ from engines.lagrange.arrays import (
     TWIST,
     TWIST_UNIT,
     VELOCITY,
+    WANTED_ANGLE,
     WANTED_ROLL,
 )
 from engines.lagrange.compiled.inner import inner
+from engines.lagrange.compiled.rows import rotation
 from engines.lagrange.compiled.steps import accelerations, add_stages, evaluate_stage, project_onto_joints
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 MOST_STEPS = 20_000  # accepted or not, between two samples; a second of stepping for a few bodies
 EACH_SAMPLE = 1_000  # accepted ones that each sample adds to these: a run of many samples comes to its end too
 ROUNDING = 2.2e-16
+FARTHEST_STAGE = 1.0  # rad from the step's begin: other radii touch there, so that no such step holds a tolerance
 STIFF_PRODUCT, STIFF_STEPS = 6.1, 15  # step times largest eigenvalue at the border of stability, so often met
 
 
@@ -65,6 +68,11 @@ def adaptive_steps(
         real[status + SMALLEST] = 1.0
         for stage in range(1, 12):
             evaluate_stage(whole, real, cells, stages, nodes, stage, pose, twist, t, dt)
+            if real[status + WANTED_ROLL] >= 0:
+                break
+        if _went_astray(whole, real, pose):
+            step, rejected = LEAST_FACTOR * dt, True
+            continue
         for k in range(columns):
             real[new + k], real[fast + k] = real[pose + k], real[twist + k]
         add_stages(whole, real, weights, dt, new, fast)
@@ -131,6 +139,17 @@ def adaptive_steps(
 
 
 @inner
+def _went_astray(whole, real, pose):
+    """Whether a stage asked for a contact so far from that in a pose that it is no part of the motion; no table is."""
+    status = whole[STATUS]
+    wanted = real[status + WANTED_ROLL]
+    if wanted < 0 or abs(real[status + WANTED_ANGLE] - rotation(whole, real, wanted, pose)) <= FARTHEST_STAGE:
+        return False
+    real[status + WANTED_ROLL] = -1.0
+    return True
+
+
+@inner
 def _square(value):
     return value * value
 
@@ -161,6 +180,8 @@ def _first_step(whole, real, cells, t, tolerance, longest):
         real[new + k] = real[pose + k] + guess * real[velocity + k]
         real[fast + k] = real[twist + k] + guess * real[acceleration + k]
     accelerations(whole, real, cells, new, fast, t + guess, acceleration + columns)
+    if _went_astray(whole, real, pose):
+        return 1e-3 * guess
     for k in range(columns):
         real[new + k] = (real[fast + k] - real[twist + k]) / guess
         real[fast + k] = (real[acceleration + columns + k] - real[acceleration + k]) / guess

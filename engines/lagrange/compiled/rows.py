@@ -158,6 +158,16 @@ def roll_rows(whole, real, cells, record, pose, twist):
 
 
 @inner
+def rotation(whole, real, which, pose):
+    """The angle of a roll's second body against the first in a pose."""
+    for joint in range(whole[JOINTS]):
+        record = whole[JOINT_AT] + JOINT * joint
+        if whole[record] == ROLL and whole[record + 4] == which:
+            return real[pose + whole[record + 2] + 2] - real[pose + whole[record + 1] + 2]
+    return math.nan
+
+
+@inner
 def contact(whole, real, cells, which, theta):
     """P, P', P'', the tangent e_t and its turning in a radian, in the first body's frame; NaN without a cell.
 

@@ -52,9 +52,11 @@ def accelerations(whole, real, cells, pose, twist, t, out):
             real[whole[RIGHT] + row] -= value + real[whole[LACKING] + row] * real[whole[BIAS] + row]
     whole[WHICH] = ALL
     solve(whole, real, False, False)
-    change = whole[CHANGE]
-    for k in range(whole[COLUMNS]):
+    change, ground = whole[CHANGE], whole[COLUMNS] - 3
+    for k in range(ground):
         real[out + k] += real[change + k]
+    for k in range(ground, ground + 3):  # zero times a stage that was lost would stay there, and in all that follow
+        real[out + k] = 0.0
 
 
 @inner
