@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from engines import Engine, Promise, Softness, Unpromised
 from engines.lagrange import HELD, TRUTH
+from engines.remembered import by_identity
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -45,6 +46,7 @@ LEAST = {"motion": 1e-8, "reactions": 1e-5}
 # rounding that grows with shorter steps excuses no more than it does at the first.
 FINEST = 64
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
+ASKED = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
 
 
@@ -62,7 +64,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         raise NotAsked(f"no order is promised: {promise.reason}")
     if _gives_way(engine, mechanism, dt):
         raise NotAsked("joints give way as the engine says, by the same at every step")
-    truth = TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
+    truth = judged(mechanism)
     if not np.isfinite(truth.pose).all():
         raise NotAsked("the judge itself finds no motion")
     if truth.unresolved_at is not None:
@@ -92,6 +94,12 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         missed = _apart(mechanism, run, truth, promise)["motion"]
         out["estimate"] = (missed, min(ESTIMATED * told + LEAST["motion"], LOST))
     return out
+
+
+@by_identity(ASKED)
+def judged(mechanism: Mechanism) -> Trajectory:
+    """What the judge says of a mechanism, which many engines are asked about."""
+    return TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
 
 
 def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Trajectory:

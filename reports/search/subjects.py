@@ -5,6 +5,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -63,11 +64,11 @@ class Adapted:
     def draw(self, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
         if is_shaped(self):
             return of_a_shape(self.engine, seed, number, kinds, decades)
-        return mechanisms.recipe(seed, number, kinds, decades)
+        return _drawn(seed, number, kinds, decades)
 
     def ask(self, case: Recipe, number: int, oracles: Sequence[str]) -> Told:
         """All that these oracles ask of one case. Raises InvalidMechanism for a case that is none."""
-        mechanism = build(case)
+        mechanism = _built(case)
         room = _room(mechanism) if TOGGLE in case.kinds else 1.0
         asked: dict[str, Callable[[], dict[str, tuple[float, float]]]] = {
             "instant": lambda: _instant(at_an_instant(self.engine, mechanism), mechanism, room),
@@ -128,6 +129,8 @@ class Alone:
 
 
 Subject = Adapted | Alone
+# One mechanism for all engines that are asked: its tables of curves that roll, and what the judge says of it, are kept.
+_drawn, _built = lru_cache(motions.ASKED)(mechanisms.recipe), lru_cache(motions.ASKED)(build)
 
 
 def _room(mechanism: Mechanism) -> float:
