@@ -82,6 +82,22 @@ def response(rows: Array, inertias: Array, give: Array | None = None) -> Respons
     return Response(motion, (left / sizes**2) @ left.T / norm / norm[:, None])
 
 
+def lost_in_products(mechanism: Mechanism, pose: Array) -> float:
+    """Which part of forces, or of what closes a gap, rounding of A = J M^-1 J^T may change, whoever forms it.
+
+    Its sums are rounded by dA = eps |J| M^-1 |J^T|, in which a body that is far from its joint, beside its radius of
+    gyration, leaves nothing of its mass. So f of A f = b changes by |A^-1| dA |f| (Higham 2002, theorem 7.4), beside
+    the largest of f sqrt(diag A), in which rows of any unit are alike. Bodies move as forces do.
+    """
+    rows, light = mechanism.rows(pose), 1 / mechanism.inertias.reshape(-1)
+    if not len(rows):
+        return 0.0
+    size = np.sqrt(rows**2 @ light)
+    inverse = np.abs(response(rows, mechanism.inertias).force) * np.outer(size, size)
+    products = (np.abs(rows) * light) @ np.abs(rows.T) / np.outer(size, size)
+    return float(np.finfo(float).eps * (inverse @ products).sum(axis=1).max())
+
+
 def carried(mechanism: Mechanism, pose: Array, wrong: Array) -> Constrained:
     """What numbers that are `wrong` (bodies, 3) by so much leave in motions (bodies, 3), and in impulses (rows,).
 
