@@ -222,7 +222,7 @@ def test_a_symptom_leads_to_a_section_that_is_there(symptom):
     assert not symptom.heading or place in {anchor(heading) for heading in headings(FILES[name])}
 
 
-_, REACTIONS, INTEGRATORS, CLUSTER = GUIDES
+_, SETTINGS = GUIDES
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SETTING = re.compile(r"`[^`\n]*`")  # to be pasted, or a release
 ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
@@ -250,25 +250,25 @@ def test_without_rows_a_guide_has_no_number_that_was_measured(page):
     assert not re.search(r"\b(nan|None|Unmeasured)\b", text)
 
 
-@pytest.mark.parametrize("page", [REACTIONS, INTEGRATORS], ids=lambda page: page.name)
-def test_every_number_of_a_guide_is_that_of_a_row(page):
+def test_every_number_of_the_settings_is_that_of_a_row():
     """Rows with other errors make other numbers: none is typed."""
-    rows = page_rows(page)
-    shown = MEASURED.findall(prose(text_of(page, rows)))
+    rows = page_rows(SETTINGS)
+    shown = MEASURED.findall(prose(text_of(SETTINGS, rows)))
     assert len(shown) > 20
     unknown = {cell: replace(row, angle=math.nan, reaction=math.nan, cpu=math.nan) for cell, row in rows.items()}
-    assert not MEASURED.search(prose(text_of(page, unknown)))
+    assert not MEASURED.search(prose(text_of(SETTINGS, unknown)))
 
 
-def known(page) -> dict:
-    """What asks for single rows of a guide, from the committed ones."""
-    return lookups(Material(page_rows(page)), (FOUR_BAR,))
+@cache
+def known() -> dict:
+    """What asks for single rows of the settings, from the committed ones."""
+    return lookups(Material(page_rows(SETTINGS)), (FOUR_BAR,))
 
 
 def test_without_forces_that_depend_on_velocity_implicitfast_does_what_euler_does():
     """The guide's sentence about a loop: both errors are the same to the digits that it prints, and of first order."""
     euler, implicit = (("free_four_bar", "mujoco", f"stiff {name}") for name in ("Euler", "implicitfast"))
-    asked = known(INTEGRATORS)
+    asked = known()
     for every in (1, EVERY):
         assert asked["at"](*implicit, every).angle == pytest.approx(asked["at"](*euler, every).angle, rel=1e-2)
     for method in (euler, implicit):
@@ -296,7 +296,7 @@ def test_euler_loses_a_servo_beyond_two_and_implicitfast_never(integrator, produ
 
 
 def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits_are_lost():
-    asked = known(REACTIONS)
+    asked = known()
     tuned = ("free_four_bar", "mujoco", "tuned")
     assert asked["sweep"](*tuned).order == pytest.approx(2.0, abs=0.1)
     assert not asked["sweep"](*tuned).plateau > 0
@@ -307,7 +307,7 @@ def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits
 
 def test_one_change_alone_wins_little_and_both_win_much():
     """The spring as shipped with RK4, and the stiff spring with Euler, against both changed."""
-    at = known(INTEGRATORS)["at"]
+    at = known()["at"]
     shipped, fourth, stiff, both = (
         at("free_four_bar", "mujoco", variant, EVERY).angle
         for variant in ("default", "RK4 alone", "stiff Euler", "tuned")
@@ -318,7 +318,7 @@ def test_one_change_alone_wins_little_and_both_win_much():
 
 @pytest.mark.parametrize("place", [0, 1], ids=["pymunk", "mujoco"])
 def test_a_program_of_the_page_prints_the_weight_of_the_hanging_body(place):
-    source = BLOCK.findall(text_of(REACTIONS, {}))[place]
+    source = BLOCK.findall(text_of(SETTINGS, {}))[place]
     assert source.count("\n") <= 20
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
