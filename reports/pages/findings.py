@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.model.convergence import Verdict
+from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task
@@ -54,7 +55,7 @@ def of_rows(label: str, rows: Rows, name: str, x: str = STEP) -> Line:
     """The errors of a quantity of this name in rows, from coarse to fine, against the step or the CPU time."""
     engine = rows[0].engine if rows else ""
     if x == CPU:
-        usable = [row for row in rows if row.cpu > 0 and 0 < getattr(row, name) < math.inf]
+        usable = [row for row in rows.known(name) if row.cpu > 0 and Outcome(row.outcome).comparable]
         return Line(label, engine, tuple((1e3 * row.cpu, getattr(row, name)) for row in usable))
     return Line(label, engine, tuple((1e3 * step, error) for step, error in rows.points(name)))
 
@@ -386,7 +387,7 @@ def releases(known: Known) -> Finding:
         "versions",
         3e3 < old / new < 3e4 and later / oldest > 1.4 and newest < 1.1 * new,
         tuple(of_releases(scene.replace("_", " "), found) for scene, found in lines.items()),
-        "error of the documented settings [rad]",
+        axis_label("angle"),
         RELEASE,
     )
 
@@ -410,7 +411,7 @@ def trees(known: Known) -> Finding:
         "versions",
         int(many) >= 10 and soft > 0.1 and hard < 1e-3,
         (of_releases("documented settings", tuned), of_releases("with our code", ours)),
-        "worst error of an acceleration [relative]",
+        "acceleration error [relative]",
         RELEASE,
     )
 
