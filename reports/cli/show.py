@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from typing import Annotated
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,6 +21,9 @@ from reports.cli.options import (
 )
 from reports.cli.terminal import Terminal, print_table
 from reports.model.ending import BadInput
+
+if TYPE_CHECKING:
+    from reports.model.measure import Measurement
 
 
 def list_command(scene: Scenes = None, engine: EngineName = None, variant: VariantName = None) -> None:
@@ -60,14 +64,14 @@ def show(
     settings: Settings = None,
     results: Folder = FOLDER,
 ) -> None:
-    """Print a scene's stored numbers."""
+    """Print a scene's stored numbers: every run, order and plateau, which setting is enough, and its experiments."""
     from reports.cli.known import registered, with_remembered, with_words
-    from reports.cli.selection import choose_engines, choose_scenes, grid_engines
-    from reports.model.cells import FULL, sweep_cells
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes
     from reports.model.convergence import judged, sweeps
     from reports.model.quantities import QUANTITIES
     from reports.run.store import Store
-    from reports.write.tables import ERROR_HEADER, error_rows, order_rows
+    from reports.write import page_tables
+    from reports.write.tables import ERROR_HEADER, error_rows, order_rows, step_words
 
     known = registered()
     remembered: tuple[str, ...] = ()
@@ -83,17 +87,38 @@ def show(
     if not there:
         raise nothing
     engines = choose_engines(None if given else engine, variant, given or known.engines)
-    cells = [c for one in chosen for c in sweep_cells((one,), grid_engines(one, engines, known.pages), FULL)]
     with Store.read(results / STORE) as store:
-        rows = judged(store.get(cells).values())
-    if not rows:
+        found = store.get(choose_cells(chosen, engines, known.pages, full=True))
+    if not found:
         raise nothing
     console = Terminal(140)
-    for one in chosen:
-        own = [row for row in rows if row.scene == one.name]
-        print_table(console, f"{one.name}, {one.source}", ERROR_HEADER, error_rows(own), 2)
+
+    def print_runs(title: str, rows: Sequence[Measurement]) -> None:
+        print_table(console, title, ERROR_HEADER, error_rows(rows), 2)
+        for row in rows:
+            if row.sentence:
+                console.print(f"{row.method}, {step_words(row.step)}: {row.outcome}: {row.sentence}")
         console.print()
+
+    for one in chosen:
+        page = next((page for page in known.pages if page.teaches(one)), None)
+        compared = page.quantity if page else "angle"
+        grid = [row for cell, row in found.items() if cell.scene == one and cell.purpose in ("sweep", "usual")]
+        own = judged(grid, compared)
+        beside = [row for cell, row in found.items() if cell.scene == one and cell.purpose == "beside"]
+        print_runs(f"{one.name}, {one.source}", [*own, *beside])
         names = [q.name for q in QUANTITIES]
         orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
         header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
         print_table(console, f"{one.name}: order and plateau", header, orders, 9)
+        console.print()
+        advised = page_tables.advice(own, compared)
+        head, lines = page_tables.advice_lines(advised, compared)
+        plain = [[cell.replace("**", "") for cell in line] for line in lines]
+        print_table(console, f"{one.name}: which setting for which accuracy", head, plain, 3)
+        console.print()
+    for page in known.pages:
+        for failure in page.failures if any(page.is_run_with(one) for one in chosen) else ():
+            own = [found[cell] for cell in failure.cells if cell in found]
+            if own:
+                print_runs(failure.title, own)

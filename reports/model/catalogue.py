@@ -80,12 +80,12 @@ def untaught(scenes: Iterable[Scene], pages: Sequence[Page] | None = None) -> tu
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page with all that rows tell of a scene, under a name by which its documents are none of those taken."""
+    """A page with all that rows tell of a scene, under a name by which its document is none of those taken."""
     stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
     page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
     number, forbidden = 1, {INDEX, *taken}
-    while page.documents & forbidden:
+    while page.document in forbidden:
         number += 1
         page = replace(page, name=f"{stem}_{number}")
     return page
@@ -96,7 +96,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
     out = list(pages)
     for scene in scenes:
         if page_of(scene, out) is None:
-            out.append(generic_page(scene, engines, {name for page in out for name in page.documents}))
+            out.append(generic_page(scene, engines, {page.document for page in out}))
     return tuple(out)
 
 
@@ -121,8 +121,8 @@ def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str
     troubles: list[str] = []
     for page in pages:
         double = next((f"{s.name!r}, as {p.name!r} does" for s in page.scenes for p in kept if p.teaches(s)), "")
-        same = next((f"{name}, as {p.name!r} has" for p in kept for name in sorted(page.documents & p.documents)), "")
-        if INDEX in page.documents:
+        same = next((f"{page.document}, as {p.name!r} has" for p in kept if page.document == p.document), "")
+        if page.document == INDEX:
             same = f"{INDEX}, as the index of all pages has"
         if double or same:
             why = f"it teaches {double}" if double else f"it would have the file {same}"

@@ -104,7 +104,7 @@ def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit
     )
 
 
-@lru_cache(maxsize=32768)  # a report asks for the same sweep on a page, on its data page, in the index, in the readme
+@lru_cache(maxsize=32768)  # a report asks for the same sweep on a page, in the index, in the readme
 def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
     """As `fit`, of (step, error) from coarse to fine."""
     if not pairs:

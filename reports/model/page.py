@@ -167,14 +167,9 @@ class Page:
         return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
 
     @property
-    def data_page(self) -> str:
-        """The file beside the page that has all of its numbers."""
-        return f"{self.name}_data.md"
-
-    @property
-    def documents(self) -> frozenset[str]:
-        """The Markdown files that are written of it."""
-        return frozenset({f"{self.name}.md", self.data_page} if self.scenes else {f"{self.name}.md"})
+    def document(self) -> str:
+        """The Markdown file that is written of it."""
+        return f"{self.name}.md"
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
         """The engines in which a scene of the page is run."""

@@ -127,7 +127,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
         "The joint forces look wrong.",
         "They may be, although the motion is right; compare two steps and two numbers of iterations.",
         "person",
-        "Reactions",
+        "",
     ),
     Symptom(
         "My chain of hundreds of bodies is too slow.",

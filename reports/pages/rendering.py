@@ -7,20 +7,19 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from engines import Engine, registry
+from engines import Engine
 from reference.scene import Scene
-from reports.gate.prediction import declared_error, soft_tasks
+from reports.gate.prediction import declared_error
 from reports.model.cells import Cell
-from reports.model.convergence import judged, sweeps
+from reports.model.convergence import judged
 from reports.model.measure import Measurement
-from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS
 from reports.pages.findings import findings, pictures
-from reports.pages.index import engines_of, foot, render_index
+from reports.pages.index import engines_of, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
-from reports.write import page_tables, tables, unmeasured
+from reports.write import page_tables, unmeasured
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders
@@ -30,10 +29,7 @@ from reports.write.templates import inert_page, template_of
 
 
 def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Material) -> dict[str, Any]:
-    """The scene's words and tables from the judged rows of its sweep; tables are empty without rows.
-
-    `table` is the page's, of the methods that it features; the others are the data page's, of all methods.
-    """
+    """The scene's words and tables from the judged rows of its sweep; tables are empty without rows."""
     engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
 
     def declared(method: str, step: float) -> float:
@@ -42,39 +38,27 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         return declared_error(material.answers, scene, engines[method], page.quantity, step)
 
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
-    unsupported = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
-    coarsest = min((row.every for row in unsupported), default=0)
+    held = held if set(held.values()) != {"engine"} else {}
     featured = [row for row in rows if page.featured(row)]
     advice = page_tables.advice(rows, page.quantity, tuple(engines))
     return {
         "name": scene.name,
-        "source": scene.source,
-        "summary": " ".join((type(scene).__doc__ or "").split("\n\n")[0].split()),
         "missing": not rows,
-        "held": held,
-        "declares": any(task in material.answers for task in soft_tasks(scene, tuple(engines.values()))),
         "step": page_tables.compared_step(rows),
         "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
         "settings": advised_settings(
             scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
         ),
-        "beside": page_tables.beside_table(material.beside([scene]), page.quantity),
-        "work": tables.work_table(rows, page.quantity, held=held) if rows else "",
-        "orders": tables.order_table(sweeps(rows), held=held) if rows else "",
-        "reactions": tables.reaction_table(rows, held) if rows else "",
-        "sizes": tables.size_table(rows),
-        "unsupported": [(row.method, row.sentence) for row in unsupported if row.every == coarsest],
     }
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
-    """The page's Markdown, that of its data page where it has scenes, and its SVG pictures, by file name.
+    """The page's Markdown and its SVG pictures, by file name.
 
     Raises jinja2.UndefinedError when the template names what the page does not give.
     """
     rows = judged(material.sweep(page.scenes), page.quantity)
-    met = {row.outcome for row in (*rows, *material.of(page.extra_cells()))}
     files: dict[str, str] = {}
     pictures: dict[str, str] = {}
 
@@ -103,16 +87,13 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "scenes": scenes,
         "advised": next((scenes[i] for i, scene in enumerate(page.scenes) if scene is page.advised_scene), None),
         "pictures": unmeasured.Known(pictures),
-        "failures": [told_experiment(failure, material, holders(failure.cells)) for failure in page.failures],
+        "failures": [told_experiment(failure, material) for failure in page.failures],
         "maps": [subject for subject in SUBJECTS if subject.page == page.name],
-        "outcomes": [outcome for outcome in Outcome if outcome in met],
-        "foot": foot(command, (*page.engines, *registry.INSTALLED)),
+        "foot": f"Made by `{command}`. Versions and machine: [index](index.md). Numbers: [errors.csv](errors.csv).",
         **page.words(material),
     }
-    texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
-    if page.scenes:
-        texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
-    return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
+    text = template_of(page).render(given)
+    return files | {page.document: inert_page(unmeasured.without_marks(text))}
 
 
 def render_all(

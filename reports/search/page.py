@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,17 +17,25 @@ from reports.model.tasks import Answer
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.store import Store
 from reports.search import plan
-from reports.search.chunk import FOUND, HEADER, Asked, asked, from_words, left_out, refused, stored, summary
-from reports.search.chunk import findings as found_lines
+from reports.search.chunk import Asked, asked, from_words, left_out, refused, stored
 from reports.search.mechanisms import SHAPES
 from reports.search.planted import FAULTS, SIZES, Control, controls
 from reports.search.recipe import LEAST_RANK, NEAREST
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
-from reports.search.subjects import Adapted, Alone, Subject, is_shaped
+from reports.search.subjects import Adapted, Alone, Subject, Told, is_shaped
 from reports.write.templates import environment
 
 LAWS = ("acceleration", "velocity")
+# What the page counts together: checks of one instant, of descriptions, and the others, which are of a motion.
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "instant": ("acceleration", "reaction", "velocity", "without velocity terms", "as its groove pushes"),
+    "description": (
+        "turned", "shifted", "mirrored", "renamed", "swapped", "in other lengths", "in other masses",
+    ),
+    "motion": (),
+}  # fmt: skip
+RARE = 0.01  # of all cases: reasons that came up less often are counted together
 LEAST, MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
 ACROSS = 3  # panels side by side
 LINE, BETWEEN = 0.19, 0.55  # inches: a line, and what a row of panels takes besides
@@ -146,39 +154,75 @@ def files(
         "rule": plan.origin(),
         "seeds": ", ".join(map(str, plan.seeds())),
         "by_rule": {one.chunk.seed for one in told} <= {*plan.seeds()},
-        "searched": _searched(told),
-        "left_out": left_out(told),
+        "groups": list(GROUPS),
+        "asked": _asked(told),
+        "left_out": _left_out(told),
         "engines": list(dict.fromkeys(task.name for task in planted)),
         "planted": _planted(planted),
         "picture": next(iter(out), ""),
-        "header": HEADER,
-        "lines": summary(told),
-        "found_header": FOUND,
-        "found": [line for line in found_lines(told) if line[0] != plan.GROOVE.name],
-        "findings": [_finding(task, answer) for task, answer in _one_of_each(findings)],
+        "found": _found(told, findings),
     }
     template = environment(Path(__file__).parent).get_template("own/page.md")
     out["search.md"] = template.render(page=page, foot=foot)
     return out
 
 
-def _searched(told: Sequence[Asked]) -> list[list[str]]:
-    """A line for each subject, set of kinds, seed and spread."""
-    groups: dict[tuple[str, tuple[str, ...], int, int], list[Asked]] = {}
+def _group(check: str) -> str:
+    return next((name for name, checks in GROUPS.items() if check in checks), "motion")
+
+
+def _asked(told: Sequence[Asked]) -> list[list[str]]:
+    """A line for each subject: cases, those refused, and of each group of checks how many it judged and found wrong."""
+    groups: dict[str, list[Asked]] = {}
     for one in told:
-        chunk = one.chunk
-        groups.setdefault((chunk.subject.name, chunk.kinds, chunk.seed, chunk.decades), []).append(one)
+        groups.setdefault(one.chunk.subject.name, []).append(one)
     return [
         [
             name,
-            ", ".join(kinds) + (f"; {decades} decades more" if decades else ""),
-            str(seed),
-            str(len(group)),
-            str(sum(refused(group).values())),
-            str(sum(bool(one.told.faults) for one in group)),
+            str(len(own)),
+            str(sum(refused(own).values())),
+            *(_judged([one.told for one in own], group) for group in GROUPS),
         ]
-        for (name, kinds, seed, decades), group in groups.items()
+        for name, own in groups.items()
     ]
+
+
+def _judged(told: Sequence[Told], group: str) -> str:
+    """'119', or '119, **2 wrong**'; a dash where nothing of the group was asked."""
+    count = sum(any(_group(check) == group for check in one.errors) for one in told)
+    wrong = sum(any(_group(check) == group for check in one.faults) for one in told)
+    return (f"{count}, **{wrong} wrong**" if wrong else str(count)) if count or wrong else "-"
+
+
+def _left_out(told: Sequence[Asked]) -> list[list[str]]:
+    """(law, why it was not asked, cases): the reasons of all subjects together, the rarest in a last line."""
+    lines = left_out(told)
+    often = [line for line in lines if int(line[-1]) >= RARE * len(told)]
+    rest = sum(int(line[-1]) for line in lines) - sum(int(line[-1]) for line in often)
+    further = [["all", f"{len(lines) - len(often)} rarer reasons", str(rest)]] if rest else []
+    names = {"relations": "description", "motions": "motion"}
+    return [[names.get(law, law), why, cases] for law, why, _, cases in often] + further
+
+
+def _found(told: Sequence[Asked], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
+    """A line for each check of a subject that fails: in how many cases, the smallest mechanism, and the first case."""
+    groups: dict[tuple[str, str], list[Asked]] = {}
+    for one in told:
+        if one.chunk.subject.name != plan.GROOVE.name:
+            for check in one.told.faults:
+                groups.setdefault((one.chunk.subject.name, check), []).append(one)
+    least = {(task.subject.name, task.check): line_of(answer) for task, answer in reversed(small)}
+    return [[*key, str(len(own)), least.get(key, ""), f"`{_command(own[0])}`"] for key, own in groups.items()]
+
+
+def _command(one: Asked) -> str:
+    """What draws a case again, and writes its script."""
+    chunk = one.chunk
+    name, variant = ("mujoco", "alone") if isinstance(chunk.subject, Alone) else chunk.subject.name.split(" ", 1)
+    words = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]
+    words += ["--decades", str(chunk.decades)] if chunk.decades else []
+    words += ["--kinds", ",".join(chunk.kinds)] if chunk.kinds != chunk.subject.kinds else []
+    return shlex.join([*words, "--cases", str(one.number + 1)])
 
 
 def _planted(controls: Mapping[Control, Answer]) -> list[list[str]]:
@@ -199,26 +243,3 @@ def _how_soon(answer: Answer | None) -> str:
     if math.isnan(size):
         return f"not found in {answer.number('asked'):.0f}"
     return f"{answer.number('case') + 1:.0f}{'' if size == SIZES[0] else f' of {size:.0e}'}"
-
-
-def _one_of_each(findings: Sequence[tuple[Shrink, Answer]]) -> list[tuple[Shrink, Answer]]:
-    """Of each subject, check and set of kinds that is left the first: the same fault comes up often."""
-    found: dict[tuple[str, str, str], tuple[Shrink, Answer]] = {}
-    for task, answer in findings:
-        kinds = line_of(answer).split(":")[0]
-        found.setdefault((task.subject.name, task.check, kinds), (task, answer))
-    return list(found.values())
-
-
-def _finding(task: Shrink, answer: Answer) -> Mapping[str, Any]:
-    title = f"{task.subject.name}: {task.check}, case {task.number} of seed {task.seed}"
-    if not answer.finished:
-        return {"title": title, "text": line_of(answer), "language": "", "script": "\n"}
-    values = answer.values
-    script = str(values["script"])
-    text = f"The smallest mechanism with {line_of(answer)}."
-    if not script:
-        text += " It needs the adapter; this is the recipe."
-        told = json.loads(str(values["finding"]))
-        script = f"{json.dumps(told['case'])}\n"
-    return {"title": title, "text": text, "language": "python" if values["script"] else "json", "script": script}

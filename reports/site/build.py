@@ -157,9 +157,7 @@ def front_page(lesson: Lesson, source: Source) -> dict[str, object]:
         "figure": Markup(picture(take, "A four-bar linkage falls: the truth, and two engines over it")),
         "take": _json(data(take)),
         "shown": take,
-        "results": [
-            (name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")
-        ],
+        "results": [(name, markdown.title(text)) for name, text in source.pages.items()],
     }
 
 

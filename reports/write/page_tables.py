@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from reports.model.convergence import ENOUGH, ROOM_SOFT, Sweep, Verdict, by_method, groups, sweeps
 from reports.model.measure import Measurement
@@ -13,7 +13,7 @@ from reports.model.page import Page
 from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
 from reports.write.holders import held_in
-from reports.write.tables import NOTHING, markdown, milliseconds, number
+from reports.write.tables import NOTHING, markdown, milliseconds, number, step_words
 
 # The step [s] at which methods stand side by side, or the grid's nearest: a user's who has refined once.
 COMPARED = 1e-3
@@ -75,36 +75,6 @@ def scene_table(
         heads.insert(1, f"declared [{told.unit}]")
     header = ["method", *heads, "CPU [ms/s]", f"as the step shrinks, plateau in {told.unit}"]
     return markdown(header, body, left=1, held=held)
-
-
-def beside_table(rows: Sequence[Measurement], name: str) -> str:
-    """A line a method of engines that are extras: its error at each step, and what else is told at the finest.
-
-    Empty without rows; methods that build nothing here are left out.
-    """
-    told = quantity(name)
-    found = {
-        members[0].method: members
-        for members in groups(replace(row, purpose="sweep") for row in rows).values()
-        if any(row.outcome != Outcome.UNSUPPORTED for row in members)
-    }
-    steps = sorted({row.step for members in found.values() for row in members}, reverse=True)
-    body = []
-    for method, members in found.items():
-        at = {row.step: row for row in members}
-        errors = [_told_error(at.get(step), name) for step in steps]
-        finest = members[-1]
-        cost = milliseconds(finest.cpu) if finest.cpu > 0 else NOTHING
-        body.append([method, *errors, number(finest.gap), number(finest.reaction), cost])
-    heads = [f"{told.label} error [{told.unit}] at {number(step)} s" for step in steps]
-    header = ["method", *heads, "gap [m]", "reaction [relative]", "CPU [ms/s]"]
-    return markdown(header, body) if body else ""
-
-
-def _told_error(row: Measurement | None, name: str) -> str:
-    if row is None:
-        return NOTHING
-    return number(getattr(row, name)) if Outcome(row.outcome).comparable else f"**{row.outcome}**"
 
 
 def as_the_step_shrinks(sweep: Sweep, members: Sequence[Measurement]) -> str:
@@ -182,6 +152,14 @@ def reliable(members: Sequence[Measurement], name: str, target: float) -> list[M
 
 def advice_table(found: Iterable[Advice], name: str, held: Mapping[str, str] | None = None) -> str:
     """A line for each advice: method, who holds the joints, step, error, cost and order."""
+    header, body = advice_lines(found, name, held)
+    return markdown(header, body, left=4 if held else 3)
+
+
+def advice_lines(
+    found: Iterable[Advice], name: str, held: Mapping[str, str] | None = None
+) -> tuple[list[str], list[list[str]]]:
+    """The same as (header, lines of cells)."""
     unit = quantity(name).unit
     body = []
     for each in found:
@@ -192,10 +170,10 @@ def advice_table(found: Iterable[Advice], name: str, held: Mapping[str, str] | N
             continue
         order = f"{sweep.order:.1f}" if sweep.points >= 2 else NOTHING
         holder = [held.get(row.method, NOTHING)] if held else []
-        numbers = [number(row.step), number(getattr(row, name)), milliseconds(row.cpu), order]
+        numbers = [step_words(row.step), number(getattr(row, name)), milliseconds(row.cpu), order]
         body.append([each.engine, below, f"**{row.variant}**", *holder, *numbers])
     header = ["engine", f"below [{unit}]", "method", *(["joints held by"] if held else [])]
-    return markdown([*header, "step [s]", f"error [{unit}]", "CPU [ms/s]", "order"], body, left=len(header))
+    return [*header, "step", f"error [{unit}]", "CPU [ms/s]", "order"], body
 
 
 Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
@@ -256,7 +234,7 @@ def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]
     """What a smaller step brings: an order only where the error falls to the finest step."""
     finest = min((row for row in members if row.purpose == "sweep"), key=lambda row: row.step)
     if not Outcome(finest.outcome).comparable:
-        return f"**{finest.outcome}** at {_step(finest.step)}"
+        return f"**{finest.outcome}** at {step_words(finest.step)}"
     match sweep.verdict:
         case Verdict.PLATEAU:
             luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in told) else ""
@@ -268,13 +246,9 @@ def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]
         case Verdict.LEVELS:
             return "**levels off**"
         case Verdict.GROWS | Verdict.ERRATIC:
-            return f"**least at {_step(sweep.best_step)}**, then worse"
+            return f"**least at {step_words(sweep.best_step)}**, then worse"
         case _:
             return ""
-
-
-def _step(step: float) -> str:
-    return f"{number(1e3 * step)} ms"
 
 
 def _holder(page: Page, scene: str, engine: str, variant: str) -> str:

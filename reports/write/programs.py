@@ -37,7 +37,6 @@ class Setting:
 
     method: str
     settings: str  # those that differ from the engine's own defaults
-    all_settings: str
     program: str = ""
     body: str = ""
     exact: str = ""  # "x = ... m, y = ... m, angle = ... rad" of the body at the end
@@ -64,7 +63,7 @@ def _setting(
     first = rows[0][0]
     settings = compact(engine) if engine is not None else first.settings
     if not source:
-        return Setting(method, settings, first.settings)
+        return Setting(method, settings)
     body, end = PRINTS.search(source), DURATION.search(source)
     if body is None or end is None:
         raise ValueError(f"{scene.name}: the program of {method} lacks its duration or does not print a place")
@@ -75,7 +74,7 @@ def _setting(
     counts = [round(duration / scene.spacing) * row.every for row, _ in rows]
     told = "; ".join(f"{count}: below {number(max(row[1]), 1)}" for count, row in zip(counts, rows, strict=True))
     text = STEPS.sub(f"steps = {counts[0]}" + (f"  # {told}" if len(rows) > 1 else ""), source)
-    return Setting(method, settings, first.settings, text, body[1], exact)
+    return Setting(method, settings, text, body[1], exact)
 
 
 @cache

@@ -33,6 +33,11 @@ def milliseconds(seconds: float) -> str:
     return number(1e3 * seconds)
 
 
+def step_words(seconds: float) -> str:
+    """A step as it is printed everywhere: '10 ms', '0.33 ms'; a dash for an unknown one."""
+    return NOTHING if math.isnan(seconds) else f"{number(1e3 * seconds)} ms"
+
+
 def markdown(
     header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, held: Mapping[str, str] | None = None
 ) -> str:
@@ -51,28 +56,18 @@ def _line(cells: Iterable[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-ERROR_HEADER = ("method", "outcome", "step [s]", *(f"{q.label} [{q.unit}]" for q in QUANTITIES), "CPU [ms/s]")
+ERROR_HEADER = ("method", "outcome", "step", *(f"{q.label} [{q.unit}]" for q in QUANTITIES), "CPU [ms/s]")
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
     """Every quantity's largest error of every cell of one scene, by method and step, under ERROR_HEADER."""
     return [
-        [row.method, row.outcome, number(row.step)]
+        [row.method, row.outcome, step_words(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]
         + [milliseconds(row.cpu)]
         for members in groups(rows).values()
         for row in members
     ]
-
-
-def order_table(
-    found: Iterable[Sweep], quantities: Sequence[str] = ("angle", "rate", "gap", "reaction"), held: Held = None
-) -> str:
-    """Order, number of points and plateau of some quantities, by method, for the sweeps of one scene."""
-    units = {q.name: q for q in QUANTITIES}
-    rows = order_rows(found, quantities)
-    header = ["method", *(f"{units[name].label}: order, plateau [{units[name].unit}]" for name in quantities)]
-    return markdown(header, rows, left=9, held=held)
 
 
 def order_rows(found: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
@@ -104,42 +99,7 @@ def sweep_words(sweep: Sweep) -> str:
     return ", ".join(filter(None, (order, end)))
 
 
-def reaction_table(rows: Iterable[Measurement], held: Held = None) -> str:
-    """How exact each method's reactions are at the step where they are best, and of how many rows it tells them."""
-    body = []
-    for members in groups(rows).values():
-        usable = [row for row in members if Outcome(row.outcome).comparable]
-        if not usable:
-            continue
-        best = min(usable, key=lambda row: (math.isnan(row.reaction), row.reaction))
-        known = f"{best.reaction_rows} of {best.own_rows}"
-        body.append([best.method, known, number(best.reaction), number(best.step), milliseconds(best.cpu)])
-    header = ["method", "rows told", "least error [relative]", "at step [s]", "CPU [ms/s]"]
-    return markdown(header, body, left=2, held=held)
-
-
-def size_table(rows: Iterable[Measurement]) -> str:
-    """The models' sizes beside the mechanism's own; methods that model alike share a line."""
-    header = ["bodies", "coordinates", "rows", "solver rows", "modelled by"]
-    own: list[str] = []
-    sizes: dict[tuple[int, ...], dict[str, list[str]]] = {}
-    for members in groups(rows).values():
-        row = next((row for row in members if row.bodies), None)
-        if row is None:  # refused, or lost before it was built: it knows neither its own size nor the mechanism's
-            continue
-        if not own:
-            freedoms = f"*the mechanism itself, {row.own_freedoms} freedom{'' if row.own_freedoms == 1 else 's'}*"
-            own = [*map(str, (row.own_bodies, row.own_coordinates, row.own_rows)), NOTHING, freedoms]
-        size = (row.bodies, row.coordinates, row.rows, row.solver_rows)
-        sizes.setdefault(size, {}).setdefault(row.engine, []).append(row.variant)
-    body = [
-        [*map(str, size), "; ".join(f"{engine} ({', '.join(variants)})" for engine, variants in by_engine.items())]
-        for size, by_engine in sizes.items()
-    ]
-    return markdown(header, [own, *body] if own else body, left=5)
-
-
-def outcome_grid(rows: Iterable[Measurement], held: Held = None) -> str:
+def outcome_grid(rows: Iterable[Measurement]) -> str:
     """An experiment at a glance: a line a method, a column a step, the outcome and one number in each.
 
     Raises ValueError where two rows would stand in one place: only one of them could be seen.
@@ -150,10 +110,10 @@ def outcome_grid(rows: Iterable[Measurement], held: Held = None) -> str:
     for row in rows:
         line = by_method_and_step.setdefault(row.method, {})
         if row.step in line:
-            raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {number(row.step)} s")
+            raise ValueError(f"outcome grid: there are two rows of {row.method!r} at a step of {step_words(row.step)}")
         line[row.step] = _outcome_in_brief(row)
     body = [[method, *(found.get(step, "") for step in steps)] for method, found in by_method_and_step.items()]
-    return markdown(["method", *(f"{number(step)} s" for step in steps)], body, left=len(steps) + 1, held=held)
+    return markdown(["method", *map(step_words, steps)], body, left=len(steps) + 1)
 
 
 def _outcome_in_brief(row: Measurement) -> str:
@@ -165,50 +125,17 @@ def _outcome_in_brief(row: Measurement) -> str:
     return f"**{row.outcome}**"
 
 
-def cell_table(rows: Iterable[Measurement], columns: Sequence[str], held: Held = None) -> str:
-    """A line a cell: method, step, outcome, the largest errors of these quantities."""
+def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
+    """A line a cell: method with an outcome that is no answer, step, the largest errors of these quantities."""
     told = [quantity(name) for name in columns]
-    body = [
-        [row.method, number(row.step), f"**{row.outcome}**", *(number(getattr(row, q.name)) for q in told)]
-        for row in rows
-    ]
-    header = ["method", "step [s]", "outcome", *(f"{q.label} [{q.unit}]" for q in told)]
-    return markdown(header, body, left=3, held=held)
-
-
-def outcome_table(rows: Iterable[Measurement], held: Held = None) -> str:
-    """The same with each cell's own sentence: method, step, outcome, largest errors."""
-    header = ["method", "step [s]", "outcome", "angle [rad]", "gap [m]"]
-    body = [
-        [
-            row.method,
-            number(row.step),
-            f"**{row.outcome}**{': ' + row.sentence if row.sentence else ''}",
-            number(row.angle),
-            number(row.gap),
-        ]
-        for row in rows
-    ]
-    return markdown(header, body, left=3, held=held)
-
-
-def work_table(
-    rows: Iterable[Measurement],
-    name: str = "angle",
-    targets: Sequence[float] = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10),
-    held: Held = None,
-) -> str:
-    """The least CPU time with which each method gets below an error [ms per simulated second]."""
     body = []
-    for members in groups(rows).values():
-        usable = [row for row in members if Outcome(row.outcome).comparable]
-        cost = [min((row.cpu for row in usable if getattr(row, name) <= target), default=NAN) for target in targets]
-        body.append([members[0].method, *map(milliseconds, cost)])
-    unit = quantity(name).unit
-    return markdown(["method", *(f"{number(target, 1)} {unit}" for target in targets)], body, held=held)
+    for row in rows:
+        failed = "" if Outcome(row.outcome).comparable else f" **{row.outcome}**"
+        body.append([row.method + failed, step_words(row.step), *(number(getattr(row, q.name)) for q in told)])
+    return markdown(["method", "step", *(f"{q.label} [{q.unit}]" for q in told)], body)
 
 
-SUMMARY_HEADER = ("method", "angle error [rad]", "at step [s]", "CPU [ms/s]", "order", "plateau [rad]", "outcomes")
+SUMMARY_HEADER = ("method", "angle error [rad]", "at step", "CPU [ms/s]", "order", "plateau [rad]", "outcomes")
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
@@ -219,10 +146,10 @@ def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
     for key, members in groups(rows).items():
         usable = [row for row in members if Outcome(row.outcome).comparable and math.isfinite(row.angle)]
         best = min(usable, key=lambda row: row.angle, default=None)
-        numbers = (best.angle, best.step, 1e3 * best.cpu) if best else (NAN, NAN, NAN)
+        angle, step, cpu = (best.angle, best.step, best.cpu) if best else (NAN, NAN, NAN)
         sweep = verdicts[key]
         order = f"{sweep.order:.1f} ({sweep.points})" if sweep.points >= 2 else NOTHING
         end = "rounding" if sweep.verdict is Verdict.ROUNDING else number(sweep.plateau)
         outcomes = ", ".join(dict.fromkeys(row.outcome for row in members))
-        out.append([members[0].method, *map(number, numbers), order, end, outcomes])
+        out.append([members[0].method, number(angle), step_words(step), milliseconds(cpu), order, end, outcomes])
     return out

@@ -104,9 +104,8 @@ def _environment(folder: Path, filters: Filters) -> Environment:
     return out
 
 
-def template_of(page: Page, file: str, generic: str) -> Template:
-    """The page's own template `file` ("page.md" or "data.md"), that of its name here, or the generic one."""
+def template_of(page: Page) -> Template:
+    """The page's own template, that of its name here, or the generic one."""
     if page.template is not None:
-        own = page.template if file == "page.md" else page.template.with_name(file)
-        return environment(own.parent).select_template([f"own/{own.name}", generic])
-    return environment().select_template([f"{page.name}/{file}", generic])
+        return environment(page.template.parent).get_template(f"own/{page.template.name}")
+    return environment().select_template([f"{page.name}/page.md", "base.md"])

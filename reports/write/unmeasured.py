@@ -69,12 +69,23 @@ def milliseconds(seconds: float) -> str:
     return number(1e3 * seconds)
 
 
+def step(seconds: float) -> str:
+    """A step in milliseconds, with the unit."""
+    return MARK if seconds != seconds else tables.step_words(seconds)
+
+
 def formatted(pattern: str, *values: Any) -> str:
     """Values in a pattern of the % operator; MARK if one is unknown."""
     return MARK if any(marked(value) is MARK for value in values) else pattern % values
 
 
-FILTERS = {"if_measured": if_measured, "number": number, "milliseconds": milliseconds, "format": formatted}
+FILTERS = {
+    "if_measured": if_measured,
+    "number": number,
+    "milliseconds": milliseconds,
+    "step": step,
+    "format": formatted,
+}
 
 
 def without_marks(text: str) -> str:

@@ -96,8 +96,8 @@ def prose(text: str) -> str:
 
 
 def complaints(page: str, files: Mapping[str, str]) -> list[str]:
-    """What a reader would stumble over on a page, and on the data page beside it if there is one."""
-    text = "\n".join(prose(files[name]) for name in (f"{page}.md", f"{page}_data.md") if name in files)
+    """What a reader would stumble over on a page."""
+    text = prose(files[f"{page}.md"])
     sentences = "\n".join(line for line in text.splitlines() if not line.startswith("|"))
     found = [f"{word} in the text" for word in ("{{", "{%", MARK, WORDS) if word in text]
     found += [line for line in text.splitlines() if re.search(r"\b(nan|None|Undefined|Unmeasured)\b", line)]
@@ -111,11 +111,7 @@ def complaints(page: str, files: Mapping[str, str]) -> list[str]:
     drawn = {name for name in files if name.endswith(".svg")}
     found += [f"picture without file: {name}" for name in shown - drawn]
     found += [f"file without picture: {name}" for name in drawn - shown]
-    known = (
-        {f"{page.name}.md" for page in PAGES}
-        | {page.data_page for page in PAGES if page.scenes}
-        | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
-    )
+    known = {page.document for page in PAGES} | {"index.md", "errors.csv", "timings.csv", "descriptions.csv"}
     found += [f"dead link: {name}" for name in set(re.findall(r"\]\((\w+\.(?:md|csv))[)#]", text)) - known]
     return found
 

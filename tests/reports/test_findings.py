@@ -1,4 +1,4 @@
-"""Ten findings and the guides from the committed rows: each number is a row's, what its rows contradict is not said."""
+"""Findings and the guides from the committed rows: each number is a row's, what its rows contradict is not said."""
 
 # pyright: reportAttributeAccessIssue=false
 from __future__ import annotations
@@ -17,29 +17,48 @@ import pytest
 from reports.model.catalogue import PAGES
 from reports.model.outcomes import Outcome
 from reports.model.page import Material
-from reports.pages.findings import FINDINGS, LOOKS, MILLISECOND, TENTH, Line, draw, findings
+from reports.model.tasks import Answer, Task
+from reports.pages import findings as module
+from reports.pages.faults.page import OFFSETS
+from reports.pages.findings import CPU, FINDINGS, LOOKS, MILLISECOND, STEP, TENTH, Known, Line, draw, findings, of_rows
 from reports.pages.guides.page import EVERY, FOUR_BAR
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
 from reports.pages.rendering import render_page
-from reports.write.rows import Rows, lookups, own_rows
+from reports.pages.versions.page import table
+from reports.versions.table import ACCELERATION
+from reports.write.rows import Rows, lookups
 from reports.write.tables import number
 from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import MARK
-from tests.committed_rows import RESULTS, page_rows
+from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.rows import falling
 
 NAMES = [find.__name__ for find in FINDINGS]
 
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
+FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
+# Found in files of releases; the first is drawn from an answer.
+OF_RELEASES = {"faults", "releases", "trees"}
+
+
+@cache
+def answered() -> dict[Task, Answer]:
+    return {OFFSETS: answer_to(OFFSETS)}
 
 
 def changed(change):
     """The pages' material, each row as `change(cell, row)` gives it; None leaves it out."""
     return {
-        page: Material({cell: new for cell, row in page_rows(page).items() if (new := change(cell, row)) is not None})
-        for page in TAUGHT
+        FAULTS: Material({}, answered()),
+        VERSIONS: Material({}),
+        **{
+            page: Material(
+                {cell: new for cell, row in page_rows(page).items() if (new := change(cell, row)) is not None}
+            )
+            for page in TAUGHT
+        },
     }
 
 
@@ -48,10 +67,9 @@ def told():
     return {found.name: found for found in findings(changed(lambda cell, row: row))}
 
 
-def test_the_committed_rows_bear_all_ten_out():
+def test_the_committed_rows_bear_all_of_them_out():
     assert list(told()) == NAMES
-    assert len(NAMES) == 10
-    assert len({found.title for found in told().values()}) == 10
+    assert len({found.title for found in told().values()}) == len(NAMES)
 
 
 def stored(scene, method, every, field, purpose="sweep"):
@@ -82,10 +100,14 @@ def test_its_numbers_are_those_of_the_rows_that_it_names():
     energies = [stored("pendulum_1", name, 10, "energy") for name in shown]
     overwritten = "default, overwritten crank"
     numbers = {
-        "spring": [free("mujoco tuned")],
-        "tuned": [free(f"{engine} default") / free(f"{engine} tuned") for engine in ("pymunk", "mujoco")],
+        "spring": [free("mujoco tuned"), free("mujoco tuned", "cpu") / free("mujoco default", "cpu")],
         "luck": [stored("spinning_four_bar", "mujoco default", 10, "angle")],
-        "reading": [free("pymunk leapfrog"), free("pymunk tuned")],
+        "start": [free(f"pymunk {variant}") for variant in ("default", "tuned", "leapfrog")],
+        "exact": [
+            1e3 * stored("free_four_bar", "lagrange rk4 none", 3, "cpu"),
+            1e3 * free("mujoco tuned", "cpu"),
+            1e3 * stored("free_four_bar", "pymunk extended", 3, "cpu"),
+        ],
         "energy": [100 * energy for energy in energies],
         "iterations": [person(10, 1, "angle"), person(10, 10, "angle"), person(20, 10, "angle")],
         "forces": [person(20, 10, "angle"), *(100 * person(count, 10, "reaction") for count in (20, 100))],
@@ -98,7 +120,7 @@ def test_its_numbers_are_those_of_the_rows_that_it_names():
         ],
         "contact": [stored("rolling_ellipse", f"mujoco {each}", 10, "angle") for each in ("tuned", "extended")],
     }
-    assert set(numbers) == set(NAMES)
+    assert set(numbers) == set(NAMES) - OF_RELEASES
     for name, values in numbers.items():
         for value in values:
             assert re.search(rf"(?<![\d.]){re.escape(number(value))}(?![\d.e])", told()[name].text), (
@@ -144,16 +166,19 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
         ("spring", times(1.2, "angle", **FREE, method="mujoco RK4 alone")),
         ("spring", times(1.2, "gap", **FREE, method="mujoco RK4 alone")),
         ("spring", times(100.0, "angle", **FREE, method="mujoco tuned")),
-        ("tuned", times(1e6, "angle", **FREE, method="mujoco tuned", steps=at(MILLISECOND))),
-        ("tuned", times(3.0, "angle", **FREE, method="pymunk tuned", steps=at(MILLISECOND))),
+        ("exact", times(0.01, "cpu", **FREE, method="pymunk leapfrog")),
+        ("exact", times(0.01, "cpu", **FREE, method="mujoco tuned")),
         ("luck", falls("spinning_four_bar", "mujoco default", "angle")),
         ("luck", times(4.0, "angle", scene="spinning_four_bar", method="mujoco default", steps=at(MILLISECOND))),
-        ("reading", falls("free_four_bar", "pymunk leapfrog", "angle")),
-        ("reading", times(10.0, "angle", **FREE, method="pymunk leapfrog")),
+        ("start", falls("free_four_bar", "pymunk leapfrog", "angle")),
+        ("start", times(10.0, "angle", **FREE, method="pymunk leapfrog")),
+        ("start", times(10.0, "angle", **FREE, method="pymunk tuned")),
         ("energy", times(0.1, "energy", scene="pendulum_1", method="pymunk default")),
         ("energy", times(1e10, "energy", scene="pendulum_1", method="mujoco tuned")),
+        ("energy", times(0.1, "energy", scene="pendulum_1", method="mujoco default")),
         ("iterations", times(0.1, "angle", **PERSON[10], steps=at(MILLISECOND))),
         ("iterations", times(10.0, "angle", **PERSON[20])),
+        ("iterations", times(30.0, "angle", scene="person_one_foot", method="pymunk default", steps=at(MILLISECOND))),
         ("forces", times(1.1, "angle", **PERSON[20])),
         ("forces", times(0.2, "reaction", **PERSON[20])),
         ("skate", times(1e-2, "position", scene="sleigh", method="pymunk default", steps=at(1e-4))),
@@ -169,11 +194,11 @@ CRANK = {"scene": "driven_four_bar", "purpose": "failure"}
 )
 def test_a_finding_that_its_rows_contradict_is_not_told(name, wrong):
     (find,) = (find for find in FINDINGS if find.__name__ == name)
-    assert not find(own_rows(changed(wrong))).told
+    assert not find(Known.of(changed(wrong))).told
 
 
 ABOUT = {
-    "free_four_bar": ("spring", "tuned", "reading"),
+    "free_four_bar": ("spring", "start", "exact"),
     "spinning_four_bar": ("luck",),
     "driven_four_bar": ("crank",),
     "pendulum_1": ("energy",),
@@ -190,23 +215,54 @@ def test_without_a_scenes_rows_its_findings_are_not_told_and_the_others_stay(sce
     assert all(MARK not in found.title + found.text for found in left)
 
 
-def test_without_any_rows_or_with_failed_ones_alone_nothing_is_told():
-    assert findings(changed(lambda cell, row: None)) == []
+def test_without_any_rows_or_with_failed_ones_alone_nothing_is_told_of_them():
+    assert {found.name for found in findings(changed(lambda cell, row: None))} == OF_RELEASES
     assert findings({}) == []
+    assert {found.name for found in findings({FAULTS: Material({}), VERSIONS: Material({})})} == OF_RELEASES - {
+        "faults"
+    }
     failed = findings(changed(lambda cell, row: replace(row, outcome=Outcome.TORN)))
     # Errors of failed runs may still speak of energy: a pendulum that is off by a radian has lost what it has lost.
-    assert {found.name for found in failed} <= {"energy"}
+    assert {found.name for found in failed} - OF_RELEASES <= {"energy"}
+
+
+def entries(**changes):
+    """The releases' rows, those of a method or a release with another error or cost."""
+
+    def change(entry):
+        return replace(entry, **changes) if (entry.version, entry.variant) == AT else entry
+
+    return replace(table(), entries=tuple(map(change, table().entries)))
+
+
+AT = ("3.7.0", "tuned")
+
+
+def test_what_the_releases_contradict_is_not_told(monkeypatch):
+    known = Known(Rows())
+    assert module.releases(known).told
+    assert module.trees(known).told
+    monkeypatch.setattr(module, "table", lambda: entries(error=4e-3))
+    assert not module.releases(known).told
+    newest = tuple(replace(entry, error=1e-4) if entry.quantity == ACCELERATION else entry for entry in table().entries)
+    monkeypatch.setattr(module, "table", lambda: replace(table(), entries=newest))
+    assert not module.trees(known).told
+    mended = tuple(replace(row, found=row.expected) for row in module.recorded())
+    monkeypatch.setattr(module, "recorded", lambda: mended)
+    assert not module.faults(Known(Rows(), answered())).told
 
 
 def test_lines_differ_without_colours():
     assert len({(look["linestyle"], look["marker"]) for look in LOOKS}) == len(LOOKS)
-    steps = [Line(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3)))) for name in "abcd"]
-    (axes,) = draw(steps, "angle").axes
+    steps = [of_rows(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3))), "angle") for name in "abcd"]
+    (axes,) = draw(steps, STEP, "error").axes
     assert [np.asarray(line.get_xdata()).tolist() for line in axes.lines] == [[100.0, 10.0]] * 4
     assert [np.asarray(line.get_ydata()).tolist() for line in axes.lines] == [[1e-2, 1e-3]] * 4
     assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
     with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, Line("e", Rows())], "angle")
+        draw([*steps, Line("e", "pymunk", ())], STEP, "error")
+    dear = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU)
+    assert [x for x, _ in dear.points] == pytest.approx([1.0, 10.0])  # ms a simulated second: `falling` costs step^-1
 
 
 # --- symptoms and links ---
@@ -222,7 +278,7 @@ def test_a_symptom_leads_to_a_section_that_is_there(symptom):
     assert not symptom.heading or place in {anchor(heading) for heading in headings(FILES[name])}
 
 
-_, REACTIONS, INTEGRATORS, CLUSTER = GUIDES
+_, SETTINGS = GUIDES
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SETTING = re.compile(r"`[^`\n]*`")  # to be pasted, or a release
 ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
@@ -250,25 +306,25 @@ def test_without_rows_a_guide_has_no_number_that_was_measured(page):
     assert not re.search(r"\b(nan|None|Unmeasured)\b", text)
 
 
-@pytest.mark.parametrize("page", [REACTIONS, INTEGRATORS], ids=lambda page: page.name)
-def test_every_number_of_a_guide_is_that_of_a_row(page):
+def test_every_number_of_the_settings_is_that_of_a_row():
     """Rows with other errors make other numbers: none is typed."""
-    rows = page_rows(page)
-    shown = MEASURED.findall(prose(text_of(page, rows)))
+    rows = page_rows(SETTINGS)
+    shown = MEASURED.findall(prose(text_of(SETTINGS, rows)))
     assert len(shown) > 20
     unknown = {cell: replace(row, angle=math.nan, reaction=math.nan, cpu=math.nan) for cell, row in rows.items()}
-    assert not MEASURED.search(prose(text_of(page, unknown)))
+    assert not MEASURED.search(prose(text_of(SETTINGS, unknown)))
 
 
-def known(page) -> dict:
-    """What asks for single rows of a guide, from the committed ones."""
-    return lookups(Material(page_rows(page)), (FOUR_BAR,))
+@cache
+def known() -> dict:
+    """What asks for single rows of the settings, from the committed ones."""
+    return lookups(Material(page_rows(SETTINGS)), (FOUR_BAR,))
 
 
 def test_without_forces_that_depend_on_velocity_implicitfast_does_what_euler_does():
     """The guide's sentence about a loop: both errors are the same to the digits that it prints, and of first order."""
     euler, implicit = (("free_four_bar", "mujoco", f"stiff {name}") for name in ("Euler", "implicitfast"))
-    asked = known(INTEGRATORS)
+    asked = known()
     for every in (1, EVERY):
         assert asked["at"](*implicit, every).angle == pytest.approx(asked["at"](*euler, every).angle, rel=1e-2)
     for method in (euler, implicit):
@@ -296,7 +352,7 @@ def test_euler_loses_a_servo_beyond_two_and_implicitfast_never(integrator, produ
 
 
 def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits_are_lost():
-    asked = known(REACTIONS)
+    asked = known()
     tuned = ("free_four_bar", "mujoco", "tuned")
     assert asked["sweep"](*tuned).order == pytest.approx(2.0, abs=0.1)
     assert not asked["sweep"](*tuned).plateau > 0
@@ -307,7 +363,7 @@ def test_a_stiff_loops_reactions_have_a_plateau_where_its_angles_fall_and_digits
 
 def test_one_change_alone_wins_little_and_both_win_much():
     """The spring as shipped with RK4, and the stiff spring with Euler, against both changed."""
-    at = known(INTEGRATORS)["at"]
+    at = known()["at"]
     shipped, fourth, stiff, both = (
         at("free_four_bar", "mujoco", variant, EVERY).angle
         for variant in ("default", "RK4 alone", "stiff Euler", "tuned")
@@ -318,7 +374,7 @@ def test_one_change_alone_wins_little_and_both_win_much():
 
 @pytest.mark.parametrize("place", [0, 1], ids=["pymunk", "mujoco"])
 def test_a_program_of_the_page_prints_the_weight_of_the_hanging_body(place):
-    source = BLOCK.findall(text_of(REACTIONS, {}))[place]
+    source = BLOCK.findall(text_of(SETTINGS, {}))[place]
     assert source.count("\n") <= 20
     said = io.StringIO()
     with contextlib.redirect_stdout(said):

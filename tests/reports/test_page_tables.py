@@ -12,12 +12,12 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.outcomes import Outcome
-from reports.model.page import Failure, Material, Observation
+from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Task, answered
-from reports.write.experiments import compared_only, happened, told_experiment
+from reports.write.experiments import compared_only, told_experiment
 from reports.write.holders import holders
 from reports.write.page_tables import advice, advice_table, reliable, scene_table
-from reports.write.tables import markdown, outcome_grid
+from reports.write.tables import markdown
 from tests.present import present
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Plain, Toy
@@ -40,8 +40,8 @@ def test_the_cheapest_method_below_each_error_is_advised_for_each_engine():
         ("b", (1e-4, 1e-6, 1e-9)): None,
     }
     head, *body = table(advice_table(advice(rows, "angle"), "angle", {"a fast": "ours"}))
-    assert head[1:5] == ["below [rad]", "method", "joints held by", "step [s]"]
-    assert body[0] == ["a", "0.01, 1e-4", "**fast**", "ours", "0.1", "1.0e-5", "3", "2.5"]
+    assert head[1:5] == ["below [rad]", "method", "joints held by", "step"]
+    assert body[0] == ["a", "0.01, 1e-4", "**fast**", "ours", "100 ms", "1.0e-5", "3", "2.5"]
     assert body[-1][:3] == ["b", "1e-4, 1e-6, 1e-9", "not reached"]
     assert len(body[-1]) == len(head)
 
@@ -93,26 +93,6 @@ def test_a_plateau_above_what_is_declared_is_marked():
     assert "declared" not in scene_table(rows, "angle")
 
 
-def test_an_experiment_is_told_in_a_line():
-    rows = [
-        row_of("a x", angle=1e-5),
-        row_of("b x", angle=2e-3),
-        row_of("c x", angle=math.nan),
-        row_of("d x", outcome=Outcome.TORN),
-        row_of("e x", outcome=Outcome.RESET),
-        row_of("f x", outcome=Outcome.TORN),
-    ]
-    assert happened(rows, ()) == (
-        "Of 6 runs: 2 ended with an angle error of 1.0e-5 to 2.0e-3 rad, "
-        "1 ended and had nothing to be compared with, 2 **torn**, 1 **reset**."
-    )
-    assert happened(rows[:1], (), "energy") == "Of 1 run: 1 ended with an energy error of 5.3e-3 relative."
-    seen = [Observation("first", "slow", "0.1 m"), Observation("mid", "", "0.2 m"), Observation("last", "", "0.3 m")]
-    assert happened((), seen) == "first (slow): 0.1 m. last: 0.3 m."
-    assert happened((), seen[:1]) == "first (slow): 0.1 m."
-    assert happened((), ()) == ""
-
-
 def test_an_experiment_in_which_nothing_was_compared_says_so():
     @dataclass(frozen=True)
     class Ended(Disc):
@@ -126,7 +106,7 @@ def test_an_experiment_in_which_nothing_was_compared_says_so():
     assert compared_only(cell, row).gap == row.gap
     assert compared_only(replace(cell, scene=Disc()), row) == row
     told = told_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
-    assert "nothing to be compared with" in told.happened
+    assert "- rad" in told.grid
     assert "0 rad" not in told.grid
 
 
@@ -148,7 +128,7 @@ def test_who_holds_the_joints_stands_beside_each_method_and_changes_with_the_sce
 
     found = holders([Cell(FreeFourBar(), Ours(), 1), Cell(FreeFourBar(), Half(), 1), Cell(FreeFourBar(), Ours(), 10)])
     assert found == {"toy ours": "ours or engine"}
-    head, line = table(outcome_grid([row_of("toy ours")], found))
+    head, line = table(scene_table([row_of("toy ours")], "angle", found))
     assert (head[:2], line[:2]) == (["method", "joints held by"], ["toy ours", "ours or engine"])
     assert markdown(["method", "b"], [["x", "1"]], held={"y": "ours"}).splitlines()[-1] == "| x | - | 1 |"
 

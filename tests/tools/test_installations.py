@@ -174,7 +174,7 @@ def test_their_page_is_written_from_their_template_and_a_scene_without_one_has_a
     assert "not measured" not in texts["flywheel.md"]
     assert all(f"| {method} |" in texts["flywheel.md"] for method in (*METHODS, "lagrange rk4 projection"))
     assert texts["spare_wheel.md"].startswith("# spare_wheel\n")
-    assert all(f"| {method} |" in texts["spare_wheel_data.md"] for method in METHODS)
+    assert all(f"| {method} |" in texts["spare_wheel.md"] for method in METHODS)
     assert "mass=3" in texts["descriptions.csv"]
 
 

@@ -90,7 +90,7 @@ CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
 def test_contributing_is_short_and_names_files_groups_and_targets_that_are_there():
-    assert len(CONTRIBUTING.splitlines()) < 115
+    assert len(CONTRIBUTING.splitlines()) < 120
     paths = set(re.findall(r"`((?:reports|reference|engines|tests)/[\w/.]+)", CONTRIBUTING))
     assert paths
     assert [path for path in paths if not (ROOT / path).exists()] == []
