@@ -15,7 +15,8 @@ from reports.model.page import Material, Page
 from reports.model.usual_steps import USUAL_STEPS
 from reports.pages.findings import findings
 from reports.write import unmeasured
-from reports.write.page_tables import overviews
+from reports.write.columns import BUDGET, equal_cost, equal_error, equal_step
+from reports.write.page_tables import TARGETS
 from reports.write.provenance import machine, versions
 from reports.write.templates import environment, inert_page, link, with_part
 
@@ -161,7 +162,11 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             titles={page.name: page.title for page in pages},
             findings=[found for found in told if found.page in known],
             symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
-            overviews=overviews(entries),
+            equal_cost=equal_cost(entries),
+            equal_error=equal_error(entries),
+            equal_step=equal_step(entries),
+            budget=1e3 * BUDGET,
+            targets=TARGETS,
             steps=list(USUAL_STEPS),
             outcomes=list(Outcome),
             files=files,
