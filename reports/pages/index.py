@@ -20,8 +20,6 @@ from reports.write.page_tables import TARGETS
 from reports.write.provenance import machine, versions
 from reports.write.templates import environment, inert_page, link, with_part
 
-FEW = 100  # steps: a scene of fewer is no example of a step
-
 
 @dataclass(frozen=True)
 class Symptom:
@@ -181,18 +179,5 @@ def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> l
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
-
-    Nothing in it depends on timings. A scene that is over within a hundred of the steps is left to the index: at such a
-    step nobody would run it. Raises ValueError where the marks of a part are missing.
-    """
-    step = USUAL_STEPS["1 ms"]
-    firsts = [
-        (page, _overview_rows(page, material, page.scenes[:1]))
-        for page, material in pages.items()
-        if page.scenes and page.scenes[0].duration > FEW * step
-    ]
-    shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
-    told = overviews(firsts, {"1 ms": step}, "reports/results/")
-    text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
-    return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
+    """The readme with what was found in it. Raises ValueError where the marks of the part are missing."""
+    return with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))

@@ -16,6 +16,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS
+from reports.pages.comparison import PICTURE, compared_lines, picture
 from reports.pages.findings import findings, pictures
 from reports.pages.index import engines_of, foot, render_index
 from reports.plots import work_precision as charts
@@ -24,7 +25,7 @@ from reports.write import page_tables, tables, unmeasured
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders
-from reports.write.programs import advised_settings, programs_of
+from reports.write.programs import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of
 
@@ -56,9 +57,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "step": page_tables.compared_step(rows),
         "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
-        "settings": advised_settings(
-            scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
-        ),
+        "programs": advised_programs(page, scene, advice, engines) if scene is page.advised_scene else [],
         "beside": page_tables.beside_table(material.beside([scene]), page.quantity),
         "work": tables.work_table(rows, page.quantity, held=held) if rows else "",
         "orders": tables.order_table(sweeps(rows), held=held) if rows else "",
@@ -98,6 +97,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     scenes = [
         told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
     ]
+    files |= {each.file: each.text for scene in scenes for each in scene["programs"]}
     given = {
         "page": page,
         "scenes": scenes,
@@ -135,6 +135,8 @@ def render_all(
         rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
         made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
+    if compared := picture(compared_lines(pages)):
+        files[PICTURE] = compared
     files["index.md"] = render_index(pages, command, files)
     # A stored row counts only where the versions are those that it was made with, so these are its own.
     of_engine = {engine: row_versions(engine) for engine in dict.fromkeys(made_by.values())}

@@ -17,7 +17,7 @@ from reference.joints import Skate
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reports.model.cells import mechanism_of
-from reports.model.convergence import Sweep, Verdict, by_method, groups, sweeps
+from reports.model.convergence import Sweep, Verdict, by_method, sweeps
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
@@ -28,6 +28,7 @@ from reports.write.tables import NOTHING, markdown, milliseconds, number
 
 # CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
 BUDGET = 1e-2
+WITHIN = SAME_COST * BUDGET  # what scatters by less is equal
 
 
 class Column(StrEnum):
@@ -165,12 +166,23 @@ def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
     for row in sorted(rows, key=lambda row: row.step):
         error = getattr(row, name)
         worst = max(worst, error) if Outcome(row.outcome).comparable and math.isfinite(error) else math.inf
-        if 0 < row.cpu <= SAME_COST * cost:
+        if 0 < row.cpu <= cost:
             least = min(least, worst)
     return least
 
 
-def equal_cost(entries: Iterable[Entry], folder: str = "", cost: float = BUDGET) -> str:
+def reached(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
+    """(CPU time [s/s], least error within it) by rising cost: of each run of some methods that brings it down, and of
+    the dearest."""
+    methods = list(methods)
+    costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
+    found = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
+    drawn = [(cost, error) for cost, error in found if 0 < error < math.inf]
+    better = [point for before, point in zip([(0.0, math.inf), *drawn], drawn, strict=False) if point[1] < before[1]]
+    return better + [point for point in drawn[-1:] if point not in better]
+
+
+def equal_cost(entries: Iterable[Entry], folder: str = "", cost: float = WITHIN) -> str:
     """One table of all engines: the error that each column reaches within this CPU time [s/s]."""
 
     def cell(line: Line, column: Column) -> str:
@@ -178,7 +190,7 @@ def equal_cost(entries: Iterable[Entry], folder: str = "", cost: float = BUDGET)
         least = min((error_within(rows, line.name, cost) for rows in methods), default=math.inf)
         if math.isfinite(least):
             return number(least)
-        cheap = [row for rows in methods for row in rows if 0 < row.cpu <= SAME_COST * cost]
+        cheap = [row for rows in methods for row in rows if 0 < row.cpu <= cost]
         failed = dict.fromkeys(row.outcome for row in cheap if not Outcome(row.outcome).comparable)
         return f"**{', '.join(failed)}**" if failed else "not kept" if cheap else TOO_DEAR
 
