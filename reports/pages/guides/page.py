@@ -13,6 +13,7 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
+from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 
@@ -69,6 +70,7 @@ def guide(
 
 
 PAGES = (
+    YOUR_LOOP,
     guide("glossary", "Glossary", "The words of these pages, each in a sentence or two."),
     guide(
         "reactions",
