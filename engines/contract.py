@@ -210,6 +210,10 @@ class Engine(ABC):
         """The engine that is stepped: inside of those that choose and combine others."""
         return self
 
+    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+        """The step of every run that an answer takes at least, in parts of dt: one run of steps as told."""
+        return (1.0,)
+
     @abstractmethod
     def build(self, mechanism: Mechanism, dt: float) -> Run: ...
 
@@ -264,6 +268,9 @@ class Around(Engine):
 
     def within(self, mechanism: Mechanism) -> Engine:
         return self.engine.within(mechanism)
+
+    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+        return self.engine.steps_of_runs(mechanism)
 
 
 # Of a step: far below the half step by which a state can belong to another instant, far above what products round.

@@ -141,6 +141,10 @@ class Extrapolated(Around, Valid):
     def softness(self, mechanism: Mechanism, dt: float) -> None:
         """Nothing is declared: a softness that is tied to the step is extrapolated too."""
 
+    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+        """One run a level."""
+        return tuple(1 / level for level in self.levels)
+
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Build the engine once a level; raises whatever it raises."""

@@ -147,6 +147,10 @@ class MuJoCo(Engine, Valid):
     def _tree(self, mechanism: Mechanism) -> Tree:
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
+    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+        """An estimate takes a second run, by double steps."""
+        return (2.0, 1.0) if self.estimates else (1.0,)
+
     def softness(self, mechanism: Mechanism, dt: float) -> Softness | None:
         """How loops, skates and rolls give way with steps of dt [s]; None where the tree holds every joint."""
         tree = self._tree(mechanism)

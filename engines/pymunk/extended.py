@@ -55,6 +55,9 @@ class Extended(Engine, Valid):
     def within(self, mechanism: Mechanism) -> Engine:
         return self.chosen(mechanism).within(mechanism)
 
+    def steps_of_runs(self, mechanism: Mechanism) -> tuple[float, ...]:
+        return self.chosen(mechanism).steps_of_runs(mechanism)
+
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> Run:
         """Raises whatever the chosen engine raises."""

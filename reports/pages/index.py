@@ -15,11 +15,10 @@ from reports.model.page import Material, Page
 from reports.model.usual_steps import USUAL_STEPS
 from reports.pages.findings import findings
 from reports.write import unmeasured
-from reports.write.page_tables import overviews
+from reports.write.columns import BUDGET, equal_cost, equal_error, equal_step
+from reports.write.page_tables import TARGETS
 from reports.write.provenance import machine, versions
 from reports.write.templates import environment, inert_page, link, with_part
-
-FEW = 100  # steps: a scene of fewer is no example of a step
 
 
 @dataclass(frozen=True)
@@ -161,7 +160,11 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             titles={page.name: page.title for page in pages},
             findings=[found for found in told if found.page in known],
             symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
-            overviews=overviews(entries),
+            equal_cost=equal_cost(entries),
+            equal_error=equal_error(entries),
+            equal_step=equal_step(entries),
+            budget=1e3 * BUDGET,
+            targets=TARGETS,
             steps=list(USUAL_STEPS),
             outcomes=list(Outcome),
             files=files,
@@ -176,18 +179,5 @@ def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> l
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with its parts: what was found, and the line of each page's first scene in engines as shipped and set.
-
-    Nothing in it depends on timings. A scene that is over within a hundred of the steps is left to the index: at such a
-    step nobody would run it. Raises ValueError where the marks of a part are missing.
-    """
-    step = USUAL_STEPS["1 ms"]
-    firsts = [
-        (page, _overview_rows(page, material, page.scenes[:1]))
-        for page, material in pages.items()
-        if page.scenes and page.scenes[0].duration > FEW * step
-    ]
-    shipped = {(row.engine, row.variant) for _, rows in firsts for row in rows}
-    told = overviews(firsts, {"1 ms": step}, "reports/results/")
-    text = with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
-    return with_part(text, "overview", "\n\n".join(told[engine] for engine in told if (engine, "default") in shipped))
+    """The readme with what was found in it. Raises ValueError where the marks of the part are missing."""
+    return with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))

@@ -15,6 +15,7 @@ from reports.model.convergence import judged
 from reports.model.measure import Measurement
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS
+from reports.pages.comparison import PICTURE, compared_lines, picture
 from reports.pages.findings import findings, pictures
 from reports.pages.index import engines_of, render_index
 from reports.plots import work_precision as charts
@@ -23,7 +24,7 @@ from reports.write import page_tables, unmeasured
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders
-from reports.write.programs import advised_settings, programs_of
+from reports.write.programs import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of
 
@@ -47,9 +48,7 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "step": page_tables.compared_step(rows),
         "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
-        "settings": advised_settings(
-            scene, advice, engines, programs_of(page) if scene is page.advised_scene else None
-        ),
+        "programs": advised_programs(page, scene, advice, engines) if scene is page.advised_scene else [],
     }
 
 
@@ -82,6 +81,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
     scenes = [
         told_scene(scene, [row for row in rows if row.scene == scene.name], page, material) for scene in page.scenes
     ]
+    files |= {each.file: each.text for scene in scenes for each in scene["programs"]}
     given = {
         "page": page,
         "scenes": scenes,
@@ -116,6 +116,8 @@ def render_all(
         rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
         made_by.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
+    if compared := picture(compared_lines(pages)):
+        files[PICTURE] = compared
     files["index.md"] = render_index(pages, command, files)
     # A stored row counts only where the versions are those that it was made with, so these are its own.
     of_engine = {engine: row_versions(engine) for engine in dict.fromkeys(made_by.values())}

@@ -9,7 +9,6 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from reports.cli.drawing import drawn, material_of
@@ -20,9 +19,6 @@ from reports.model.measure import measure
 from reports.model.page import Page
 from reports.pages.rendering import render_page
 from reports.run.store import Store
-from reports.write.programs import PAGES as FOLDER
-from reports.write.programs import program, programs_of
-from reports.write.tables import step_words
 from reports.write.templates import anchor, headings
 from tests.committed_rows import RESULTS
 from tests.committed_rows import page_rows as whole
@@ -34,10 +30,6 @@ undrawn = rendering.undrawn  # pytest finds a fixture by its name in the module
 
 MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-PROGRAM = re.compile(r"^### ([^\n]*)\n\n```python\n(.*?)^```\n\nExact: ([^:]*): ([^\n]*)\.$", re.DOTALL | re.MULTILINE)
-# Engine, variant and step of each line of the table of advice.
-ADVISED = re.compile(r"^\| (\w+) \| [^|]* \| \*\*([^|]*)\*\* \|(?: [^|]* \|)? ([^|]* ms) \|", re.MULTILINE)
-
 named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 
 
@@ -83,43 +75,9 @@ def test_every_block_of_code_on_a_page_runs_as_printed_and_prints_its_result(pag
 
 
 @named
-def test_a_program_moves_as_the_method_whose_name_it_has(page, undrawn):
-    text, scene = texts(page)[f"{page.name}.md"], page.advised_scene
-    assert scene is not None
-    engines = {f"{engine.name} {engine.variant}": engine for engine in page.engines_of(scene)}
-    printed = PROGRAM.findall(text)
-    assert len(printed) == text.count("[a program to copy](")
-    for method, source, body, exact in printed:
-        names, said = run(source)
-        steps, duration = names["steps"], names["duration"]
-        assert duration <= min(scene.duration, scene.horizon)
-        trajectory = engines[method].build(scene.mechanism(), duration / steps)(1, steps)
-        pose = trajectory.pose[-1, scene.mechanism().body_index(body)]
-        # Programs have twelve digits of the scene's numbers; a motion of some seconds makes that a few 1e-11.
-        assert np.asarray(names["end"]) == pytest.approx(pose, abs=1e-9), method
-        assert said.startswith(f"{body}: ")
-        rows = [r for r in whole(page).values() if (r.method, r.scene) == (method, scene.name) and r.purpose == "sweep"]
-        (row,) = [row for row in rows if row.step == pytest.approx(duration / steps)]
-        # The first step that the table above advises for this method: another one may have a row too.
-        assert step_words(row.step) == next(step for *who, step in ADVISED.findall(text) if " ".join(who) == method)
-        told = np.array([float(value) for value in re.findall(r"= (-?[\d.]+)", exact)])
-        far = np.abs(told - names["end"])
-        assert max(far[:2]) <= 1.01 * row.position + 1e-9
-        assert far[2] <= 1.01 * row.angle + 1e-9
-
-
-def test_every_program_is_of_a_method_of_its_page():
-    pages = {page.name: page for page in MECHANISMS}
-    for path in FOLDER.glob("*/programs/*.py"):
-        page = pages[path.parents[1].name]
-        methods = [f"{engine.name} {engine.variant}" for engine in page.engines]
-        assert path.read_text(encoding="utf-8") in [program(programs_of(page), method) for method in methods], path
-
-
-def test_a_program_that_is_wrong_by_a_thousandth_is_noticed():
-    source = program(FOLDER / "four_bar" / "programs", "mujoco tuned")
-    right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
-    assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6
+def test_no_method_is_told_by_its_settings_as_python_prints_them(page, undrawn):
+    for text in texts(page).values():
+        assert not re.search(r"\b(Pymunk|MuJoCo|Lagrange|Extended|Extrapolated)\(\w+=", text)
 
 
 def called(name: str) -> Disc:

@@ -10,6 +10,7 @@ from engines import Engine, lagrange, mujoco, pymunk
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.model.cells import FULL, sweep_cells
 from reports.model.page import Material, Page
+from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write.rows import lookups
 from reports.write.tables import markdown, number
 
@@ -48,6 +49,7 @@ PAGES = (
         engines=(),
         template=FOLDER / "glossary.md",
     ),
+    YOUR_LOOP,
     Page(
         name="settings",
         title="Settings",

@@ -1,0 +1,292 @@
+"""What stands in a column of a table of engines, by who holds the joints; and the tables of all scenes.
+
+A method's name does not decide: documented settings are such only where the engine itself holds every joint by them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+
+from engines import Engine
+from engines.registry import method
+from reference.joints import Skate
+from reference.rolling.roll import Roll
+from reference.scene import Scene
+from reports.model.cells import mechanism_of
+from reports.model.convergence import Sweep, Verdict, by_method, sweeps
+from reports.model.measure import Measurement
+from reports.model.outcomes import Outcome
+from reports.model.page import Page
+from reports.model.quantities import quantity
+from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
+from reports.write.page_tables import SAME_COST, TARGETS, reliable
+from reports.write.tables import NOTHING, markdown, milliseconds, number
+
+# CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
+BUDGET = 1e-2
+WITHIN = SAME_COST * BUDGET  # what scatters by less is equal
+
+
+class Column(StrEnum):
+    SHIPPED = "as shipped"
+    SETTINGS = "documented settings"
+    CODE = "with our code"
+    NAIVE = "naive"  # our code alone holds a joint that the engine does not have: in no table of engines
+    WHOLE = ""  # of an engine that has no such variants
+
+
+VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
+NO_JOINT, NOT_BUILT, TOO_DEAR = "no such joint", "not built", "too dear"
+
+
+@cache
+def column_of(scene: Scene, engine: Engine) -> Column:
+    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
+    mechanism = mechanism_of(scene)
+    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
+    if "ours" in held:
+        return Column.NAIVE
+    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
+        return Column.CODE
+    return VARIANTS.get(engine.variant, Column.SETTINGS)
+
+
+def runs_of(engine: Engine, scene: Scene, step: float) -> str:
+    """'5 runs, finest 0.125 ms' for steps as told [s]; empty for a single run."""
+    steps = engine.steps_of_runs(mechanism_of(scene))
+    return f"{len(steps)} runs, finest {number(1e3 * step * min(steps), 3)} ms" if len(steps) > 1 else ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """The rows of one scene in one engine, by column; a column without methods is one in which the engine has none."""
+
+    page: Page
+    scene: Scene
+    engine: str
+    columns: Mapping[Column, tuple[tuple[Engine, tuple[Measurement, ...]], ...]]
+
+    @property
+    def name(self) -> str:
+        return self.page.quantity
+
+
+Entry = tuple[Page, Sequence[Measurement]]  # a page, and the rows of those of its scenes that are to be shown
+
+
+def lines(entries: Iterable[Entry]) -> list[Line]:
+    """A line for each scene and engine that have rows.
+
+    Where an engine's tuned variant needs our code for a scene, a construction of the page that needs none stands for
+    its documented settings, if there is one.
+    """
+    found = []
+    for page, rows in entries:
+        usual = usual_variants((engine.name, engine.variant) for engine in page.engines)
+        for scene in page.scenes:
+            own = [row for row in rows if row.scene == scene.name]
+            for name in dict.fromkeys(row.engine for row in own):
+                methods = [engine for engine in page.engines_of(scene) if engine.name == name]
+                columns: dict[Column, list[Engine]] = {}
+                for engine in methods:
+                    if engine.variant in usual[name]:
+                        place = column_of(scene, engine) if VARIANTS.keys() & {*usual[name]} else Column.WHOLE
+                        columns.setdefault(place, []).append(engine)
+                if Column.SETTINGS not in columns and Column.WHOLE not in columns:
+                    others = [each for each in methods if column_of(scene, each) is Column.SETTINGS]
+                    columns |= {Column.SETTINGS: others} if others else {}
+                with_rows = {
+                    place: tuple((each, tuple(row for row in own if row.method == method(each))) for each in engines)
+                    for place, engines in columns.items()
+                    if place is not Column.NAIVE
+                }
+                found.append(Line(page, scene, name, with_rows))
+    return found
+
+
+Cell = Callable[[Line, Column], str]
+Head = Callable[[Iterable[Line], Column], str]  # what is told of a whole column
+
+
+def _nothing(found: Iterable[Line], column: Column) -> str:
+    return ""
+
+
+def _told(line: Line, column: Column, cell: Cell) -> str:
+    """A cell: empty, with the reason, where the engine has no such joint or our adapter builds none."""
+    if column not in line.columns:
+        return f"*{NO_JOINT}*"
+    rows = [row for _, own in line.columns[column] for row in own]
+    if not rows:
+        return NOTHING
+    if all(row.outcome == Outcome.UNSUPPORTED for row in rows):
+        return f"*{NO_JOINT if any('https://' in row.sentence for row in rows) else NOT_BUILT}*"
+    joints = mechanism_of(line.scene).joints
+    engine_holds = column in (Column.SHIPPED, Column.SETTINGS)
+    contact = engine_holds and any(isinstance(joint, Skate | Roll) for joint in joints)
+    return cell(line, column) + (", contact" if contact else "")
+
+
+def _table(
+    found: Iterable[Line], cell: Cell, folder: str, both: bool, head: Head = _nothing
+) -> Iterator[tuple[str, str]]:
+    """(engine, table), or one table of all engines under an empty name if `both`."""
+    found = list(found)
+    for engine in [""] if both else dict.fromkeys(line.engine for line in found):
+        own = [line for line in found if engine in ("", line.engine)]
+        heads = dict.fromkeys(
+            (line.engine, place) for place in Column for line in own if place in line.columns
+        )  # an engine's columns together, in the order of Column
+        ordered = [head for name in dict.fromkeys(line.engine for line in own) for head in heads if head[0] == name]
+        body = []
+        for scene in dict.fromkeys((line.page.name, line.scene) for line in own):
+            here = {line.engine: line for line in own if (line.page.name, line.scene) == scene}
+            first = next(iter(here.values()))
+            unit = quantity(first.name).unit
+            name = f"[{first.scene.name.replace('_', ' ')}]({folder}{first.page.name}.md), {unit}"
+            told = [_told(here[each], place, cell) if each in here else NOTHING for each, place in ordered]
+            body.append([name, *told])
+        names = [
+            f"{each} {place}".strip() + head([line for line in own if line.engine == each], place)
+            for each, place in ordered
+        ]
+        yield engine, markdown(["scene", *names], body, len(ordered) + 1)
+
+
+def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
+    """The least error of a method's runs that take no more CPU time than this [s/s]; infinite without one.
+
+    An error counts at a step only if no smaller step has a larger one: else it is luck.
+    """
+    worst, least = 0.0, math.inf
+    for row in sorted(rows, key=lambda row: row.step):
+        error = getattr(row, name)
+        worst = max(worst, error) if Outcome(row.outcome).comparable and math.isfinite(error) else math.inf
+        if 0 < row.cpu <= cost:
+            least = min(least, worst)
+    return least
+
+
+def reached(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
+    """(CPU time [s/s], least error within it) by rising cost: of each run of some methods that brings it down, and of
+    the dearest."""
+    methods = list(methods)
+    costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
+    found = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
+    drawn = [(cost, error) for cost, error in found if 0 < error < math.inf]
+    better = [point for before, point in zip([(0.0, math.inf), *drawn], drawn, strict=False) if point[1] < before[1]]
+    return better + [point for point in drawn[-1:] if point not in better]
+
+
+def equal_cost(entries: Iterable[Entry], folder: str = "", cost: float = WITHIN) -> str:
+    """One table of all engines: the error that each column reaches within this CPU time [s/s]."""
+
+    def cell(line: Line, column: Column) -> str:
+        methods = [rows for _, rows in line.columns[column]]
+        least = min((error_within(rows, line.name, cost) for rows in methods), default=math.inf)
+        if math.isfinite(least):
+            return number(least)
+        cheap = [row for rows in methods for row in rows if 0 < row.cpu <= cost]
+        failed = dict.fromkeys(row.outcome for row in cheap if not Outcome(row.outcome).comparable)
+        return f"**{', '.join(failed)}**" if failed else "not kept" if cheap else TOO_DEAR
+
+    return next((table for _, table in _table(_swept(entries), cell, folder, both=True)), "")
+
+
+def equal_error(entries: Iterable[Entry], folder: str = "") -> dict[str, str]:
+    """Engine -> its table: the least CPU time [ms/s] for an error below each of TARGETS."""
+
+    def cell(line: Line, column: Column) -> str:
+        costs = [
+            min(
+                (row.cpu for _, rows in line.columns[column] for row in reliable(rows, line.name, target)),
+                default=math.nan,
+            )
+            for target in TARGETS
+        ]
+        return ", ".join(map(milliseconds, costs)) if any(map(math.isfinite, costs)) else NOTHING
+
+    return dict(_table(_swept(entries), cell, folder, both=False))
+
+
+def _swept(entries: Iterable[Entry]) -> list[Line]:
+    return lines((page, [row for row in rows if row.purpose == "sweep"]) for page, rows in entries)
+
+
+def equal_step(entries: Iterable[Entry], steps: Mapping[str, float] = USUAL_STEPS, folder: str = "") -> dict[str, str]:
+    """Engine -> its table: the errors at these steps [s] by name. No cell has a time.
+
+    How many runs an answer takes stands in the heading where it is the same for all scenes.
+    """
+    last = list(steps.values())[-1]
+
+    def runs(found: Iterable[Line], column: Column) -> set[str]:
+        return {runs_of(each.columns[column][-1][0], each.scene, last) for each in found if column in each.columns}
+
+    def head(found: Iterable[Line], column: Column) -> str:
+        told = runs(found, column)
+        return f" ({told.pop()})" if len(told) == 1 and told != {""} else ""
+
+    found = lines(entries)
+    alike = {
+        (line.engine, column): len(runs((each for each in found if each.engine == line.engine), column)) == 1
+        for line in found
+        for column in line.columns
+    }
+
+    def cell(line: Line, column: Column) -> str:
+        engine, rows = line.columns[column][-1]  # of our code, what is extended furthest
+        own = "" if alike[line.engine, column] else runs_of(engine, line.scene, last)
+        return "; ".join(filter(None, (_at_steps(line, engine, rows, steps), own)))
+
+    return dict(_table(found, cell, folder, both=False, head=head))
+
+
+def _at_steps(line: Line, engine: Engine, members: Sequence[Measurement], steps: Mapping[str, float]) -> str:
+    """'0.044, 0.01; plateau 0.011', or the outcomes where no step gave an answer."""
+    if not any(Outcome(row.outcome).comparable for row in members):
+        return ", ".join(dict.fromkeys(row.outcome for row in members))
+    asked = [step for name, step in steps.items() if is_run_at(name, engine.name, engine.variant)]
+    sweep = by_method(sweeps(members), line.name).get((line.scene.name, engine.name, engine.variant))
+    at = [next((row for row in members if is_step(row.step, step)), None) for step in asked]
+    errors = [getattr(row, line.name) for row in at if row is not None and Outcome(row.outcome).comparable]
+    words = [_error(row, line.name) for row in at]
+    told = words if len(set(words)) > 1 else words[:1]  # "saturated" once
+    end = _brought(sweep, members, errors) if sweep else ""
+    return "; ".join(filter(None, (", ".join(told), end)))
+
+
+def _error(row: Measurement | None, name: str) -> str:
+    """The error at one step, the outcome where it can't be compared, a dash where the step was not run."""
+    if row is None:
+        return NOTHING
+    return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
+
+
+def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]) -> str:
+    """What a smaller step brings: an order only where the error falls to the finest step."""
+    finest = min((row for row in members if row.purpose == "sweep"), key=lambda row: row.step)
+    if not Outcome(finest.outcome).comparable:
+        return f"**{finest.outcome}** at {_step(finest.step)}"
+    match sweep.verdict:
+        case Verdict.PLATEAU:
+            luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in told) else ""
+            return f"**plateau {number(sweep.plateau)}**{luck}"
+        case Verdict.ROUNDING:
+            return "to rounding"
+        case Verdict.FALLS if sweep.points >= 2:
+            return f"order {sweep.order:.1f}"
+        case Verdict.LEVELS:
+            return "**levels off**"
+        case Verdict.GROWS | Verdict.ERRATIC:
+            return f"**least at {_step(sweep.best_step)}**, then worse"
+        case _:
+            return ""
+
+
+def _step(step: float) -> str:
+    return f"{number(1e3 * step)} ms"

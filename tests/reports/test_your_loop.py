@@ -1,0 +1,126 @@
+"""The lines to paste, pasted into models as shipped: they err as the page says."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+import pymunk
+import pytest
+
+from engines.mujoco.writers import MJCF
+from engines.pymunk.written_script import SCRIPT
+from reference.scene import Scene
+from reports.model.page import Material
+from reports.pages.your_loop.page import CHAIN, DISC, EVERY, LINES, LOOP, MUJOCO, PYMUNK, SLIDER, aimed, cell, words
+from tests.committed_rows import committed_rows
+
+STEP = 1e-3
+
+
+def lines(name: str) -> str:
+    return (LINES / f"{name}.txt").read_text(encoding="utf-8")
+
+
+def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
+    """The largest angle error [rad] of a model that `advance` takes from sample to sample."""
+    truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
+    worst = 0.0
+    for exact in truth[1:]:
+        advance()
+        apart = np.array(poses())[:, 2] - exact[:, 2]
+        worst = max(worst, float(np.abs((apart + math.pi) % (2 * math.pi) - math.pi).max()))
+    return worst
+
+
+def in_mujoco(scene: Scene, text: str, pasted: str = "") -> float:
+    model = mujoco.MjModel.from_xml_string(text)
+    exec(pasted, {"model": model, "mujoco": mujoco})
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mechanism = scene.mechanism()
+
+    def poses() -> list[tuple[float, float, float]]:
+        mujoco.mj_forward(model, data)
+        found = []
+        for body in mechanism.bodies:
+            here = data.body(body.name)
+            w, _, _, z = here.xquat
+            found.append((*here.xpos[:2], body.pose[2] + 2 * math.atan2(z, w)))
+        return found
+
+    assert model.opt.timestep == pytest.approx(STEP)
+    return error_of(scene, poses, lambda: mujoco.mj_step(model, data, nstep=EVERY))
+
+
+def in_pymunk(scene: Scene, pasted: str) -> float:
+    names: dict = {"__name__": "a script"}
+    exec(SCRIPT.write(scene.mechanism(), STEP, "default"), names)
+    space = names["make"]()
+    exec(pasted, {"space": space, "pymunk": pymunk})
+    by_name = {body.name: body for body in space.bodies}
+    ordered = [by_name[body.name] for body in scene.mechanism().bodies]
+
+    def advance() -> None:
+        for _ in range(EVERY):
+            space.step(STEP)
+
+    return error_of(scene, lambda: [(*body.position, body.angle) for body in ordered], advance)
+
+
+def row(case, engine) -> float:
+    (found,) = committed_rows([cell(case, engine)]).values()
+    return found.angle
+
+
+CASES = {case.scene.name: (case, other) for case, other in zip(MUJOCO, PYMUNK, strict=True)}
+
+
+@pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
+def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(scene):
+    case, _ = CASES[scene.name]
+    shipped = MJCF.write(scene.mechanism(), STEP, "default")
+    # Of RK4 with as many digits in the file as there are: what the solver's tolerance and the file round is far below.
+    assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after[0]), rel=0.02)
+
+
+def test_the_lines_of_xml_give_the_same_on_joints_that_set_nothing_themselves():
+    case, _ = CASES[LOOP.name]
+    shipped = re.sub(r' sol(ref|imp)="[^"]*"', "", MJCF.write(LOOP.mechanism(), STEP, "default"))
+    assert in_mujoco(LOOP, shipped) > 0.005
+    pasted = shipped.replace("</mujoco>", f"{lines('options')}</mujoco>")
+    assert in_mujoco(LOOP, pasted) == pytest.approx(row(case, case.after[0]), rel=0.02)
+
+
+def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
+    case, _ = CASES[DISC.name]
+    shipped = MJCF.write(DISC.mechanism(), STEP, "default")
+    ground, wheel = re.findall(r'<geom name="(contact: \w+)"', shipped)[::-1]
+    pasted = lines("rolling").replace('"ground"', f'"{ground}"').replace('"wheel"', f'"{wheel}"')
+    text = re.sub(r"<contact>.*</contact>", "", shipped, flags=re.DOTALL).replace("</mujoco>", f"{pasted}</mujoco>")
+    assert in_mujoco(DISC, text) == pytest.approx(row(case, case.after[0]), rel=0.02)
+
+
+@pytest.mark.parametrize("scene", [LOOP, SLIDER, CHAIN], ids=lambda scene: scene.name)
+def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
+    _, case = CASES[scene.name]
+    joints = lines("joints")
+    if scene is CHAIN:
+        joints = joints.replace("space.iterations = 8 ", "space.iterations = 60 ")
+    shipped, closed, ahead = in_pymunk(scene, ""), in_pymunk(scene, joints), in_pymunk(scene, joints + lines("start"))
+    assert closed == pytest.approx(row(case, case.after[0]), rel=0.05)
+    assert ahead < closed / 8 < shipped / 8  # of second order
+
+
+def test_what_is_done_before_each_step_of_a_skate_is_what_its_program_does():
+    for engine, stepped in (("mujoco", "mujoco.mj_step(model, data)"), ("pymunk", "space.step(dt)")):
+        assert aimed(engine).endswith(f"    aim()\n    {stepped}")
+
+
+def test_without_rows_there_are_lines_and_no_tables():
+    told = words(Material({}))
+    assert (told["mujoco"], told["pymunk"]) == ("", "")
+    assert set(told["lines"]) == {"options", "compiled", "rolling", "joints", "start"}
