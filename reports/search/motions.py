@@ -90,7 +90,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         raise NotAsked("something passes within a step: a textbook method shows no order at these steps either")
     if run.estimate is not None:
         size = np.array([1.0, 1.0, mechanism.length_scale])
-        told = float(np.abs(run.estimate * size).max()) / _size(mechanism, truth, promise)
+        both = max(float(np.abs(each * size).max()) for each in (run.estimate, truth.estimate) if each is not None)
+        told = both / _size(mechanism, truth, promise)  # the judge may miss as much as it says, too
         missed = _apart(mechanism, run, truth, promise)["motion"]
         out["estimate"] = (missed, min(ESTIMATED * told + LEAST["motion"], LOST))
     return out
@@ -199,6 +200,7 @@ def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: 
     """
     own = Promise(max((each for each in TABLEAUS if each <= promise.order), default=1))
     spacing = SPAN * mechanism.time_scale / SAMPLES
+    parts = max(parts, 4)
     halved = (parts // 4, parts // 2, parts)
     try:
         runs = [in_numpy(mechanism, SAMPLES, spacing, int(own.order), n * COARSE, None, True) for n in halved]
