@@ -166,7 +166,8 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
         _refuse_what_is_huge(mechanism, model, start, softness, dt)
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
     followed = followed and turned_in_a_step(mechanism, dt, told.pose[-1], told.twist[-1]) <= 1
-    if radii := [_least_radius(joint) for joint in mechanism.joints if isinstance(joint, Roll)]:
+    radii = [_least_radius(joint) for joint in mechanism.joints if isinstance(joint, Roll)]
+    if followed and radii:
         # Their rows are those of a closed gap, and turn by an open one over the radius of curvature.
         open_by = np.abs(np.nan_to_num(mechanism.gap(told.pose[-1], told.t[-1]))).max()
         followed = followed and open_by <= bound(engine) * min(mechanism.length_scale, *radii)
@@ -195,7 +196,7 @@ def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softnes
         mujoco.mj_forward(model.compiled, start)
         rounding = Instant.of(mechanism, model, start, softness).floor.motion * LAW
     motion = TRUTH.build(mechanism, dt)(STEPS, 1)
-    largest = [np.hypot(rounding[:, 0], rounding[:, 1]).max()]
+    needed = [rounding]
     for pose, twist in zip(motion.pose, motion.twist, strict=True):
         if np.isfinite(pose).all():
             law = constrained(
@@ -204,8 +205,8 @@ def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softnes
                 mechanism.inertias,
                 mechanism.unconstrained(pose, twist),
             )
-            largest.append(np.hypot(law.motion[:, 0], law.motion[:, 1]).max())
-    if max(largest) > mujoco.mjMAXVAL:
+            needed.append(law.motion)
+    if max(max(np.hypot(each[:, 0], each[:, 1]).max(), np.abs(each[:, 2]).max()) for each in needed) > mujoco.mjMAXVAL:
         raise NotAsked("accelerations are above mjMAXVAL, at which MuJoCo resets a model")
 
 

@@ -16,10 +16,12 @@ from engines import CLAIM, Engine, Promise
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
+from engines.pymunk import Pymunk
 from reference.joints import Roll, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.instant_mujoco import solved
+from reports.search.instant_pymunk import grooves
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
@@ -174,8 +176,9 @@ def _closed(engine: Engine, mechanism: Mechanism, pose: Array, twist: Array, awa
     """
     promise = engine.order(mechanism)
     amplified = promise.amplified if isinstance(promise, Promise) else 1.0
-    places = ROUNDINGS * np.finfo(float).eps * amplified * written(mechanism, away)
-    moved = carried(mechanism, mechanism.pose, places).motion
+    gap = grooves(mechanism) if isinstance(engine.within(mechanism), Pymunk) else 0.0
+    rounded = ROUNDINGS * np.finfo(float).eps * amplified
+    moved = rounded * carried(mechanism, mechanism.pose, written(mechanism, away), gap).motion
     return bool(np.all(np.abs(pose) <= moved) and np.all(np.abs(twist) * STEP * mechanism.time_scale <= moved))
 
 
