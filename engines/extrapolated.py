@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from engines import CLAIM, Around, Engine, OneShot, Promise, Run, Size, Unpromised
 from engines.finer import Division, division, tells_itself
 from reference.checks import Count, InvalidMechanism, Name, Numbers, Positive, Valid, validated
+from reference.forces import Damper, Spring
+from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -26,6 +28,12 @@ FORCES = 1e-3
 # before it does. LEAST and EARLY are fitted on 1300 random mechanisms of all kinds with three steps each (seeds 7001,
 # 31153099 and 601) in pymunk, Exudyn and Bullet.
 CAUTION, LEAST, EARLY = 4, 0.5, 1 / 30
+# A series in the step needs steps that are short against what happens. Where the line of a spring, a damper or a rod
+# turns by more than this [rad] in a step of the coarsest run, all runs may miss alike; and an estimate that rises
+# STEEP-fold within the last tenth of the time is on its way to a singular position, as no power of time up to the 21st
+# rises so: errors have passed it by then.
+UNRESOLVED = "ours: unresolved from 0 s on"
+TURNED, STEEP = 0.5, 10.0
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
 
@@ -228,8 +236,13 @@ class ExtrapolatedRun(OneShot):
             with np.errstate(all="ignore"):
                 estimate[since:] = np.abs(poses[:-1, since:] - poses[-1, since:]).max(axis=0)
         warnings += self._doubts(reactions[:, ::each])
-        unresolved_at = float(t[np.argmax(largest > EARLY * CLAIM)]) if above.any() else None
-        if stiff:
+        early = largest > EARLY * CLAIM
+        unresolved_at = float(t[np.argmax(early)]) if above.any() or np.any(early & _steep(largest)) else None
+        turned = self._turned(poses[-1]) / (every * levels[0]) > TURNED
+        if turned.any():
+            at = float(t[np.argmax(turned)])
+            unresolved_at = at if unresolved_at is None else min(at, unresolved_at)
+        if stiff or any(words.startswith(UNRESOLVED) for words in warnings):  # of a part, or all miss it alike
             unresolved_at = 0.0
         if unresolved_at is not None:
             reason = "the runs are no series in the step" if lost.any() else "its own estimate is not below its claim"
@@ -270,6 +283,19 @@ class ExtrapolatedRun(OneShot):
         finer = combine(poses[-2:], extrapolation_weights(levels[-2:], powers[:1]))
         return largest > self._largest(np.abs(finer - poses[-1]))
 
+    def _turned(self, pose: Array) -> Array:
+        """(times,) by how much the line of any spring, damper or rod turns up to the next of these poses [rad]."""
+        own, out = self._mechanism, np.zeros(len(pose))
+        lines = [each for each in (*own.forces, *own.joints) if isinstance(each, Spring | Damper | Rod)]
+        for each in lines:
+            along = np.zeros(len(pose), dtype=complex)
+            for name, (x, y), sign in ((each.first, each.first_point, -1.0), (each.second, each.second_point, 1.0)):
+                place = pose[:, own.body_index(name)] if name else np.zeros((1, 3))
+                with np.errstate(all="ignore"):
+                    along += sign * (place[:, 0] + 1j * place[:, 1] + np.exp(1j * place[:, 2]) * complex(x, y))
+            out[:-1] = np.fmax(out[:-1], np.abs(np.angle(along[1:] * np.conj(along[:-1]))))
+        return out
+
     def _doubts(self, reactions: Array) -> list[str]:
         """What is to be said of reactions (levels, times, rows).
 
@@ -285,6 +311,12 @@ class ExtrapolatedRun(OneShot):
             acting = np.fmax.reduce(np.abs(forces[-1]), axis=None, initial=usual)
             share = np.fmax.reduce(expected_error(forces, levels, powers), axis=None, initial=0.0) / acting
         return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []
+
+
+def _steep(largest: Array) -> NDArray[np.bool_]:
+    """(times,) where a rising number is more than STEEP times what it was a tenth of the time before."""
+    before = largest[np.arange(len(largest)) * 9 // 10]
+    return (largest > STEEP * before) & (np.arange(len(largest)) >= 10)
 
 
 def _watched(samples: int, every: int, bodies: int) -> int:

@@ -14,6 +14,7 @@ and a second program would have to be compiled.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -23,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Softness
+from engines.lagrange import TRUTH
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
 from engines.mujoco.joints.skate import STEPWISE, slip_damping
@@ -161,11 +163,14 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
     # What turns faster than steps follow has left its rows by the later instant, or is lost: the start alone is asked.
     followed = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1
     if followed and (told.reset_at is not None or not np.isfinite(told.pose).all()):
+        _refuse_what_is_huge(mechanism, model, start, softness, dt)
         raise Fault(f"it was lost within {STEPS} steps: {'; '.join(told.warnings)}")
     followed = followed and turned_in_a_step(mechanism, dt, told.pose[-1], told.twist[-1]) <= 1
-    if any(isinstance(joint, Roll) for joint in mechanism.joints):  # whose rows are those of a closed gap
+    radii = [_least_radius(joint) for joint in mechanism.joints if isinstance(joint, Roll)]
+    if followed and radii:
+        # Their rows are those of a closed gap, and turn by an open one over the radius of curvature.
         open_by = np.abs(np.nan_to_num(mechanism.gap(told.pose[-1], told.t[-1]))).max()
-        followed = followed and open_by <= bound(engine) * mechanism.length_scale
+        followed = followed and open_by <= bound(engine) * min(mechanism.length_scale, *radii)
     if any("the solver missed" in warning for warning in told.warnings):
         raise NotAsked("it says itself that its solver ended too early")
     out = {"acceleration": 0.0, "reaction": 0.0}
@@ -179,7 +184,36 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
                 "reaction": here.missed_force(told.reaction[sample]),
             }
             out = {name: max(out[name], value) for name, value in found.items()}
+    if out["reaction"] > bound(engine) and solved(engine) != engine:  # forces were read before the solver went on
+        out["reaction"] = errors(solved(engine), mechanism)["reaction"]
     return out
+
+
+def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softness: Softness | None, dt: float) -> None:
+    """Raises NotAsked where accelerations, or what stiff rows make of rounded gaps, are above mjMAXVAL in m/s^2 or
+    rad/s^2: there MuJoCo resets a model, as its documentation says, whatever is in it."""
+    with model.hooked():
+        mujoco.mj_forward(model.compiled, start)
+        rounding = Instant.of(mechanism, model, start, softness).floor.motion * LAW
+    motion = TRUTH.build(mechanism, dt)(STEPS, 1)
+    needed = [rounding]
+    for pose, twist in zip(motion.pose, motion.twist, strict=True):
+        if np.isfinite(pose).all():
+            law = constrained(
+                mechanism.rows(pose),
+                mechanism.bias(pose, twist),
+                mechanism.inertias,
+                mechanism.unconstrained(pose, twist),
+            )
+            needed.append(law.motion)
+    if max(max(np.hypot(each[:, 0], each[:, 1]).max(), np.abs(each[:, 2]).max()) for each in needed) > mujoco.mjMAXVAL:
+        raise NotAsked("accelerations are above mjMAXVAL, at which MuJoCo resets a model")
+
+
+def _least_radius(roll: Roll) -> float:
+    """Of curvature [m], anywhere on both curves; infinite for straight lines."""
+    bent = [abs(bend) for curve in (roll.rolling.ground, roll.rolling.body) for bend in curve.curvature_range]
+    return 1 / max(bent) if max(bent) > 0 else math.inf
 
 
 def solved(engine: MuJoCo) -> MuJoCo:
@@ -268,29 +302,42 @@ class Instant:
         """What rounding makes of accelerations and forces, as parts of LAW.
 
         Beside what `rounded` knows: gaps of stiff rows are differences of places, and so are arms, eps of a place off.
-        And MuJoCo adds up the inertias of all that hangs on a body, about the centre of mass of the tree: a light body
-        far away is lost there.
+        And MuJoCo solves for the accelerations of a tree's coordinates. In the equation of one stand the inertias of
+        all that hangs on it, about the centre of mass of the tree, times accelerations that add up joint by joint, and
+        joints may move against each other: a light body far away is lost there. Of n coordinates the solution rounds
+        3 n + 1 times (Higham 2002, theorem 10.4), and sums along the tree, and each of what is added, n + 3 times.
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
         mass, places = mechanism.inertias[:, 0], np.hypot(self.pose[:, 0], self.pose[:, 1])
         touched = np.abs(rows.reshape(len(rows), len(mass), 3)[..., :2]).max(axis=-1)  # (rows, bodies)
-        spin = np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2
-        gap = self.stiff * max(mechanism.length_scale, float(places.max())) + touched @ (places * spin)
+        gap = self.stiff * max(mechanism.length_scale, float(places.max()))
+        gap = gap + touched @ (places * (np.abs(law.motion[:, 2]) + self.twist[:, 2] ** 2))
         own = [self.model.compiled.body(f"body {index}").id for index in range(len(mass))]
         far = np.hypot(*(data.xipos[own] - data.subtree_com[self.model.compiled.body_rootid[own]])[:, :2].T)
-        moved, pulled = (np.hypot(each[:, 0], each[:, 1]) for each in (law.motion, self.free))
-        hanging, inertial = mass.copy(), mass * far * (moved + far * spin)
+        moved, turned = self._along_chains(law.motion[:, :2]), self._along_chains(law.motion[:, 2:])
+        turned += self._along_chains(self.twist[:, 2:]) ** 2
+        hanging, pushed, torque = mass.copy(), mass * (moved + far * turned), mass * far * (moved + far * turned)
+        joined = np.zeros(len(mass))
         for link in reversed(self.model.tree.links):  # what hangs on a body is added to its own
+            joined[link.body] = far[link.body] + math.hypot(*link.anchor)
             if link.parent is not None:
-                hanging[link.parent] += hanging[link.body]
-                inertial[link.parent] += inertial[link.body]
-        inertial += hanging * far * (moved + far * spin)
-        torque = np.zeros_like(law.motion)
-        torque[:, 2] = inertial + places * (touched.T @ np.abs(law.force) + mass * pulled)
-        doubt = unit * gap, unit * torque
+                for each in (hanging, pushed, torque):
+                    each[link.parent] += each[link.body]
+        torque += hanging * joined * (moved + joined * turned)
+        summed = np.stack([pushed, pushed, torque], axis=1) * (5 * self.model.compiled.nv + 7) / ROUNDINGS
+        summed[:, 2] += places * (touched.T @ np.abs(law.force) + mass * np.hypot(self.free[:, 0], self.free[:, 1]))
+        doubt = unit * gap, unit * summed
         least = rounded(rows, law, right, mechanism.inertias, self.free, self.give, doubt)
         return Constrained(least.motion / LAW, least.force / LAW)
+
+    def _along_chains(self, values: Array) -> Array:
+        """(bodies,) the sums of what each joint adds to values (bodies, parts), from the ground to each body."""
+        out = np.zeros(len(values))
+        for link in self.model.tree.links:
+            before, above = (0.0, 0.0) if link.parent is None else (values[link.parent], out[link.parent])
+            out[link.body] = above + float(np.linalg.norm(values[link.body] - before))
+        return out
 
     def accelerations(self) -> Array:
         """The accelerations (tree coordinates,) of the law."""

@@ -70,8 +70,14 @@ def _rounded(mechanism: Mechanism, told: Recording, step: int, dt: float, law: C
     """
     numbers = written(mechanism) / dt + np.abs(free) + np.abs(told.after[step])
     pushed = np.abs(law.force) @ np.abs(mechanism.rows(told.pose[step])) / mechanism.inertias.reshape(-1)
-    noise = carried(mechanism, told.pose[step], numbers).motion + pushed.reshape(-1, 3)
+    noise = carried(mechanism, told.pose[step], numbers, grooves(mechanism) / dt).motion + pushed.reshape(-1, 3)
     return ROUNDINGS * np.finfo(float).eps * noise
+
+
+def grooves(mechanism: Mechanism) -> Array:
+    """(rows,) how far away [m] the ends of grooves are, which stand for slots: a gap is rounded as these places are."""
+    far = [isinstance(joint, Slot) for joint in mechanism.joints for _ in range(joint.size)]
+    return REACH * mechanism.length_scale * np.array(far, dtype=float)
 
 
 def _converged(engine: Pymunk, mechanism: Mechanism, dt: float) -> tuple[Model, Recording]:

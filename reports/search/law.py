@@ -98,15 +98,16 @@ def lost_in_products(mechanism: Mechanism, pose: Array) -> float:
     return float(np.finfo(float).eps * (inverse @ products).sum(axis=1).max())
 
 
-def carried(mechanism: Mechanism, pose: Array, wrong: Array) -> Constrained:
-    """What numbers that are `wrong` (bodies, 3) by so much leave in motions (bodies, 3), and in impulses (rows,).
+def carried(mechanism: Mechanism, pose: Array, wrong: Array, gap: Array | float = 0.0) -> Constrained:
+    """What numbers that are `wrong` (bodies, 3) by so much, and a `gap` (rows,), leave in motions (bodies, 3), and in
+    impulses (rows,).
 
     Each row then misses by e, the sum of its sizes times these, and joints that set it right move bodies (`response`).
     Rounding has no sign, so squares are added. A motion is wrong by its numbers at least.
     """
     rows = mechanism.rows(pose)
     back = response(rows, mechanism.inertias)
-    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1)
+    missed = np.linalg.norm(rows * wrong.reshape(-1), axis=1) + gap
     moved = np.linalg.norm(back.motion * missed, axis=1).reshape(-1, 3)
     return Constrained(np.maximum(wrong, moved), np.linalg.norm(back.force * missed, axis=1))
 
