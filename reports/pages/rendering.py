@@ -110,6 +110,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         **page.words(material),
     }
     texts = {f"{page.name}.md": template_of(page, "page.md", "base.md").render(given)}
+    texts |= page.further(material)
     if page.scenes:
         texts[page.data_page] = template_of(page, "data.md", "data.md").render(given)
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
