@@ -11,6 +11,8 @@ from reports.cli.options import (
     FOLDER,
     REFERENCES,
     STORE,
+    AsJson,
+    AsMarkdown,
     EngineName,
     Folder,
     Scenes,
@@ -18,7 +20,6 @@ from reports.cli.options import (
     VariantName,
     with_folder,
 )
-from reports.cli.terminal import Terminal, print_table
 from reports.model.ending import BadInput
 
 
@@ -27,6 +28,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     from engines.registry import ENGINES, INSTALLED, method
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_engines, choose_scenes
+    from reports.cli.terminal import Terminal, print_table
     from reports.model.catalogue import page_of
     from reports.model.cells import Cell
     from reports.run.running import support
@@ -58,11 +60,14 @@ def show(
     engine: EngineName = None,
     variant: VariantName = None,
     settings: Settings = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Print a scene's stored numbers."""
     from reports.cli.known import registered, with_remembered, with_words
     from reports.cli.selection import choose_engines, choose_scenes, grid_engines
+    from reports.cli.terminal import print_table, telling
     from reports.model.cells import FULL, sweep_cells
     from reports.model.convergence import judged, sweeps
     from reports.model.quantities import QUANTITIES
@@ -88,12 +93,13 @@ def show(
         rows = judged(store.get(cells).values())
     if not rows:
         raise nothing
-    console = Terminal(140)
-    for one in chosen:
-        own = [row for row in rows if row.scene == one.name]
-        print_table(console, f"{one.name}, {one.source}", ERROR_HEADER, error_rows(own), 2)
-        console.print()
-        names = [q.name for q in QUANTITIES]
-        orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
-        header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
-        print_table(console, f"{one.name}: order and plateau", header, orders, 9)
+    with telling(140, as_json, as_markdown) as console:
+        console.keep(rows)
+        for one in chosen:
+            own = [row for row in rows if row.scene == one.name]
+            print_table(console, f"{one.name}, {one.source}", ERROR_HEADER, error_rows(own), 2)
+            console.print()
+            names = [q.name for q in QUANTITIES]
+            orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
+            header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
+            print_table(console, f"{one.name}: order and plateau", header, orders, 9)
