@@ -52,7 +52,7 @@ def run(
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines, left_out
     from reports.cli.terminal import opened, telling
     from reports.run.cluster import elsewhere, pool
 
@@ -61,7 +61,7 @@ def run(
     known, names, given = with_words(registered(), scene or (), engine, settings or ())
     scenes = choose_scenes(names, known.scenes, known.pages)
     engines = choose_engines(None if given else engine, variant, given or known.engines)
-    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or ())
+    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or (), named=engine is not None)
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     if not items:
@@ -74,6 +74,11 @@ def run(
             store.remember(each.text() for each in known.given)
             count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
             print_summary(console, list(store.get(cells).values()))
+        if engine is not None and not (every or step):
+            for cell, why in left_out(scenes, engines, known.pages, full, cells):
+                method = f"{cell.engine.name} {cell.engine.variant}"
+                told = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
+                console.tell(f"{told}; --every {cell.every} runs it")
         following = with_folder("crosscheck report", results)
         console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
 
