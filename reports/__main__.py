@@ -5,8 +5,6 @@ Only what is loaded anyway is imported up here: Ctrl-C is taken care of before a
 
 from __future__ import annotations
 
-import io
-import os
 import sys
 
 
@@ -16,16 +14,17 @@ def main(arguments: list[str] | None = None) -> None:
     status = 130
     try:
         from reports.cli.interruption import ending_at_once, from_now_on_ignored
+        from reports.cli.streams import leave_streams, open_streams
 
         with ending_at_once():  # commands that have something to say of Ctrl-C keep it for themselves
             if program:
-                _open_streams()
+                open_streams()
             try:
                 status = _ended(sys.argv[1:] if arguments is None else arguments)
             except KeyboardInterrupt as interruption:
                 status = getattr(interruption, "status", status)
             if program:
-                _leave_streams()
+                leave_streams()
                 from_now_on_ignored()
     except KeyboardInterrupt:
         pass
@@ -61,25 +60,6 @@ def _ended(arguments: list[str]) -> int:
     with suppress(OSError):
         print(f"crosscheck: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
     return status
-
-
-def _open_streams() -> None:
-    """Give streams that are closed the null device, lest a file that is opened take their number, and be written."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (it stays open)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # names of files, and signs that the locale lacks
-
-
-def _leave_streams() -> None:
-    """What could not be written is dropped; Python would try again on its way out, and complain."""
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            stream.flush()
-        except OSError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 if __name__ == "__main__":

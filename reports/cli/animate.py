@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings
-from reports.cli.terminal import Terminal
 from reports.model.ending import BadInput, FileTrouble
 
 if TYPE_CHECKING:
@@ -51,6 +50,8 @@ def animate(
         raise FileTrouble(f"{path} is there already: give another --output, or --force to replace it")
     folder_for(path.absolute().parent, "give another --output")  # before anything is run
     shown = _shown(chosen[0], methods, every, results)
+    from reports.cli.terminal import Terminal
+
     for word, why in shown.lost.items():
         Terminal(140).say(f"{word}: {why}")
     _write(shown, to, path)
@@ -78,7 +79,7 @@ def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Sh
     """The motions, those that are not stored run by the pool first."""
     from engines.registry import method
     from reports.cli.run import run_interruptible
-    from reports.cli.terminal import opened
+    from reports.cli.terminal import Terminal, opened
     from reports.site.embed import shown
     from reports.site.lessons import take_like
 

@@ -20,7 +20,7 @@ from reports.cli.search import search
 from reports.cli.shapes import shapes
 from reports.cli.show import list_command, show
 from reports.cli.site import site
-from reports.cli.terminal import written
+from reports.cli.streams import written
 from reports.cli.versions import versions
 from reports.model.ending import FINE, STATUSES
 

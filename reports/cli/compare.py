@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, REFERENCES, STORE, Folder
+from reports.cli.options import FOLDER, REFERENCES, STORE, AsJson, AsMarkdown, Folder
+from reports.cli.versions import SCENES, USUAL, named_scenes, run_column
 from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
@@ -21,12 +22,10 @@ if TYPE_CHECKING:
     from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
     from reports.versions.column import VersionColumn
-    from reports.versions.comparison import Comparison
+    from reports.versions.comparison import Comparison, Difference
 
 WIDTH = 150  # into a file or a pipe
 LONGEST = 300  # letters of a reason
-# A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
-SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
 
 
 @dataclass(frozen=True)
@@ -46,20 +45,19 @@ def compare(
         str | None, typer.Option("--engine", help=f"The engine under test: its name, or {REFERENCES}.")
     ] = None,
     variant: Annotated[list[str] | None, typer.Option("--variant", help="Only this variant (repeatable).")] = None,
-    scenes: Annotated[
-        list[str] | None, typer.Option("--scenes", help="Only these scenes (repeatable, or with commas).")
-    ] = None,
+    scenes: Annotated[list[str] | None, typer.Option("--scenes", help=USUAL)] = None,
     cost: Annotated[
         float | None, typer.Option("--cost", help="Status 1 too if a method takes this many times as much CPU time.")
     ] = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Tell what changed in error, order, outcome and cost from A to B; status 1 if an error became 3 times as large."""
     if cost is not None and not 0 < cost < math.inf:
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     from engines.registry import OTHERS, VARIANTS
-    from reports.cli.terminal import Terminal
-    from reports.cli.versions import named_scenes
+    from reports.cli.terminal import telling
     from reports.model.ending import nearest
     from reports.run.files import temporary_folder
     from reports.versions.comparison import compared
@@ -77,25 +75,28 @@ def compare(
             raise nearest("variant", word, dict.fromkeys(each.variant for each in own))
     own = [each for each in own if not variant or each.variant in variant]
     chosen = named_scenes(scenes or list(SCENES))
-    console = Terminal(WIDTH)
-    with kept() as check, temporary_folder() as folder:
-        stores = [(results if side.kept else folder / str(index)) / STORE for index, side in enumerate(sides)]
-        columns = [_column(side, engine, own, chosen, store, check) for side, store in zip(sides, stores, strict=True)]
-    for side, column in zip(sides, columns, strict=True):
-        if told := column.trouble or column.mark:
-            console.say(f"{side.label}: {told}")
-    if columns[0].trouble:
-        raise BadInput(f"nothing can be compared with {sides[0].label}: {columns[0].trouble}")
-    found = compared(columns[0].rows, columns[1].rows)
-    _print(console, found, sides)
-    if found.worse or found.grown:
-        grown = f", and {len(found.grown)} errors over all scenes" if found.grown else ""
-        told = f"{len(found.worse)} numbers or outcomes{grown}"
-        raise Broken(f"{sides[1].label} is worse than {sides[0].label} in {told}")
-    dear = {method: ratio for method, ratio in found.costs.items() if cost is not None and ratio > cost}
-    if dear:
-        told = ", ".join(f"{method} takes {ratio:.2f} times the CPU time" for method, ratio in dear.items())
-        raise Broken(f"{sides[1].label} is dearer than {sides[0].label}: {told}, and --cost is {cost:g}")
+    with telling(WIDTH, as_json, as_markdown) as console:
+        with kept() as check, temporary_folder() as folder:
+            stores = [(results if side.kept else folder / str(index)) / STORE for index, side in enumerate(sides)]
+            columns = [
+                _column(console, side, engine, own, chosen, store, check)
+                for side, store in zip(sides, stores, strict=True)
+            ]
+        for side, column in zip(sides, columns, strict=True):
+            if told := column.trouble or column.mark:
+                console.tell(f"{side.label}: {told}")
+        if columns[0].trouble:
+            raise BadInput(f"nothing can be compared with {sides[0].label}: {columns[0].trouble}")
+        found = compared(columns[0].rows, columns[1].rows)
+        _print(console, found, sides)
+        if found.worse or found.grown:
+            grown = f", and {len(found.grown)} errors over all scenes" if found.grown else ""
+            told = f"{len(found.worse)} numbers or outcomes{grown}"
+            raise Broken(f"{sides[1].label} is worse than {sides[0].label} in {told}")
+        dear = {method: ratio for method, ratio in found.costs.items() if cost is not None and ratio > cost}
+        if dear:
+            told = ", ".join(f"{method} takes {ratio:.2f} times the CPU time" for method, ratio in dear.items())
+            raise Broken(f"{sides[1].label} is dearer than {sides[0].label}: {told}, and --cost is {cost:g}")
 
 
 def _named(word: str) -> tuple[Engine, ...]:
@@ -139,6 +140,7 @@ def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
 
 
 def _column(
+    console: Terminal,
     side: Side,
     reference: str | None,
     engines: list[Engine],
@@ -148,7 +150,7 @@ def _column(
 ) -> VersionColumn:
     from reports.cli.selection import QUICK_CELL
     from reports.model.cells import QUICK
-    from reports.versions.column import VersionRequest, column, modules_in
+    from reports.versions.column import VersionRequest, modules_in
 
     request = VersionRequest(
         scenes,
@@ -161,51 +163,61 @@ def _column(
         most=10 * QUICK_CELL,
         folder=Path.cwd(),
     )
-    return column(side.label, request, engines, lambda labels: check())
+    return run_column(console, side.label, side.label, request, engines, check)
 
 
 def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:
-    """Worse lines first, then better ones, then orders, then one sentence."""
+    """A line for each method of each scene, what became worse in full, then orders, cost, and one sentence."""
     from reports.cli.terminal import print_table
     from reports.gate.change import DEAR
-    from reports.write.tables import number
 
-    def cell(value: float | str) -> str:
-        return number(value) if isinstance(value, float) else str(value)
-
+    first, second = (side.label for side in sides)
+    lines = found.lines()
     rows = [
-        [
-            d.after.scene,
-            d.after.method,
-            number(d.after.step),
-            d.quantity,
-            cell(d.told(d.before)),
-            cell(d.told(d.after)),
-            "WORSE" if d.worse else "better" if d.quantity != "outcome" or d.after.outcome == "finished" else "other",
-        ]
-        for d in sorted(found.differences, key=lambda each: not each.worse)
+        [line.scene, line.method, *_told(line.chief), line.cost, line.verdict]
+        for line in sorted(lines, key=lambda line: (line.scene, line.method))
     ]
-    header = ("scene", "method", "step [s]", "what", sides[0].label, sides[1].label, "verdict")
+    header = ("scene", "method", "what changed most", "step [s]", first, second, "CPU time, times", "verdict")
     if rows:
-        print_table(console, f"From {sides[0].label} to {sides[1].label}", header, rows, 2)
+        print_table(console, f"From {first} to {second}", header, rows, 3)
         console.print()
+    other = tuple(each for each in found.differences if not each.worse)
+    asked = (("worse", found.worse), ("better, or other", other if console.form == "json" else ()))
+    for word, differences in asked:
+        if differences:
+            every = [[each.after.scene, each.after.method, *_told(each)] for each in differences]
+            header = ("scene", "method", "what", "step [s]", first, second)
+            print_table(console, f"Numbers and outcomes that are {word}", header, every, 3)
+            console.print()
     for side, rows in zip(sides, _ended(found), strict=True):
         for told, count in rows.items():
-            console.say(f"{side.label}: {told}{f' ({count} cells)' if count > 1 else ''}")
-    turned = [[t.scene, t.method, f"{t.before:.1f}", f"{t.after:.1f}"] for t in found.turns]
+            console.tell(f"{side.label}: {told}{f' ({count} cells)' if count > 1 else ''}")
+    turned = [[t.scene, t.method, t.before, t.after] for t in found.turns]
     if turned:
-        print_table(console, "Order of the angle's error", ("scene", "method", "before", "after"), turned, 2)
+        print_table(console, "Order of the angle's error", ("scene", "method", first, second), turned, 2)
         console.print()
     for check in found.grown:
-        console.say(f"{sides[1].label}: {check}")
+        console.tell(f"{second}: {check}")
     for method, ratio in found.costs.items():
         if ratio > DEAR:
-            console.say(f"{sides[1].label}: {method} takes {ratio:.3g} times the CPU time")
-    better = len(found.differences) - len(found.worse)
+            console.tell(f"{second}: {method} takes {ratio:.3g} times the CPU time")
     cost = "nothing was timed"
     if math.isfinite(found.cost):
         cost = f"CPU time is {found.cost:.2f} times as much, by the median"
-    console.say(f"{found.pairs} cells in both: {len(found.worse)} numbers are worse, {better} better or other; {cost}")
+    still = sum(line.verdict == "nothing changed" for line in lines)
+    console.tell(
+        f"From {first} to {second}, {len(found.pairs)} cells of both: {len(found.worse)} numbers are worse, "
+        f"{len(other)} better or other; nothing changed in {still} of {len(lines)} methods of scenes; {cost}"
+    )
+
+
+def _told(difference: Difference) -> list[str | float]:
+    """What, in its unit, at which step, before and after."""
+    from reports.model.quantities import quantity
+
+    name = difference.quantity
+    what = name if name == "outcome" else f"{name} [{quantity(name).unit}]"
+    return [what, difference.after.step, difference.told(difference.before), difference.told(difference.after)]
 
 
 def _ended(found: Comparison) -> tuple[Counter[str], Counter[str]]:
@@ -214,7 +226,9 @@ def _ended(found: Comparison) -> tuple[Counter[str], Counter[str]]:
 
     def told(row: Measurement) -> str:
         usable = Outcome(row.outcome).comparable
-        return "" if usable else ": ".join(filter(None, (row.outcome, " ".join(row.sentence.split())[:LONGEST])))
+        # Of the engine's words alone: what our adapter adds to them is the same in other words.
+        sentence = " ".join(row.sentence.partition("; ours: ")[0].split())[:LONGEST]
+        return "" if usable else ": ".join(filter(None, (row.outcome, sentence)))
 
     ended = [each for each in found.differences if each.quantity == "outcome"]
     before, after = (Counter(map(told, rows)) for rows in ([d.before for d in ended], [d.after for d in ended]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.options import REFERENCES
+from reports.cli.options import REFERENCES, AsJson, AsMarkdown
 from reports.model.ending import Broken
 
 if TYPE_CHECKING:
@@ -20,24 +20,32 @@ WIDTH = 150  # into a file or a pipe
 def conform(
     engine: Annotated[str, typer.Argument(help=f"An engine's name, or {REFERENCES}.")],
     variant: Annotated[str | None, typer.Option("--variant", help="Only this variant.")] = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
 ) -> None:
     """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
     from reports.cli.supervised_checks import Named, asked
-    from reports.cli.terminal import Terminal
+    from reports.cli.terminal import print_table, telling
 
-    screen = Terminal(WIDTH)
-    broken = []
-    for each, results in asked(Named.here(engine, variant)):
-        screen.say(f"{each.name} {each.variant}")
-        count = 0
-        for status, line in verdicts(results):
-            screen.say(f"  {status:<14} {line}")
-            count += status == "fails"
-        screen.say(f"  {'every check holds' if not count else f'{count} checks fail'}")
-        if count:
-            broken.append(f"{each.name} {each.variant}")
-    if broken:
-        raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
+    with telling(WIDTH, as_json, as_markdown) as screen:
+        broken = []
+        for each, results in asked(Named.here(engine, variant)):
+            name = f"{each.name} {each.variant}"
+            screen.say(name)
+            lines = []
+            for status, line in verdicts(results):
+                screen.say(f"  {status:<14} {line}")  # as it comes: some checks take seconds
+                lines.append((status, line))
+            count = sum(status == "fails" for status, _ in lines)
+            told = "every check holds" if not count else f"{count} checks fail"
+            if screen.form == "text":
+                screen.say(f"  {told}")
+            else:
+                print_table(screen, f"{name}: {told}", ("answer", "check"), lines, 2)
+            if count:
+                broken.append(name)
+        if broken:
+            raise Broken(f"{', '.join(broken)}: not as the contract of an engine says")
 
 
 def verdicts(results: Iterator[tuple[Case, Result]]) -> Iterator[tuple[Status, str]]:

@@ -35,6 +35,10 @@ Scheduler = Annotated[
 ]
 
 
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON document, with all digits, instead of text.")]
+AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a comment, instead of text.")]
+
+
 def with_folder(command: str, results: Path) -> str:
     """A command as it is to be typed for this folder of results."""
     return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"

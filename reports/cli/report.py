@@ -11,7 +11,6 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, SEARCH, STORE, Folder, with_folder
-from reports.cli.terminal import Terminal
 from reports.model.ending import BadInput
 from reports.run.files import write_whole
 
@@ -94,6 +93,8 @@ def report(
         texts[readme] = render_readme(readme.read_text(encoding="utf-8"), material)
     write_files(texts, f"{len(files)} files written. Read this first: {folder / 'index.md'}")
     if left:
+        from reports.cli.terminal import Terminal
+
         Terminal(140).say(grid)
 
 
@@ -113,6 +114,8 @@ def refuse_without(engines: Iterable[str]) -> None:
 
 def write_files(texts: Mapping[Path, str], line: str) -> None:
     """Write them whole or not at all, and say so."""
+    from reports.cli.terminal import Terminal
+
     with kept() as check:  # between two files is no place to stop
         write_whole(texts, "the pages that were there stay as they were")
         check()

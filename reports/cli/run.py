@@ -11,6 +11,8 @@ import typer
 from reports.cli.options import (
     FOLDER,
     STORE,
+    AsJson,
+    AsMarkdown,
     EngineName,
     Every,
     Folder,
@@ -44,12 +46,14 @@ def run(
     limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = 60.0,
     workers: Workers = None,
     scheduler: Scheduler = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
     from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines
-    from reports.cli.terminal import Terminal, opened
+    from reports.cli.selection import choose_cells, choose_engines, choose_scenes, choose_tasks, grid_engines, left_out
+    from reports.cli.terminal import opened, telling
     from reports.run.cluster import elsewhere, pool
 
     if not 0 < limit < float("inf"):
@@ -57,7 +61,7 @@ def run(
     known, names, given = with_words(registered(), scene or (), engine, settings or ())
     scenes = choose_scenes(names, known.scenes, known.pages)
     engines = choose_engines(None if given else engine, variant, given or known.engines)
-    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or ())
+    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or (), named=engine is not None)
     # Steps that are named are asked of the grid alone.
     items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     if not items:
@@ -65,13 +69,18 @@ def run(
         methods = ", ".join(dict.fromkeys(f"{each.name} {each.variant}" for each in compared))
         longer = "" if full else "; --full has what takes longer"
         raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
-    console = Terminal(140)
-    with elsewhere(scheduler) as crew, opened(results / STORE) as store:
-        store.remember(each.text() for each in known.given)
-        count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
-        print_summary(console, list(store.get(cells).values()))
-    following = with_folder("crosscheck report", results)
-    console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
+    with telling(140, as_json, as_markdown) as console:
+        with elsewhere(scheduler) as crew, opened(results / STORE) as store:
+            store.remember(each.text() for each in known.given)
+            count = run_interruptible(console, store, items, fresh, limit, crew or pool(workers))
+            print_summary(console, list(store.get(cells).values()))
+        if engine is not None and not (every or step):
+            for cell, why in left_out(scenes, engines, known.pages, full, cells):
+                method = f"{cell.engine.name} {cell.engine.variant}"
+                told = f"{cell.scene.name}, {method}: no step of {cell.step:.4g} s, since {why}"
+                console.tell(f"{told}; --every {cell.every} runs it")
+        following = with_folder("crosscheck report", results)
+        console.say(f"{count} of {len(items)} cells run, the others were stored. Next: {following}")
 
 
 def run_interruptible(
@@ -102,9 +111,10 @@ def print_summary(console: Terminal, rows: list[Measurement]) -> None:
     from reports.write.tables import SUMMARY_HEADER, summary_rows
 
     told = judged(rows)
+    console.keep(told)
     for scene in dict.fromkeys(row.scene for row in told if row.purpose == "sweep"):
         print_table(console, scene, SUMMARY_HEADER, summary_rows([row for row in told if row.scene == scene]), 1)
         console.print()
     extra = Counter(str(row.outcome) for row in rows if row.purpose != "sweep")
     if extra:
-        console.print("Failure experiments and maps: " + ", ".join(f"{n} {o}" for o, n in sorted(extra.items())))
+        console.tell("Failure experiments and maps: " + ", ".join(f"{n} {o}" for o, n in sorted(extra.items())))

@@ -14,6 +14,8 @@ from reports.cli.options import (
     FOLDER,
     SEARCH,
     STORE,
+    AsJson,
+    AsMarkdown,
     EngineName,
     Folder,
     Scheduler,
@@ -61,10 +63,12 @@ def search(
     ] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
-    from reports.cli.terminal import Terminal, opened
+    from reports.cli.terminal import opened, telling
     from reports.run.cluster import elsewhere, pool
     from reports.search import plan
     from reports.search.chunk import as_words, asked, chunks, stored
@@ -94,8 +98,12 @@ def search(
         batches = [plan.published()]
     else:
         batches = [chunks(subjects, plan.seeds()[0] if seed is None else seed, cases or 200, wanted, decades, asked_of)]
-    folder, terminal, count, pieces = results / SEARCH, Terminal(150), Count(), []
-    with elsewhere(scheduler) as crew, opened(folder / STORE) as store:
+    folder, count, pieces = results / SEARCH, Count(), []
+    with (
+        telling(150, as_json, as_markdown) as terminal,
+        elsewhere(scheduler) as crew,
+        opened(folder / STORE) as store,
+    ):
         for batch in batches:
             if not pieces:  # what a subject takes is asked before anything is drawn
                 count.begin = monotonic()
@@ -108,9 +116,9 @@ def search(
             run_controls(terminal, store, crew or pool(workers))
         told = list(asked(stored(store, pieces)))
         print_summary(terminal, told)
-        terminal.say(count.told)
+        terminal.tell(count.told)
         shrink_and_write(terminal, store, told, folder, crew or pool(workers), seconds)
-    terminal.say(f"{len(told)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
+        terminal.say(f"{len(told)} cases are stored in {folder}. Next: {with_folder('crosscheck report', results)}")
 
 
 @dataclass
@@ -244,7 +252,7 @@ def shrink_and_write(
 
     tasks = [Shrink.of(check, one) for check, one in worst_of(told)]
     if not tasks:
-        terminal.say("Nothing was found.")
+        terminal.tell("Nothing was found.")
         return
     begin = monotonic()
     with interruptible(terminal, store, tasks, LIMIT, "findings") as (waiting, done, watch):
@@ -255,6 +263,6 @@ def shrink_and_write(
     texts = {}
     answers = store.answers(tasks)
     for task in (one for one in tasks if one in answers):
-        terminal.say(f"{task.label}: {line_of(answers[task])}")
+        terminal.tell(f"{task.label}: {line_of(answers[task])}")
         texts |= {folder / name: text for name, text in files_of(task, answers[task]).items()}
     write_whole(texts, "the findings that were there stay as they were")

@@ -9,7 +9,7 @@ from engines import Engine
 from reference.checks import LARGEST_COUNT
 from reference.scene import Scene
 from reports.gate.prediction import all_tasks
-from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells
+from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells, too_much
 from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 from reports.model.tasks import Task
@@ -102,11 +102,13 @@ def choose_cells(
     full: bool,
     every: Sequence[int] = (),
     steps: Sequence[float] = (),
+    named: bool = False,
 ) -> tuple[Cell, ...]:
     """The cells of a run: the grid, with the failures of the pages that teach these scenes; the steps that people
     use too if full.
 
-    A quick run leaves out what would take long (`_quick`). `every` or `steps` replace the grid by these steps
+    A quick run leaves out what would take long (`_quick`), but for the shortest cell of an engine that was `named` in a
+    scene. `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
     """
     if every or steps:
@@ -130,7 +132,21 @@ def choose_cells(
                 if any(cell.engine == engine for engine in engines) and (full or cell.purpose != "large")
             ]
     chosen_once = dict.fromkeys(cells)
-    return tuple(chosen_once) if full else _quick(tuple(chosen_once))
+    return tuple(chosen_once) if full else _quick(tuple(chosen_once), math.inf if named else QUICK_CELL)
+
+
+def left_out(
+    scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool, chosen: Sequence[Cell]
+) -> list[tuple[Cell, str]]:
+    """The cells of the grid that are not among those chosen by `choose_cells`, each with the reason."""
+    kept, quick = set(chosen), f"and a quick run has {QUICK_SECONDS:g} s for a run"
+    return [
+        (cell, too_much(cell) or f"step_cost says {estimated_seconds(cell):.4g} s, {quick}")
+        for scene in scenes
+        for engine in grid_engines(scene, engines, pages)
+        for cell in (Cell(scene, engine, every) for every in (FULL if full else QUICK))
+        if cell not in kept
+    ]
 
 
 def choose_tasks(
@@ -150,7 +166,7 @@ def choose_tasks(
     return tuple(dict.fromkeys(found))
 
 
-def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
+def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
     """Those for which a quick run has the time: of an engine beside the grid one step, the finest that is short.
 
     Seconds are those of the engines' own formulas, so that the choice is the same everywhere, whatever was measured.
@@ -162,7 +178,7 @@ def _quick(cells: Sequence[Cell]) -> tuple[Cell, ...]:
     for (_, _, purpose), members in alike.items():
         ordered = sorted(members, key=estimated_seconds)
         short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
-        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= QUICK_CELL]
+        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= most]
         chosen.update(short[-1:] if purpose == "beside" else (*short, *least))
     return tuple(cell for cell in cells if cell in chosen)
 

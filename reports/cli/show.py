@@ -12,6 +12,8 @@ from reports.cli.options import (
     FOLDER,
     REFERENCES,
     STORE,
+    AsJson,
+    AsMarkdown,
     EngineName,
     Folder,
     Scenes,
@@ -19,10 +21,10 @@ from reports.cli.options import (
     VariantName,
     with_folder,
 )
-from reports.cli.terminal import Terminal, print_table
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
+    from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
 
 
@@ -31,6 +33,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     from engines.registry import ENGINES, INSTALLED, method
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_engines, choose_scenes
+    from reports.cli.terminal import Terminal, print_table
     from reports.model.catalogue import page_of
     from reports.model.cells import Cell
     from reports.run.running import support
@@ -62,16 +65,19 @@ def show(
     engine: EngineName = None,
     variant: VariantName = None,
     settings: Settings = None,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Print a scene's stored numbers: every run, order and plateau, which setting is enough, and its experiments."""
     from reports.cli.known import registered, with_remembered, with_words
     from reports.cli.selection import choose_cells, choose_engines, choose_scenes
+    from reports.cli.terminal import print_table, telling
     from reports.model.convergence import judged, sweeps
     from reports.model.quantities import QUANTITIES
     from reports.run.store import Store
     from reports.write import page_tables
-    from reports.write.tables import ERROR_HEADER, error_rows, order_rows, step_words
+    from reports.write.tables import order_rows
 
     known = registered()
     remembered: tuple[str, ...] = ()
@@ -91,34 +97,38 @@ def show(
         found = store.get(choose_cells(chosen, engines, known.pages, full=True))
     if not found:
         raise nothing
-    console = Terminal(140)
+    with telling(140, as_json, as_markdown) as console:
+        console.keep(found.values())
+        for one in chosen:
+            page = next((page for page in known.pages if page.teaches(one)), None)
+            compared = page.quantity if page else "angle"
+            grid = [row for cell, row in found.items() if cell.scene == one and cell.purpose in ("sweep", "usual")]
+            own = judged(grid, compared)
+            beside = [row for cell, row in found.items() if cell.scene == one and cell.purpose == "beside"]
+            _print_runs(console, f"{one.name}, {one.source}", [*own, *beside])
+            names = [q.name for q in QUANTITIES]
+            orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
+            header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
+            print_table(console, f"{one.name}: order and plateau", header, orders, 9)
+            console.print()
+            advised = page_tables.advice(own, compared)
+            head, lines = page_tables.advice_lines(advised, compared)
+            plain = [[cell.replace("**", "") for cell in line] for line in lines]
+            print_table(console, f"{one.name}: which setting for which accuracy", head, plain, 3)
+            console.print()
+        for page in known.pages:
+            for failure in page.failures if any(page.is_run_with(one) for one in chosen) else ():
+                runs = [found[cell] for cell in failure.cells if cell in found]
+                if runs:
+                    _print_runs(console, failure.title, runs)
 
-    def print_runs(title: str, rows: Sequence[Measurement]) -> None:
-        print_table(console, title, ERROR_HEADER, error_rows(rows), 2)
-        for row in rows:
-            if row.sentence:
-                console.print(f"{row.method}, {step_words(row.step)}: {row.outcome}: {row.sentence}")
-        console.print()
 
-    for one in chosen:
-        page = next((page for page in known.pages if page.teaches(one)), None)
-        compared = page.quantity if page else "angle"
-        grid = [row for cell, row in found.items() if cell.scene == one and cell.purpose in ("sweep", "usual")]
-        own = judged(grid, compared)
-        beside = [row for cell, row in found.items() if cell.scene == one and cell.purpose == "beside"]
-        print_runs(f"{one.name}, {one.source}", [*own, *beside])
-        names = [q.name for q in QUANTITIES]
-        orders = [[cell.replace("**", "") for cell in line] for line in order_rows(sweeps(own), names)]
-        header = ["method", *(f"{q.label}: order, plateau [{q.unit}]" for q in QUANTITIES)]
-        print_table(console, f"{one.name}: order and plateau", header, orders, 9)
-        console.print()
-        advised = page_tables.advice(own, compared)
-        head, lines = page_tables.advice_lines(advised, compared)
-        plain = [[cell.replace("**", "") for cell in line] for line in lines]
-        print_table(console, f"{one.name}: which setting for which accuracy", head, plain, 3)
-        console.print()
-    for page in known.pages:
-        for failure in page.failures if any(page.is_run_with(one) for one in chosen) else ():
-            own = [found[cell] for cell in failure.cells if cell in found]
-            if own:
-                print_runs(failure.title, own)
+def _print_runs(console: Terminal, title: str, rows: Sequence[Measurement]) -> None:
+    from reports.cli.terminal import print_table
+    from reports.write.tables import ERROR_HEADER, error_rows, step_words
+
+    print_table(console, title, ERROR_HEADER, error_rows(rows), 2)
+    for row in rows:
+        if row.sentence:
+            console.tell(f"{row.method}, {step_words(row.step)}: {row.outcome}: {row.sentence}")
+    console.print()

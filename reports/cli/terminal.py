@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import math
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
@@ -16,9 +18,11 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.cli.interruption import kept
-from reports.model.ending import FileTrouble
+from reports.cli.streams import written
+from reports.model.ending import FINE, BadInput, Broken
 
 if TYPE_CHECKING:
+    from reports.model.measure import Measurement
     from reports.run.store import Store
 
 PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
@@ -27,34 +31,50 @@ PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
 class Terminal(Console):
     """Standard output: as wide as the terminal; a table into a file or a pipe keeps its width, whatever the terminal's.
 
+    `form`: "text"; "markdown", for a comment; or "json", one document at the end (`telling`). In the last two only what
+    `tell` and `print_table` are given goes to standard output, and all else, such as progress, to standard error.
     `print` raises BrokenPipeError where nobody reads it any more, and FileTrouble where it can't be written.
     """
 
-    def __init__(self, width: int) -> None:
-        super().__init__(width=None if sys.stdout.isatty() else width)
+    def __init__(self, width: int, form: str = "text") -> None:
+        super().__init__(width=None if sys.stdout.isatty() else width, stderr=form != "text")
+        self.form = form
+        self.document: dict[str, Any] = {"tables": [], "sentences": []}
 
     def print(self, *objects: Any, **options: Any) -> None:
         with written():
             super().print(*objects, **options)
 
     def say(self, sentence: str) -> None:
-        """A sentence as it is: names of files may have brackets in them."""
+        """A sentence as it is, on the way to the results: names of files may have brackets in them."""
         self.print(sentence, markup=False, highlight=False, soft_wrap=True)
+
+    def tell(self, sentence: str) -> None:
+        """A sentence that is a part of the results."""
+        if self.form == "json":
+            self.document["sentences"].append(sentence)
+        elif self.form == "markdown":
+            from reports.write.templates import inert
+
+            with written():
+                print(f"{inert(sentence)}\n")
+        else:
+            self.say(sentence)
+
+    def close(self, status: int, message: str = "") -> None:
+        """Print the document, if that is the form."""
+        if self.form == "json":
+            with written():
+                print(json.dumps(self.document | {"status": status, "message": message}, indent=1))
+
+    def keep(self, rows: Iterable[Measurement]) -> None:
+        """Rows with all their digits, for the document alone: `rows`, an object each, by the names of `errors.csv`."""
+        if self.form == "json":
+            told = [{name: plain(value) for name, value in vars(row).items()} for row in rows]
+            self.document.setdefault("rows", []).extend(told)
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError
-
-
-@contextmanager
-def written() -> Iterator[None]:
-    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if nobody reads it."""
-    try:
-        yield
-        sys.stdout.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as reason:
-        raise FileTrouble(f"the output can't be written: {reason.strerror or reason}") from None
 
 
 @contextmanager
@@ -68,12 +88,47 @@ def opened(path: Path) -> Iterator[Store]:
         yield store
 
 
-def print_table(console: Console, title: str, header: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
-    """A table whose first `left` columns are words, the others numbers.
+@contextmanager
+def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
+    """A terminal whose form is asked by these options. In JSON the document is printed at the end: `tables`, each with
+    `title` and `rows` (an object a row, by column; null for a number that is not known), `sentences`, and `status`, the
+    exit status, with `message`. Raises BadInput for both options at once; what is wrong with input has no document.
+    """
+    if as_json and as_markdown:
+        raise BadInput("--json and --markdown are two forms of one output; give one of them")
+    terminal = Terminal(width, "json" if as_json else "markdown" if as_markdown else "text")
+    try:
+        yield terminal
+    except Broken as broken:
+        if as_markdown:
+            terminal.tell(str(broken))
+        terminal.close(broken.status, str(broken))
+        raise
+    terminal.close(FINE)
+
+
+def print_table(
+    console: Console, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
+) -> None:
+    """A table whose first `left` columns are words, the others numbers: as text, as Markdown or into the document.
 
     All of it is plain text: a unit in brackets, as in "step [s]", is no markup. rich folds what is too wide.
     """
-    lines = [tuple(header), *map(tuple, rows)]
+    form = getattr(console, "form", "text")
+    if form == "json":
+        found = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
+        console.document["tables"].append({"title": title, "rows": found})  # type: ignore[attr-defined]
+        return
+    from reports.write.tables import markdown, words_of
+
+    words = [tuple(map(words_of, row)) for row in rows]
+    if form == "markdown":
+        from reports.write.templates import inert
+
+        with written():
+            print(f"**{inert(title)}**\n\n{inert(markdown(header, words, left))}\n")
+        return
+    lines = [tuple(header), *words]
     widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
     if sum(widths) + 3 * (len(widths) - 1) <= console.width and not any(
         "\n" in word for line in lines for word in line
@@ -83,9 +138,16 @@ def print_table(console: Console, title: str, header: Sequence[str], rows: Seque
     table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
     for index, name in enumerate(header):
         table.add_column(Text(name), justify="left" if index < left else "right", overflow="fold")
-    for row in rows:
-        table.add_row(*map(Text, row))
+    for line in words:
+        table.add_row(*map(Text, line))
     console.print(table)
+
+
+def plain(cell: Any) -> str | float | None:
+    """A cell of a document: JSON has no word for a number that is not known, nor for an infinite one."""
+    if not isinstance(cell, int | float):
+        return str(cell)
+    return cell if math.isfinite(cell) else None if math.isnan(cell) else str(cell)
 
 
 def _plain_table(title: str, lines: Sequence[Sequence[str]], widths: Sequence[int], left: int) -> Text:

@@ -3,43 +3,51 @@
 from __future__ import annotations
 
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reports.cli.interruption import kept
-from reports.cli.options import FOLDER, STORE, Folder
+from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from engines import Engine
     from reference.scene import Scene
     from reports.cli.terminal import Terminal
-    from reports.versions.column import VersionColumn
+    from reports.versions.column import VersionColumn, VersionRequest
     from reports.versions.table import Table
 
 WIDTH = 150  # into a file or a pipe
 DATA = "versions.csv"
+# A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
+SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
+USUAL = f"Only these scenes (repeatable, or with commas); {', '.join(SCENES)} if none is named."
 
 
 def versions(
     engine: Annotated[str | None, typer.Argument(help="An engine by name, such as mujoco.")] = None,
     version: Annotated[list[str] | None, typer.Argument(help="Its versions, such as 3.6.0.")] = None,
-    scenes: Annotated[
-        list[str] | None, typer.Option("--scenes", help="Only these scenes (repeatable, or with commas).")
-    ] = None,
-    everything: Annotated[bool, typer.Option("--all", help="The versions of all engines that the page shows.")] = False,
+    scenes: Annotated[list[str] | None, typer.Option("--scenes", help=USUAL)] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="All that the page shows: engines, scenes, random trees.")
+    ] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     publish: Annotated[
         bool, typer.Option("--publish", help="Renew the data of the page in the checkout (only with --all).")
     ] = False,
+    as_json: AsJson = False,
+    as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Run scenes in released versions of an engine; each is installed once, in the user's cache folder."""
     from engines.registry import OTHERS, VARIANTS
     from reports.cli.report import published, refuse_outside_a_checkout
-    from reports.cli.terminal import Terminal
+    from reports.cli.terminal import telling
     from reports.run.files import write_whole
     from reports.versions.table import as_csv, as_published, catalogued, merged, read
 
@@ -48,17 +56,18 @@ def versions(
     asked = _asked(engine, version or (), everything)
     if publish and (not everything or scenes):
         raise BadInput("--publish renews all of the page's data: give it with --all, and without --scenes")
-    chosen = named_scenes(scenes or ())
-    console = Terminal(WIDTH)
+    chosen = named_scenes(scenes or (() if everything else SCENES))
     wrong: list[str] = []
-    with kept() as check:
+    with telling(WIDTH, as_json, as_markdown) as console, kept() as check:
         table = catalogued(read(Path(results) / DATA)) if everything else None
         for name, numbers in asked.items():
             engines = [each for each in (*VARIANTS, *OTHERS) if each.name == name]
             found = []
             for number in numbers:
                 try:
-                    column = _column(console, name, number, engines, chosen, results, fresh, not scenes, check)
+                    column = _column(
+                        console, name, number, engines, chosen, results, fresh, everything and not scenes, check
+                    )
                 except BadInput as reason:
                     if not everything and len(numbers) == 1:
                         raise
@@ -115,15 +124,16 @@ def _column(
     results: Path,
     fresh: bool,
     trees: bool,
-    check: object,
+    check: Callable[[], None],
 ) -> VersionColumn:
     from time import monotonic
 
     from reports.cli.selection import QUICK_CELL
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
-    from reports.versions.column import VersionRequest, column, modules_in
+    from reports.versions.column import VersionRequest, modules_in
 
+    console.say(f"{name} {number}: installed, unless it is there already")
     place = installed(distributions(engines, name), number)
     begin = monotonic()
     request = VersionRequest(
@@ -137,11 +147,33 @@ def _column(
         fresh=fresh,
         folder=Path.cwd(),
     )
-    found = column(number, request, engines, lambda labels: check())  # type: ignore[operator]
+    found = run_column(console, f"{name} {number}", number, request, engines, check)
     told = found.trouble or found.mark
     line = f"{name} {number}: {len(found.rows)} rows after {monotonic() - begin:.0f} s"
-    console.say(f"{line}; {told}" if told else line)
+    console.say(line)
+    if told:
+        console.tell(f"{name} {number}: {told}")
     return found
+
+
+def run_column(
+    console: Terminal,
+    label: str,
+    version: str,
+    request: VersionRequest,
+    engines: Sequence[Engine],
+    check: Callable[[], None],
+) -> VersionColumn:
+    """A column, with its progress."""
+    from types import SimpleNamespace
+
+    from reports.cli.terminal import progress
+    from reports.versions.column import cells_of, column
+
+    with progress(console, len(cells_of(request, engines)), check, f"cells of {label}") as (done, watch):
+        return column(
+            version, request, engines, lambda labels: watch([SimpleNamespace(label=each) for each in labels]), done
+        )
 
 
 def _table(name: str, columns: list[VersionColumn]) -> Table:
@@ -156,14 +188,24 @@ def _table(name: str, columns: list[VersionColumn]) -> Table:
 def _print(console: Terminal, table: Table, name: str) -> None:
     """Errors at a usual step, a line a scene and method, a column a version; outcomes where there is no error."""
     from reports.cli.terminal import print_table
-    from reports.write.tables import number
+    from reports.versions.comparison import change
+    from reports.versions.comparison import lines as lines_of
+    from reports.versions.table import unit
 
     numbers = table.versions(name)
-    lines: dict[tuple[str, str], dict[str, str]] = {}
+    lines: dict[tuple[str, str, str], dict[str, str | float]] = {}
     for entry in table.entries:
-        told = number(entry.error) if entry.comparable else entry.outcome
-        lines.setdefault((entry.scene, entry.variant), {})[entry.version] = told
-    rows = [[*key, *(found.get(each, "-") for each in numbers)] for key, found in sorted(lines.items())]
+        key = entry.scene, entry.variant, f"{entry.quantity} [{unit(entry)}]"
+        lines.setdefault(key, {})[entry.version] = entry.error if entry.comparable else entry.outcome
+    changes = {
+        key[1:]: "; ".join(f"{b.version} {word}" for a, b in pairwise(members) if (word := change(a, b)))
+        for key, members in lines_of(table.entries).items()
+    }
+    rows = [
+        [*key, *(found.get(each, "-") for each in numbers), changes.get(key[:2]) or "nothing changed"]
+        for key, found in sorted(lines.items())
+    ]
     if rows:
         console.print()
-        print_table(console, f"{name}: largest error", ("scene", "method", *numbers), rows, 2)
+        header = ("scene", "method", "largest error", *(f"{name} {each}" for each in numbers), "change")
+        print_table(console, f"{name}: largest errors; a change is one by more than three times", header, rows, 3)

@@ -168,12 +168,19 @@ def _sweep(
         for scene in scenes:
             for engine in engines:
                 cell = Cell(scene, engine, every)
-                if every <= max(QUICK):
-                    wanted = every == min(steps) or estimated_cost(cell) <= max(cost_limit, COST_LIMIT)
-                else:
-                    wanted = estimated_cost(cell) <= cost_limit and every ** _promised_order(scene, engine) <= divided
-                if wanted:
+                if every == min(steps) or not too_much(cell, cost_limit, divided):
                     yield cell
+
+
+def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
+    """Why a sweep leaves a step out that is not its coarsest; empty if it does not."""
+    cost = estimated_cost(cell)
+    most = max(cost_limit, COST_LIMIT) if cell.every <= max(QUICK) else cost_limit
+    if cost > most:
+        return f"step_cost says {cost:.4g} s, and a run may take {most:g} s"
+    if cell.every > max(QUICK) and cell.every ** _promised_order(cell.scene, cell.engine) > divided:
+        return f"its order has divided the error by {divided:.0e} at a coarser step"
+    return ""
 
 
 @lru_cache(maxsize=4096)

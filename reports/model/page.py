@@ -125,7 +125,7 @@ class Page:
     own cells are run too; for a page without scenes. borrowed: cells of other pages whose rows the words tell; this
     page never has them run.
     figures: SVG texts by file name without ending (shown by the template, where `pictures` has them). words: the
-    template's own variables, numbers taken from the rows.
+    template's own variables, numbers taken from the rows. further: Markdown files beside the page, by name.
     compared: whether a scene is run in an engine; a construction of a joint has no place where there is no such joint.
     quantity: the error by which methods are compared and charted, a name in `reports.model.quantities`.
     advised: name of the scene for which the page says on top which setting gives which accuracy; the first if empty.
@@ -148,6 +148,7 @@ class Page:
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_figures
     words: Callable[[Material], Mapping[str, Any]] = no_words
+    further: Callable[[Material], Mapping[str, str]] = no_figures
     orders: Mapping[tuple[str, str], Promise] = field(default_factory=dict, compare=False)
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
     tasks: tuple[Task, ...] = ()  # of its pictures and words; those of an experiment stand there

@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tarfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from importlib import metadata
@@ -84,6 +85,19 @@ def built(path: Path) -> Path:
         if why:
             raise BadInput(f"{path} can't be installed: {why}")
     return _used(folder)
+
+
+def sources(name: str, version: str, folder: Path) -> Path:
+    """The unpacked source package of a version, below `folder`, which pip fetches. Raises BadInput, in one line."""
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder)]
+    ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
+    found = list(folder.glob(f"{name}-*.tar.gz"))
+    if ended.returncode or not found:
+        raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr, 1)}")
+    with tarfile.open(found[0], encoding="utf-8") as archive:
+        archive.extractall(folder, filter="data")
+    return folder / f"{name}-{version}"
 
 
 def _place(name: str) -> Path:

@@ -10,12 +10,13 @@ import hashlib
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
+from reports.model.ending import BadInput
 from reports.run.files import temporary_folder
+from reports.run.installed import sources
 from reports.site.packages import NotFetched
 
 SHIM = Path(__file__).with_suffix(".c")
@@ -45,16 +46,11 @@ def compiled(cache: Path) -> bytes:
 
 
 def _sources(release: str, folder: Path) -> Path:
-    """The folder of Munk2D in pymunk's source package of this release, which pip fetches."""
-    words = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
-    words += ["--no-binary", "pymunk", f"pymunk=={release}", "--dest", str(folder)]
-    ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
-    found = list(folder.glob("pymunk-*.tar.gz"))
-    if ended.returncode or not found:
-        raise NotFetched(f"pip could not fetch the source package of pymunk {release}")
-    with tarfile.open(found[0], encoding="utf-8") as archive:
-        archive.extractall(folder, filter="data")
-    return folder / f"pymunk-{release}" / "Munk2D"
+    """The folder of Munk2D in pymunk's source package of this release."""
+    try:
+        return sources("pymunk", release, folder) / "Munk2D"
+    except BadInput as reason:
+        raise NotFetched(str(reason)) from None
 
 
 def _compile(compiler: str, sources: Path, output: Path) -> Path:

@@ -101,15 +101,13 @@ def _from_elsewhere(modules: tuple[str, ...], place: Path) -> str:
 
 
 def _run(request: Any, engines: list[Any], say: Callable[[Any], None]) -> None:
-    from reports.model.cells import Cell, estimated_cost
     from reports.model.measure import Measurement
     from reports.run.running import missing, run_into
     from reports.run.store import Store
-    from reports.versions.column import Running, TreesRow
+    from reports.versions.column import Running, TreesRow, cells_of
     from reports.versions.trees import SIZES, Trees, of_trees
 
-    cells = [Cell(scene, engine, every) for every in request.every for scene in request.scenes for engine in engines]
-    cells = [cell for cell in cells if estimated_cost(cell) <= request.most]
+    cells = cells_of(request, engines)
     tasks: list[Trees] = []
     if request.trees:
         tasks = [Trees(method, *size) for size in SIZES for method in of_trees(request.engine, engines)]

@@ -103,12 +103,16 @@ class VersionColumn:
 
 
 def column(
-    version: str, request: VersionRequest, engines: Sequence[Engine], watch: Watch = lambda labels: None
+    version: str,
+    request: VersionRequest,
+    engines: Sequence[Engine],
+    watch: Watch = lambda labels: None,
+    done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
     """Run a version's column. Whatever becomes of its process is told in rows, and nothing is raised for it.
 
     engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
-    second, and may raise: then the process is ended; the rows so far are in the store.
+    second, and may raise: then the process is ended; the rows so far are in the store. `done`: with each row.
     """
     rows: list[Measurement] = []
     trees: list[TreesRow] = []
@@ -117,6 +121,7 @@ def column(
         match message:
             case Measurement():
                 rows.append(_told(message, version))
+                done(rows[-1])
             case TreesRow():
                 trees.append(message)
             case Trouble():
@@ -127,14 +132,18 @@ def column(
         return VersionColumn(version, tuple(rows), tuple(trees))
     there = {(row.scene, row.variant, row.every) for row in rows}
     outcome = Outcome.UNSUPPORTED if trouble.lacks else Outcome.ABORTED
-    for every in request.every:
-        cells = (Cell(scene, engine, every) for scene in request.scenes for engine in engines)
-        rows += [
-            blank(cell, outcome, trouble.sentence)
-            for cell in cells
-            if (cell.scene.name, cell.engine.variant, every) not in there and estimated_cost(cell) <= request.most
-        ]
+    rows += [
+        blank(cell, outcome, trouble.sentence)
+        for cell in cells_of(request, engines)
+        if (cell.scene.name, cell.engine.variant, cell.every) not in there
+    ]
     return VersionColumn(version, tuple(rows), tuple(trees), trouble.sentence)
+
+
+def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
+    """What is asked for, of these engines."""
+    cells = [Cell(scene, engine, every) for every in request.every for scene in request.scenes for engine in engines]
+    return [cell for cell in cells if estimated_cost(cell) <= request.most]
 
 
 def _told(row: Measurement, version: str) -> Measurement:

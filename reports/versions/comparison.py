@@ -33,6 +33,14 @@ class Difference:
         """What the row says of the quantity; its outcome where that is what differs."""
         return row.outcome if self.quantity == "outcome" else getattr(row, self.quantity)
 
+    @property
+    def factor(self) -> float:
+        """How many times the larger one is the smaller one; infinite for an outcome."""
+        if self.quantity == "outcome":
+            return math.inf
+        low, high = sorted((getattr(self.before, self.quantity), getattr(self.after, self.quantity)))
+        return high / low if low > 0 else math.inf
+
 
 @dataclass(frozen=True)
 class Turn:
@@ -46,10 +54,10 @@ class Turn:
 
 @dataclass(frozen=True)
 class Comparison:
-    """`pairs`: how many rows both have; `grown`: failed checks of a method's errors over all scenes; `costs`: by method
-    the median of the ratios of CPU times; `cost`: of all rows (NaN without one)."""
+    """`pairs`: rows of one cell, before and after; `grown`: failed checks of a method's errors over all scenes;
+    `costs`: by method the median of the ratios of CPU times; `cost`: of all rows (NaN without one)."""
 
-    pairs: int
+    pairs: tuple[tuple[Measurement, Measurement], ...]
     differences: tuple[Difference, ...]
     turns: tuple[Turn, ...]
     cost: float
@@ -59,6 +67,48 @@ class Comparison:
     @property
     def worse(self) -> tuple[Difference, ...]:
         return tuple(each for each in self.differences if each.worse)
+
+    def lines(self) -> list[Line]:
+        """A line for each method of each scene, in the order of the rows."""
+        members: dict[tuple[str, str], list[tuple[Measurement, Measurement]]] = {}
+        for before, after in self.pairs:
+            members.setdefault((after.scene, after.method), []).append((before, after))
+        own: dict[tuple[str, str], list[Difference]] = {key: [] for key in members}
+        for each in self.differences:
+            own[each.after.scene, each.after.method].append(each)
+        return [Line(*key, tuple(pairs), tuple(own[key])) for key, pairs in members.items()]
+
+
+@dataclass(frozen=True)
+class Line:
+    """What became of one method in one scene."""
+
+    scene: str
+    method: str
+    pairs: tuple[tuple[Measurement, Measurement], ...]
+    differences: tuple[Difference, ...]
+
+    @property
+    def chief(self) -> Difference:
+        """What differs most, a worse number before any other; where nothing differs the angle at the finest step."""
+        if not self.differences:
+            return Difference(*min(self.pairs, key=lambda pair: pair[1].step), "angle", False)
+        return max(self.differences, key=lambda each: (each.worse, each.factor))
+
+    @property
+    def verdict(self) -> str:
+        if not self.differences:
+            return "nothing changed"
+        if any(each.worse for each in self.differences):
+            return "WORSE"
+        chief = self.chief
+        return "better" if chief.quantity != "outcome" or Outcome(chief.after.outcome).comparable else "other"
+
+    @property
+    def cost(self) -> float:
+        """The median of the ratios of CPU times; NaN where nothing was timed."""
+        ratios = [after.cpu / before.cpu for before, after in self.pairs if _timed(before) and _timed(after)]
+        return median(ratios) if ratios else math.nan
 
 
 def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> Comparison:
@@ -74,7 +124,7 @@ def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> Com
     turns = _turns([a for a, _ in pairs], [b for _, b in pairs])
     grown = tuple(check for check in growth((b, _old(a)) for a, b in pairs) if not check.passed)
     costs = {method: median(own) for method, own in ratios.items()}
-    return Comparison(len(pairs), tuple(differences), turns, cost, grown, costs)
+    return Comparison(tuple(pairs), tuple(differences), turns, cost, grown, costs)
 
 
 def _by_cell(rows: Iterable[Measurement]) -> dict[Identity, Measurement]:
@@ -161,6 +211,13 @@ def differ(before: float, after: float) -> bool:
     if math.isinf(before) or math.isinf(after):
         return before != after
     return max(before, after) > WORSE * min(before, after)
+
+
+def change(before: Entry, after: Entry) -> str:
+    """From one version to the next: "better", "WORSE", "other" where both end without an error to compare; or empty."""
+    if differ(size(before), size(after)):
+        return "WORSE" if size(after) > size(before) else "better"
+    return "" if before.comparable or before.outcome == after.outcome else "other"
 
 
 def by_version(found: Sequence[Step]) -> dict[tuple[str, str, str], list[Step]]:

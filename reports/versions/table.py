@@ -49,6 +49,11 @@ class Entry:
         return ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
 
 
+def unit(entry: Entry) -> str:
+    """Of its error."""
+    return "1" if entry.quantity == ACCELERATION else quantity(entry.quantity).unit
+
+
 @dataclass(frozen=True)
 class Table:
     """All entries, and by (engine, version) why its numbers are known to be wrong, or why it can't be used."""

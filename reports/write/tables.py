@@ -28,6 +28,11 @@ def number(value: float, digits: int = 2) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
+def words_of(cell: str | float) -> str:
+    """A cell as it is printed: words as they are, a count in full, another number as `number` has it."""
+    return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
+
+
 def milliseconds(seconds: float) -> str:
     """CPU seconds as milliseconds."""
     return number(1e3 * seconds)

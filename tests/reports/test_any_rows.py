@@ -275,7 +275,7 @@ def still(task: Task, lost: bool = False) -> Answer:
         case Offsets():
             values = {"across": np.full(len(task.offsets), -0.1)}
         case Grooves() | Equalities():
-            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9)}
+            values = {"off": np.full(task.models, 0.5), "missed": np.asarray(1e-9), "mended": np.asarray(1e-9)}
         case Script():
             values = {"expected": np.asarray(0.5), "found": np.asarray(0.25), "version": "1.0"}
         case published.Newton():

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -94,7 +96,16 @@ def test_a_worse_build_is_told_and_a_dearer_one_where_a_limit_is_given_and_what_
         invoke(["compare", "1.0", "2.0", *words])
     out = capfd.readouterr().out
     assert "noise" not in out
-    assert out.count("WORSE") == 3  # a line a step
+    assert out.count("WORSE") == 1  # a line a method
+    assert len(re.findall(r"^disc .* angle \[rad\]", out.partition("outcomes that are worse")[2], re.MULTILINE)) == 3
+    with pytest.raises(Broken):
+        invoke(["compare", "1.0", "2.0", *words, "--json"])
+    document = json.loads(capfd.readouterr().out)
+    (line,) = document["tables"][0]["rows"]
+    before, after = (next(line[key] for key in line if key.startswith(f"toyengine {version}")) for version in "12")
+    assert after == pytest.approx(50 * before)
+    assert (line["verdict"], document["status"]) == ("WORSE", 1)
+    assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
     assert not (here / "crosscheck-results").exists()  # a build may change: nothing is kept of it
     # A toy tells the same cost whatever it takes.

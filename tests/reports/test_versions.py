@@ -89,7 +89,7 @@ def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():
     assert not compared(before, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
     found = compared(before, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
     assert [(each.quantity, each.worse) for each in found.differences] == [("angle", True), ("angle", False)]
-    assert (found.pairs, found.cost) == (2, 2.0)
+    assert (len(found.pairs), found.cost) == (2, 2.0)
     orders = compared([row(1e-2), row(1e-4, every=10)], [row(1e-2), row(1e-3, every=10)])
     assert [(round(turn.before), round(turn.after)) for turn in orders.turns] == [(2, 1)]
 
@@ -107,8 +107,18 @@ def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_told():
 def test_an_outcome_is_better_where_it_finishes_and_another_kind_of_end_is_none(capsys, before, after, verdict):
     sides = [compare.Side(label, "mujoco", Path(), False) for label in ("old", "new")]
     compare._print(Terminal(compare.WIDTH), compared(before, after), sides)
-    (line,) = (line for line in capsys.readouterr().out.splitlines() if before[0].scene in line)
+    line = next(line for line in capsys.readouterr().out.splitlines() if before[0].scene in line)
     assert verdict in line.split()[-1]
+
+
+def test_a_method_whose_numbers_stay_is_told_with_its_error_and_its_releases_and_units(capsys):
+    sides = [compare.Side(label, "mujoco", Path(), False) for label in ("old==1", "new==2")]
+    both = [row(1e-3), row(1e-5, every=10)]
+    compare._print(Terminal(compare.WIDTH, "markdown"), compared(both, both), sides)
+    head, _, line, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith("|"))
+    told = dict(zip(head.split(" | "), line.split(" | "), strict=True))
+    assert (told["what changed most"], told["old==1"], told["new==2"]) == ("angle [rad]", "1.0e-5", "1.0e-5")
+    assert "nothing changed" in line
 
 
 def test_random_trees_tell_ideal_constraints_from_wrong_ones():

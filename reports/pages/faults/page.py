@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,6 @@ from reports.pages.faults.experiments import (
     CASES,
     KINDS,
     WRONG,
-    Bead,
     Equalities,
     Grooves,
     Offsets,
@@ -23,16 +23,29 @@ from reports.pages.faults.experiments import (
     beside,
     wrong,
 )
-from reports.pages.faults.scripts import MJX, MUJOCO, PYMUNK, Script, recorded, script
+from reports.pages.faults.scripts import (
+    FOLDER,
+    MATCHED,
+    MJX,
+    MUJOCO,
+    OWN_TESTS,
+    PATCHED,
+    PYMUNK,
+    Found,
+    Script,
+    recorded,
+    script,
+    source,
+)
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.tables import markdown, number
+from reports.write.templates import anchor, environment, headings
 
 NAME = "faults"
-SNIPPETS = "faults/snippets"
+LOOKED_UP = "2026-11-23"  # when threads were looked for
 SCRIPTS: Mapping[str, Script] = {name: script(name) for name in (*MUJOCO, *PYMUNK, *MJX)}
 GROOVES = tuple(map(Grooves, CASES))
 EQUALITIES = tuple(map(Equalities, KINDS))
-BEADS = (Bead(1e-2), Bead(1e-4), Bead(1e-3, tied=True), Bead(1e-4, tied=True))
 OFFSETS = Offsets(tuple(np.geomspace(0.05, 5.0, 13).round(6).tolist()))
 # Beyond this an equality counts as wrong, of its accelerations: rows with 1e-4 of softness agree far better.
 OFF = 1e-4
@@ -63,30 +76,124 @@ def figures(material: Material) -> dict[str, str]:
     return {"groove": svg(draw_offsets(answer.array("across")), title)}
 
 
-def versions_table(names: tuple[str, ...]) -> str:
-    """What scripts find, by release."""
-    rows = [row for row in recorded() if row.script in names]
-    releases = list(dict.fromkeys((row.package, row.version) for row in rows))
-    body = []
-    for package, version in releases:
-        own = {row.script: row for row in rows if (row.package, row.version) == (package, version)}
-        cells = [f"{own[name].found:.6g}" if own[name].right else f"**{own[name].found:.6g}**" for name in names]
-        body.append([f"{package} {version}", *cells])
-    wanted = [f"{next(row.expected for row in reversed(rows) if row.script == name):.6g}" for name in names]
-    return markdown(["release", *(f"`{name}.py`" for name in names)], [["*expected*", *wanted], *body])
+@dataclass(frozen=True)
+class Fault:
+    """One entry of the page, and a file to paste into a tracker; its words are the template entries/`name`.md.
+
+    `scripts` and `costs` show it, at one instant and over time, with the newest release or the last that has it,
+    `wrong`; `mended` adds the missing term from outside.
+    """
+
+    name: str
+    releases: str
+    scripts: tuple[str, ...]
+    costs: tuple[str, ...] = ()
+    mended: tuple[str, ...] = ()
+    patch: str = ""
+
+
+ALL = "all tried"
+FAULTS = (
+    Fault(
+        "pymunk_groove",
+        ALL,
+        ("pymunk_groove", "pymunk_groove_moving"),
+        ("pymunk_groove_cost",),
+        patch="pymunk_groove.patch",
+    ),
+    Fault(
+        "pymunk_kinetic_energy",
+        ALL,
+        ("pymunk_kinetic_energy",),
+        ("pymunk_kinetic_energy_cost",),
+        patch="pymunk_kinetic_energy.patch",
+    ),
+    Fault(
+        "mujoco_curved_equalities",
+        ALL,
+        ("mujoco_joint_equality", "mujoco_tendon_equality"),
+        ("mujoco_joint_equality_cost", "mujoco_tendon_equality_cost"),
+        ("mujoco_joint_equality_mended", "mujoco_tendon_equality_mended"),
+    ),
+    Fault("mujoco_site_near_origin", ALL, ("mujoco_site_near_origin",)),
+    Fault("mujoco_loop", "before 3.7.0", ("mujoco_loop",), ("mujoco_loop_cost",)),
+    Fault("mujoco_sparse", "4.0.0", ("mujoco_sparse",), ("mujoco_sparse_cost",)),
+    Fault("mjx_loop", f"{MATCHED}, known", ("mjx_loop",), ("mjx_loop_cost",)),
+)
+
+
+def _of(rows: tuple[Found, ...], name: str) -> list[Found]:
+    """What a script printed, by release, oldest first."""
+    return [row for row in rows if row.script == name]
+
+
+def found_line(rows: tuple[Found, ...], name: str) -> str:
+    """What the last release with the fault finds, then the first that is mended, or our build."""
+    own = _of(rows, name)
+    faulty = [row for row in own if not row.right][-1]
+    line = f"{faulty.package} {faulty.version}: expected **{faulty.expected!r}**, found **{faulty.found!r}**"
+    mended = next((row for row in own[own.index(faulty) :] if row.right), None)
+    if mended is None:
+        return f"{line}."
+    ours = mended.version.endswith(PATCHED)
+    return f"{line}. {'With our patch' if ours else f'Mended in {mended.version}'}: found **{mended.found!r}**."
+
+
+def told(fault: Fault, layout: str) -> str:
+    """The entry of a fault as a part of the page or as a file to paste."""
+    rows = recorded()
+    seen = [row for name in fault.scripts for row in _of(rows, name)]
+    wrong_in = list(dict.fromkeys(f"{row.package} {row.version}" for row in seen if not row.right))
+    right_in = list(dict.fromkeys(f"{row.package} {row.version}" for row in seen if row.right))
+    last = {name: [row for row in _of(rows, name) if not row.right][-1] for name in fault.scripts}
+    proof = [f"* `{name}.py`: {row.printed}." for name in fault.mended for row in _of(rows, name)]
+    if fault.patch and layout == "issue":
+        proof.append(own_tests(rows))
+    scripts = [(name, source(name), last[name].printed) for name in fault.scripts]
+    scripts += [(name, source(name), row.printed) for name in fault.mended for row in _of(rows, name)]
+    costs = {name: _of(rows, name) for name in fault.costs}
+    return (
+        environment()
+        .get_template(f"faults/entries/{fault.name}.md")
+        .render(
+            layout=f"faults/{layout}.md",
+            fault=fault,
+            looked_up=LOOKED_UP,
+            matched=MATCHED,
+            seen_line="  \n".join(found_line(rows, name) for name in fault.scripts),
+            costs="\n\n".join(cost_text(row) for own in costs.values() for row in own),
+            cost_scripts=[(name, source(name), [cost_text(row) for row in own]) for name, own in costs.items()],
+            scripts=scripts,
+            versions=f"Wrong: {', '.join(wrong_in)}. "
+            + (f"Right: {', '.join(right_in)}. " if right_in else "")
+            + f"{next(iter(last.values())).machine}.",
+            patches=[(FOLDER / fault.patch).read_text(encoding="utf-8")] if fault.patch else [],
+            proof="\n".join(proof),
+        )
+    )
+
+
+def own_tests(rows: tuple[Found, ...]) -> str:
+    """How pymunk's own tests end with the release and with our build."""
+    lines = (f"* {row.version}: {', '.join(row.printed.splitlines())}." for row in _of(rows, OWN_TESTS))
+    return "\n".join(lines)
+
+
+def cost_text(row: Found) -> str:
+    """What a script printed of the costs, with the build told where it is ours."""
+    first, _, rest = row.printed.partition("\n")
+    return f"{first}{PATCHED if row.version.endswith(PATCHED) else ''}\n{rest}"
+
+
+def further(material: Material) -> dict[str, str]:
+    """The files to paste, one for each fault."""
+    return {f"upstream/{fault.name}.md": told(fault, "issue") for fault in FAULTS}
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """What the scripts and the random models said, by name; absent where nothing was run."""
-    said = {name: answer for name, task in SCRIPTS.items() if (answer := material.finished(task))}
-    printed = {
-        name: {
-            "expected": repr(answer.number("expected")),
-            "found": repr(answer.number("found")),
-            "version": str(answer.values["version"]),
-        }
-        for name, answer in said.items()
-    }
+    """The entries from what releases printed; what the random models said, absent where nothing was run."""
+    build = [row for row in _of(recorded(), "pymunk_groove_random") if row.version.endswith(PATCHED)]
+    ours = {line[:24].strip(): line.split()[-1] for row in build for line in row.printed.splitlines()}
     grooves = [
         [
             task.case,
@@ -94,6 +201,7 @@ def words(material: Material) -> Mapping[str, Any]:
             number(float(np.median(off))),
             number(float(off.max())),
             number(answer.number("missed")),
+            ours.get(task.case, ""),
         ]
         for task in GROOVES
         if (answer := material.finished(task))
@@ -106,22 +214,32 @@ def words(material: Material) -> Mapping[str, Any]:
             number(float(np.median(off))),
             number(float(off.max())),
             number(float(answer.array("missed").max())),
+            "" if task.kind == "connect" else number(float(answer.array("mended").max())),
         ]
         for task in EQUALITIES
         if (answer := material.finished(task))
         for off in (answer.array("off"),)
     ]
-    header = ["", "wrong", "median", "largest", "from the other formula, at most"]
+    entries = {fault.name: told(fault, "entry") for fault in FAULTS}
+    listed = [
+        [f"[{title}](#{anchor(title)})", fault.releases]
+        for fault in FAULTS
+        for title in headings(entries[fault.name])[:1]
+    ]
+    header = ["", "wrong", "median", "largest", "off the wrong formula, at most"]
+    mended = "off the right one with our patch"
     return {
-        "printed": printed,
-        "unfinished": {name: material.unfinished(task) for name, task in SCRIPTS.items() if name not in printed},
-        "snippets": SNIPPETS,
-        "grooves": markdown(["groove in, anchor at", *header[1:]], grooves) if grooves else "",
-        "equalities": markdown(["equality", *header[1:]], equalities) if equalities else "",
-        "mujoco_versions": versions_table(MUJOCO),
-        "pymunk_versions": versions_table(PYMUNK),
-        "beads": [(task.step, answer.number("gap")) for task in BEADS if (answer := material.finished(task))],
-        "faulty": {row.script: row for row in recorded() if not row.right},  # the last release of each
+        "entries": entries,
+        "own_tests": own_tests(recorded()),
+        "looked_up": LOOKED_UP,
+        "listed": markdown(["fault", "releases"], listed),
+        "grooves": markdown(["groove in, anchor at", *header[1:], mended], grooves) if grooves else "",
+        "equalities": markdown(["equality", *header[1:], "off the right one with the term added"], equalities)
+        if equalities
+        else "",
+        "unfinished": {
+            name: material.unfinished(task) for name, task in SCRIPTS.items() if not material.finished(task)
+        },
         "wrong": WRONG,
         "off": OFF,
     }
@@ -130,11 +248,12 @@ def words(material: Material) -> Mapping[str, Any]:
 PAGE = Page(
     name=NAME,
     title="Faults of released engines",
-    lesson="Wrong in a release, not soft or coarse: the shortest script, and the formula that it computes instead.",
+    lesson="Wrong in a release, not soft or coarse: the formula behind it, what it costs, what to send to its authors.",
     scenes=(),
     engines=(),
     companions=(DrivenFourBar(), FreeFourBar(), SpinningFourBar(), DrivenSliderCrank()),
     figures=figures,
     words=words,
-    tasks=(*SCRIPTS.values(), *GROOVES, *EQUALITIES, *BEADS, OFFSETS),
+    further=further,
+    tasks=(*SCRIPTS.values(), *GROOVES, *EQUALITIES, OFFSETS),
 )

@@ -1,6 +1,8 @@
-"""The scripts that show the faults, run as they are printed; and what they find with released versions.
+"""The scripts that show the faults, run as they are printed; and what they print with released and mended versions.
 
 python -m reports.pages.faults.scripts    # installs each version in the user's cache, runs every script, writes
+
+pymunk is also built from its source package with our patches, and its own tests are run with that build.
 """
 
 from __future__ import annotations
@@ -9,9 +11,11 @@ import contextlib
 import csv
 import hashlib
 import io
+import platform
+import re
 import subprocess
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -21,13 +25,17 @@ import numpy as np
 
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
+from reports.model.ending import BadInput
 from reports.model.tasks import Task, Values
-from reports.run.installed import environment, installed, numbers
+from reports.run.files import temporary_folder
+from reports.run.installed import built, environment, installed, numbers, sources
 from reports.versions import catalogue
 
 FOLDER = Path(__file__).parent / "snippets"
-# Printed by a process of its own behind a script's last line.
-TOLD = '\nprint("told", repr(float(expected)), repr(float(found)))\n'
+ROOT = Path(__file__).parents[3]
+LINE = re.compile(r"expected (\S+), found (\S+)$")  # how a script ends that shows a fault
+UNASKED = "Failed to import"  # what MJX prints of Warp, which is not asked for
+OWN_TESTS = "pymunk.tests"  # pymunk's own, `python -m pymunk.tests`
 MJX = ("mjx_loop",)
 
 
@@ -45,14 +53,20 @@ def said(name: str) -> tuple[float, float]:
     return float(space["expected"]), float(space["found"])
 
 
-def said_apart(name: str, own: Mapping[str, str] | None = None, folder: Path | None = None) -> tuple[float, float]:
-    """The same by a process with this environment in this folder. Raises RuntimeError if the script fails there."""
-    command = [sys.executable, "-c", source(name) + TOLD]
-    run = subprocess.run(command, capture_output=True, text=True, env=own, cwd=folder, check=False)
-    words = run.stdout.split()[-3:]
-    if run.returncode or words[:1] != ["told"]:
+def printed(name: str, own: Mapping[str, str] | None = None, folder: Path | None = None) -> str:
+    """What a script prints in a process with this environment in this folder. Raises RuntimeError if it fails there."""
+    run = subprocess.run([sys.executable, "-c", source(name)], capture_output=True, text=True, env=own, cwd=folder)
+    if run.returncode:
         raise RuntimeError((run.stderr or run.stdout).strip().splitlines()[-1])
-    return float(words[1]), float(words[2])
+    return "\n".join(line for line in run.stdout.splitlines() if not line.startswith(UNASKED))
+
+
+def outcome(text: str) -> tuple[float, float]:
+    """What a script expects and finds, by what it printed. Raises ValueError for another text."""
+    match = LINE.search(text)
+    if match is None:
+        raise ValueError(f"{text!r} does not end in 'expected ..., found ...'")
+    return float(match[1]), float(match[2])
 
 
 @dataclass(frozen=True)
@@ -92,7 +106,7 @@ class Script(Task):
         """JAX takes its settings from whoever imports it first, so it is not imported here."""
         DEFAULT.require()
         try:
-            expected, found = said_apart(self.name)
+            expected, found = outcome(printed(self.name))
         except RuntimeError as reason:
             raise Unsupported(f"MJX does not run here: {reason}") from None
         return {"expected": np.asarray(expected), "found": np.asarray(found), "version": version("mujoco-mjx")}
@@ -103,13 +117,21 @@ def script(name: str) -> Script:
     return Script(name, hashlib.sha256(source(name).encode()).hexdigest()[:16])
 
 
-RECORDED = Path(__file__).parent / "versions.csv"
-FIELDS = ("script", "package", "version", "expected", "found")
+RECORDED = Path(__file__).parent / "recorded.csv"
+FIELDS = ("script", "package", "version", "machine", "printed")
 MUJOCO = (
     *("mujoco_loop", "mujoco_sparse", "mujoco_joint_equality", "mujoco_tendon_equality"),
     "mujoco_site_near_origin",
 )
 PYMUNK = ("pymunk_groove", "pymunk_groove_moving", "pymunk_kinetic_energy")
+# What the faults cost over time, and what mends them.
+PYMUNK_COSTS = ("pymunk_groove_cost", "pymunk_kinetic_energy_cost", "pymunk_groove_random", OWN_TESTS)
+MUJOCO_COSTS = (
+    *("mujoco_joint_equality_cost", "mujoco_tendon_equality_cost", "mujoco_loop_cost", "mujoco_sparse_cost"),
+    *("mujoco_joint_equality_mended", "mujoco_tendon_equality_mended"),
+)
+PATCHES = ("pymunk_groove.patch", "pymunk_kinetic_energy.patch")
+PATCHED = " with both patches"  # behind the version of the release
 
 
 def _telling(engine: str) -> list[str]:
@@ -120,23 +142,44 @@ def _telling(engine: str) -> list[str]:
     return [own[index].version for index in sorted(chosen)]
 
 
+def _further(engine: str, version: str) -> tuple[str, ...]:
+    """The scripts beside those of every version: all costs with the newest, one with the version that has its fault."""
+    if version == _telling(engine)[-1]:
+        return PYMUNK_COSTS if engine == "pymunk" else MUJOCO_COSTS
+    return {"3.6.0": ("mujoco_loop_cost",), "4.0.0": ("mujoco_sparse_cost",)}.get(version, ())
+
+
 # (distribution, version, scripts). MuJoCo's distribution of this name is a bundle from its fourth version on.
 BUNDLED = numbers("4")
+MATCHED = "3.17.0"  # of MJX and of MuJoCo's C code, the newest that both have
 ASKED = (
-    *(("mujoco-core" if numbers(each) >= BUNDLED else "mujoco", each, MUJOCO) for each in _telling("mujoco")),
-    *(("pymunk", each, PYMUNK) for each in _telling("pymunk")),
+    *(
+        ("mujoco-core" if numbers(each) >= BUNDLED else "mujoco", each, MUJOCO + _further("mujoco", each))
+        for each in _telling("mujoco")
+    ),
+    *(("pymunk", each, PYMUNK + _further("pymunk", each)) for each in _telling("pymunk")),
+    ("pymunk", _telling("pymunk")[-1] + PATCHED, PYMUNK + PYMUNK_COSTS),
+    ("mujoco-mjx", MATCHED, ("mjx_loop", "mjx_loop_cost")),
 )
 
 
 @dataclass(frozen=True)
 class Found:
-    """What one script expects and finds with one version."""
+    """What one script prints with one version; `machine`: Python and platform."""
 
     script: str
     package: str
     version: str
-    expected: float
-    found: float
+    machine: str
+    printed: str
+
+    @property
+    def expected(self) -> float:
+        return outcome(self.printed)[0]
+
+    @property
+    def found(self) -> float:
+        return outcome(self.printed)[1]
 
     @property
     def right(self) -> bool:
@@ -147,26 +190,53 @@ class Found:
 def recorded() -> tuple[Found, ...]:
     """What the file says."""
     with RECORDED.open(encoding="utf-8", newline="") as file:
-        return tuple(
-            Found(row["script"], row["package"], row["version"], float(row["expected"]), float(row["found"]))
-            for row in csv.DictReader(file)
-        )
+        return tuple(Found(**row) for row in csv.DictReader(file))
 
 
-def found_with(package: str, version: str, scripts: Iterable[str]) -> list[Found]:
+def patched(release: str) -> Path:
+    """The folder with pymunk built from its source package with our patches. Raises BadInput, in one line."""
+    with temporary_folder() as folder:
+        tree = sources("pymunk", release, folder)
+        for path in (tree / "Munk2D").rglob("*.[ch]"):  # some have another end of line than the patches
+            path.write_bytes(path.read_bytes().replace(b"\r\n", b"\n"))
+        for name in PATCHES:
+            ended = subprocess.run(["patch", "-p1", "-i", str(FOLDER / name)], cwd=tree, capture_output=True, text=True)
+            if ended.returncode:
+                raise BadInput(f"{name} does not fit pymunk {release}: {ended.stdout.strip()}")
+        return built(tree)
+
+
+def own_tests(own: Mapping[str, str], folder: Path) -> str:
+    """How pymunk's own tests end: how many were run, and the names of those that fail."""
+    command = [sys.executable, "-m", OWN_TESTS]
+    run = subprocess.run(command, capture_output=True, text=True, env=own, cwd=folder)
+    lines = (run.stdout + run.stderr).splitlines()
+    count = [line.partition(" in ")[0] for line in lines if line.startswith("Ran ")]
+    failing = [line.partition(" (")[0] for line in lines if line.startswith(("FAIL:", "ERROR:"))]
+    ending = [line for line in lines if line.startswith(("OK", "FAILED"))]
+    return "\n".join([*failing, *count, *ending])
+
+
+def found_with(package: str, release: str, scripts: Iterable[str]) -> list[Found]:
     """Each script in a process of its own that imports this version.
 
-    Raises BadInput if the version can't be installed, SystemExit if a script fails.
+    Raises BadInput if the version can't be installed or built, SystemExit if a script fails.
     """
-    folder = installed((package,), version)
-    own = environment(folder)
+    further: Sequence[Path] = ()
+    if release.endswith(PATCHED):
+        folder = patched(release.removesuffix(PATCHED))
+    else:
+        folder = installed((package,), release)
+        further = (installed(("mujoco",), release),) if package == "mujoco-mjx" else ()
+    own = environment(folder, (*further, ROOT))  # ours for the random grooves alone
+    machine = f"Python {platform.python_version()}, {platform.system()} {platform.machine()}"
     out = []
     for name in scripts:
         try:
-            expected, found = said_apart(name, own, folder)
+            text = own_tests(own, folder) if name == OWN_TESTS else printed(name, own, folder)
         except RuntimeError as reason:
-            raise SystemExit(f"{name} with {package} {version}: {reason}") from None
-        out.append(Found(name, package, version, expected, found))
+            raise SystemExit(f"{name} with {package} {release}: {reason}") from None
+        out.append(Found(name, package, release, machine, text))
     return out
 
 
@@ -176,7 +246,7 @@ def main() -> None:
     with RECORDED.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(FIELDS)
-        writer.writerows((row.script, row.package, row.version, repr(row.expected), repr(row.found)) for row in rows)
+        writer.writerows([getattr(row, name) for name in FIELDS] for row in rows)
 
 
 if __name__ == "__main__":

@@ -1,3 +1,5 @@
+from importlib.metadata import version
+
 import pymunk
 
 # A groove in a body that can move; the other body slides along it, held at its centre of mass.
@@ -11,4 +13,4 @@ space.step(0.001)
 expected = 0.0  # m/s, of the anchor across the groove
 place = first.world_to_local(second.position)
 found = (second.velocity - first.velocity_at_local_point(place)).dot(first.rotation_vector.perpendicular())
-print(f"pymunk {pymunk.version}: expected {expected!r}, found {found!r}")
+print(f"pymunk {version('pymunk')}: expected {expected!r}, found {found!r}")
