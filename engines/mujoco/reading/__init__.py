@@ -19,8 +19,9 @@ from engines.mujoco.reading.forces import forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
 from engines.mujoco.reading.obstacles import limited_forces
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
+from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Note, Reading, refuse, refuse_at_start
+from engines.reading import Note, Reading, Source, refuse, refuse_at_start
 from reference.forces import Force
 from reference.mechanism import Mechanism
 
@@ -177,7 +178,12 @@ class Reader:
             raise ValueError(f"--key is {key!r}; {word} has no keyframes")
         reading = read(model, data, without)
         notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in dict.fromkeys(warnings)))
-        reading = replace(reading, notes=notes)
+        source = Source(
+            path,
+            lambda change: rewritten(path.read_bytes(), change),
+            lambda other: self.read(other.name, other.parent, without, key, None),
+        )
+        reading = replace(reading, notes=notes, source=None if path.suffix.lower() == ".mjb" else source)
         if path.suffix.lower() != ".urdf" or "<mujoco" in path.read_text(encoding="utf-8", errors="replace"):
             return reading
         assert isinstance(reading.model, OwnMuJoCo)
