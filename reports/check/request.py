@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from engines import Unsupported
+from engines.importers import read_object
 from reference.checks import InvalidMechanism
 from reports.check.applying import Applied, applied
 from reports.check.checked import PATIENCE, SEARCH, Checked, Plan, check, read
@@ -80,8 +81,8 @@ class Refused:
     sentence: str
 
 
-def answered(request: CheckRequest) -> CheckReport | Refused:
-    """In a worker: the check, or why there is none."""
+def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
+    """In a worker: the check, or why there is none. `model`: an engine's own object, in the place of a file."""
 
     def told(words: str) -> None:
         if request.notes:
@@ -90,7 +91,10 @@ def answered(request: CheckRequest) -> CheckReport | Refused:
     tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
     try:
         told("reading")
-        reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
+        if model is None:
+            reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
+        else:
+            reading = read_object(model, request.without, request.step)
         name = reading.title or Path(request.word).name
         found = check(reading, name, request.duration, tolerance, told, request.plan)
     except (Unsupported, InvalidMechanism, ValueError) as reason:

@@ -71,6 +71,14 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     return Reading(mechanism, own, tuple(scene.notes), title)
 
 
+def read_object(model: Any, without: Sequence[str] = (), step: float | None = None) -> Reading:
+    """The reading of a mujoco.MjModel in its first state; step [s]: instead of its own."""
+    if step is not None:
+        model = copy.copy(model)
+        model.opt.timestep = step
+    return read(model, None, without)
+
+
 def _refuse_not_finite(model: Any, data: Any) -> None:
     """MuJoCo takes NaN and infinity as they come, and every number after them is none."""
     joint, actuator = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_ACTUATOR

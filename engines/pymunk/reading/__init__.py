@@ -48,6 +48,11 @@ def read(space: pymunk.Space, step: float | None = None, without: Sequence[str] 
     return Reading(mechanism, own, tuple(notes))
 
 
+def read_object(space: pymunk.Space, without: Sequence[str] = (), step: float | None = None) -> Reading:
+    """`read`, with the terms of every engine's."""
+    return read(space, step, without)
+
+
 class Reader:
     """For `crosscheck check`: a variable of a script, or a function without arguments, that gives a space."""
 
