@@ -1,13 +1,34 @@
-"""The program's start, under the one name that is ours alone: it says when another package hides one of ours.
+"""What a notebook or a script needs, and the program's start, under the one name that is ours alone.
 
-`reference`, `engines` and `reports` are general names, and Python takes the first package of a name that it finds.
+    import planar_crosscheck as crosscheck
+    from engines.importers import mujoco
+
+    found = crosscheck.check("model.xml", tolerance=1e-4)   # a model of your own: how wrong, why, what to set
+    mechanism = mujoco.read("model.xml")                    # or engines.importers.pymunk.read(space)
+    points = {"A": (0, 0), "B": (0, 0.3), "C": (0.8, 0.6), "D": (0.7, 0)}
+    mechanism = crosscheck.linkage(points, {"crank": "AB", "coupler": "BC", "rocker": "DC"}, ground="AD")
+    crosscheck.draw(mechanism)
+    beside = crosscheck.compare(mechanism, "mujoco default", dt=2e-3, duration=1.0)
+    beside                                                  # truth, run, errors and a figure; beside.frame() for pandas
+
+`reference`, `engines` and `reports` are general names, and Python takes the first package of a name that it finds:
+`clash` says when another package hides one of ours. What takes time is imported when it is called.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from engines import Engine
+    from reference.mechanism import Mechanism
+    from reports.check.comparing import Comparison, Drawing
+    from reports.check.request import CheckReport
 
 PACKAGES = ("reference", "engines", "reports")
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -28,6 +49,78 @@ def clash(packages: tuple[str, ...] = PACKAGES) -> str:
                 "or in an environment of its own"
             )
     return ""
+
+
+def check(
+    model: Any,
+    tolerance: float | None = None,
+    duration: float = 2.0,
+    *,
+    without: Sequence[str] = (),
+    key: str = "",
+    step: float | None = None,
+    quick: bool = False,
+    fix_to: float | None = None,
+    apply: str | Path = "",
+    folder: Path | None = None,
+) -> CheckReport:
+    """What `crosscheck check` finds of a model: a file as on the command line, a mujoco.MjModel or a pymunk.Space.
+
+    duration [s]: of the motion that is judged; tolerance: of angles [rad] and of places in lengths of the mechanism;
+    `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the command's options; folder: where files are
+    looked for, the current one unless it is given. Raises ValueError, in a sentence, for what can't be judged.
+    """
+    from reports.check.request import CheckRequest, Refused, answered
+
+    word = str(model) if isinstance(model, str | Path) else type(model).__name__
+    wanted = tolerance if fix_to is None else fix_to
+    terms = {"quick": quick, "search": fix_to is not None, "apply": str(apply), "pictures": True}
+    request = CheckRequest(word, str(folder or Path.cwd()), duration, wanted, tuple(without), key, step, **terms)
+    found = answered(request, None if isinstance(model, str | Path) else model)
+    if isinstance(found, Refused) or found.trouble:
+        raise ValueError(found.sentence if isinstance(found, Refused) else found.trouble)
+    return found
+
+
+def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float = 2.0) -> Comparison:
+    """A mechanism in an engine at a step dt [s], beside exact multipliers, for a duration [s].
+
+    engine: an object of `engines`, or the name of one: "mujoco tuned". Raises ValueError, also where an engine can't
+    build the mechanism.
+    """
+    from reports.check.comparing import compared
+
+    return compared(mechanism, engine, dt, duration)
+
+
+def linkage(
+    points: Mapping[str, tuple[float, float]],
+    bars: Mapping[str, Sequence[str]],
+    ground: Sequence[str],
+    gravity: tuple[float, float] = (0.0, -9.81),
+    density: float = 1.0,
+) -> Mechanism:
+    """Uniform bars between named points [m], pinned where they share one, and to the ground at those of `ground`.
+
+    bars: by a bar's name its two ends; density [kg/m]; gravity [m/s^2]. It begins at rest. Raises ValueError.
+    """
+    from reference.linkage import linkage as made
+
+    return made(points, bars, ground, gravity, density)
+
+
+def draw(mechanism: Mechanism, pose: Any = None) -> Drawing:
+    """A picture of a mechanism in its start, or in a pose (bodies, 3) [m, m, rad]; `save` writes it as SVG."""
+    from reports.check.comparing import drawn
+
+    return drawn(mechanism, pose)
+
+
+def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) -> Any:
+    """Ask an engine what every engine has to keep; see `engines.conformance.conform`. Raises AssertionError."""
+    from engines.conformance import conform as asked
+
+    return asked(engine, expected_failures)
 
 
 def main() -> None:

@@ -6,7 +6,7 @@ What `crosscheck check` asks of a reader, and nothing of one engine. A reader st
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -125,8 +125,11 @@ class OwnModel(Protocol):
         """Elements that the engine holds by another law than an ideal joint's at any step, each with why."""
         ...
 
-    def changes(self, smallest: float) -> list[Change]:
-        """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own."""
+    def changes(self, smallest: float, further: bool = False) -> list[Change]:
+        """Settings that the engine documents, with steps down to `smallest` [s]; the first is the user's own.
+
+        `further`: all that may help if the usual ones do not.
+        """
         ...
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
@@ -135,13 +138,28 @@ class OwnModel(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class Source:
+    """The file of a user's model: `changed` gives its bytes with other settings, and `read` reads such a file in the
+    way in which this one was read. Either raises Unsupported.
+    """
+
+    path: Path
+    changed: Callable[[Change], bytes]
+    read: Callable[[Path], Reading]
+
+
+@dataclass(frozen=True, eq=False)
 class Reading:
-    """What a user's model describes: a mechanism, what was left out of it, and the model, as it is."""
+    """What a user's model describes: a mechanism, what was left out of it, and the model, as it is.
+
+    `source`: the file that it was read from; None where it has no text.
+    """
 
     mechanism: Mechanism
     model: OwnModel
     notes: tuple[Note, ...]
     title: str = ""
+    source: Source | None = None
 
 
 class Reader(Protocol):

@@ -15,6 +15,7 @@ from reference.mechanism import Mechanism
 from reference.plane import rotated
 
 Array = NDArray[np.float64]
+SHOWN = 6  # instants in a notebook's table
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,24 @@ class Trajectory(Valid):
         None  # (times, bodies, 3) the method's own estimate of its error in the poses
     )
     unresolved_at: float | None = None  # s, from when on that estimate is above what the method claims
+
+    def table(self) -> dict[str, Array]:
+        """Times and every coordinate (times,) by a name, "t" [s], "x 0", "y 0" [m], "angle 0" [rad] and so on.
+
+        As pandas takes it: `pandas.DataFrame(trajectory.table())`.
+        """
+        numbers = range(self.pose.shape[1])
+        names = [(f"{name} {body}", body, place) for body in numbers for place, name in enumerate(("x", "y", "angle"))]
+        return {"t": self.t, **{name: self.pose[:, body, place] for name, body, place in names}}
+
+    def _repr_html_(self) -> str:
+        """Poses at a few instants, for a notebook."""
+        columns = self.table()
+        looks = np.unique(np.linspace(0, len(self.t) - 1, SHOWN).round().astype(int))
+        head = "".join(f"<th>{name}</th>" for name in columns)
+        rows = ("".join(f"<td>{column[look]:.6g}</td>" for column in columns.values()) for look in looks)
+        said = f"{len(self.t)} instants, {self.pose.shape[1]} bodies (s, m, rad)"
+        return f"<p>{said}</p><table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
 
 
 @validated

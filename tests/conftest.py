@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-pytest_plugins = ["reports.gate.pytest_plugin", "pytester"]
+pytest_plugins = ["planar_crosscheck_pytest", "reports.gate.pytest_plugin", "pytester"]
 
 # A shell that starts the tests in the background has them ignore Ctrl-C, and the programs that they start inherit it.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:

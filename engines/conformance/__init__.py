@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from engines import Engine
 from engines.conformance import members, moving, refusing, same, sampled
@@ -28,4 +28,32 @@ def cases(*engines: Engine) -> Iterator[Case]:
                 yield Case(subject, check, world)
 
 
-__all__ = ["CHECKS", "Case", "Check", "Result", "Status", "Subject", "cases"]
+def conform(engine: Engine, expected_failures: Mapping[str, str] | None = None) -> tuple[tuple[Case, Result], ...]:
+    """Ask an engine everything; every case and what came of it.
+
+    expected_failures: by a check's name, or by `check: mechanism`, why it fails. Raises AssertionError, with a line for
+    each check that fails and was not expected to, for each that was and does not, and for each name that no check has.
+    """
+    expected = dict(expected_failures or {})
+    results = tuple((case, case.result()) for case in cases(engine))
+    came, wrong = set[str](), list[str]()
+    for case, result in results:
+        full = case.check.name if case.world is None else f"{case.check.name}: {case.world.name}"
+        names = {case.check.name, full} & set(expected)
+        if result.status == "fails":
+            came |= names
+            wrong += [] if names else [f"{full}: {result.sentence}"]
+    asked = {case.check.name for case, _ in results}
+    for name, why in expected.items():
+        if name.split(": ")[0] not in asked:
+            wrong.append(f"{name!r} is no check; there are {', '.join(sorted(asked))}")
+        elif not why.strip():
+            wrong.append(f"{name}: it is expected to fail, and no reason is given")
+        elif name not in came:
+            wrong.append(f"{name}: it was expected to fail ({why}), and it does not: take it out of what is expected")
+    if wrong:
+        raise AssertionError(f"{engine.name} {engine.variant} does not conform:\n" + "\n".join(wrong))
+    return results
+
+
+__all__ = ["CHECKS", "Case", "Check", "Result", "Status", "Subject", "cases", "conform"]

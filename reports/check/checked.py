@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
 from reports.check.facts import Facts, facts_of
 from reports.check.judging import (
+    TOLERANCE,
     Errors,
     IdealMotion,
     Opening,
@@ -32,6 +34,23 @@ from reports.check.judging import (
 
 PATIENCE = 5.0  # s of CPU time for all settings together
 LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
+SEARCH = 60.0  # s of CPU time to look for settings that reach a goal
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which documented settings are tried: all that `patience` [s of CPU time] allows; if it is infinite, all.
+
+    `goal`: an error; then ever smaller steps, until a setting is within it. `quick`: four settings, and rougher parts.
+    """
+
+    patience: float
+    goal: float | None = None
+    quick: bool = False
+
+    @classmethod
+    def usual(cls) -> Plan:
+        return cls(PATIENCE)
 
 
 MEMBERS = ("words", "reads", "read")
@@ -71,32 +90,49 @@ def tried(
     every: int,
     own: Trajectory,
     told: Callable[[int, int], None],
-    patience: float | None = None,
+    plan: Plan,
 ) -> list[Tried]:
     """Runs at the documented settings, coarse steps first. `own`: at the user's own, which come first in the answer.
 
-    Left out is what takes too long: by how often the engine would step, from what it took so far. `patience` [s] of CPU
-    time, PATIENCE unless given; if it is infinite all are run, whatever a machine takes.
+    Left out is what takes too long: by how often the engine would step, from what it took so far.
     """
     model, mechanism = reading.model, reading.mechanism
-    patience = PATIENCE if patience is None else patience
-    smallest = 0.0 if patience == float("inf") else model.dt * max(own.stepping, 1e-4) / LONGEST
-    changes = model.changes(min(smallest, model.dt))
-    order = sorted(range(1, len(changes)), key=lambda index: -changes[index].dt)
+    unpruned = plan.goal is not None or plan.quick or plan.patience == float("inf")
+    smallest = 0.0 if unpruned else model.dt * max(own.stepping, 1e-4) / LONGEST
+    changes = model.changes(min(smallest, model.dt), plan.goal is not None)
+    order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
     begin, rate = time.process_time(), max(own.stepping, 1e-5) / (samples * every)
     wrong = errors(mechanism, truth, own)
     found = [(0, Tried(changes[0], wrong.largest, own.stepping, wrong, own))]
     for number, index in enumerate(order):
+        if plan.goal is not None and found[-1][1].error <= plan.goal:
+            break
         change = changes[index]
-        told(number, len(changes))
+        if plan.goal is not None and _stays([each for _, each in found if each.change.options == change.options]):
+            continue
+        told(number, len(order))
         steps = samples * every * model.dt / change.dt
-        if time.process_time() - begin + steps * rate > patience:
+        if time.process_time() - begin + steps * rate > plan.patience:
             continue
         run = model.run(samples, every, change)
         rate = max(rate, run.stepping / steps)
         wrong = errors(mechanism, truth, run)
         found.append((index, Tried(change, wrong.largest, run.stepping, wrong, run)))
     return [each for _, each in sorted(found, key=lambda pair: pair[0])]
+
+
+def _few(changes: list[Change]) -> list[int]:
+    """The user's own settings at a quarter of the step, and the last kind at that step, a quarter and a sixteenth."""
+    own, last = changes[0], changes[-1].options
+    wanted = [(own.options, 4), (last, 1), (last, 4), (last, 16)]
+    places = {(each.options, round(own.dt / each.dt)): index for index, each in enumerate(changes)}
+    return sorted({places[each] for each in wanted if each in places} - {0})
+
+
+def _stays(found: list[Tried]) -> bool:
+    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away."""
+    last = [each.error for each in sorted(found, key=lambda each: -each.change.dt)][-3:]
+    return len(last) == 3 and np.isfinite(last[0]) and all(b >= FALLS * a for a, b in pairwise(last))
 
 
 def cheapest(found: list[Tried], tolerance: float) -> Tried | None:
@@ -122,6 +158,7 @@ def same_step(found: list[Tried], own: Tried) -> list[Tried]:
 
 Array = NDArray[np.float64]
 FALLS = 0.75  # of the error before: a smaller step is taken to help
+QUICK = 1e-7  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
 
 
 @dataclass(frozen=True)
@@ -141,25 +178,28 @@ class Parts:
     divided: bool = True  # False: the engine declares no law whose motion can be worked out
 
 
-def parts_of(reading: Reading, truth: Trajectory, own: Trajectory, smaller: list[Tried]) -> Parts:
-    """From the user's run, and those of the same settings at `smaller` steps, the largest step first."""
+def parts_of(
+    reading: Reading,
+    truth: Trajectory,
+    own: Trajectory,
+    smaller: list[Tried],
+    tolerance: float = TOLERANCE,
+    horizon: float = np.inf,
+) -> Parts:
+    """From the user's run, and those of the same settings at `smaller` steps, the largest step first.
+
+    `tolerance`: of the motion that the engine declares; `horizon` [s]: from there on errors tell no causes.
+    """
     mechanism, model = reading.mechanism, reading.model
-    declared = truth.pose
-    if not model.declares:
-        rests = [each.error for each in smaller]
-        last = rests[-1] if rests else float("nan")
-        falling = len(rests) > 1 and rests[-1] < FALLS * rests[-2]
-        step = smaller[-1].change.dt if smaller else float("nan")
-        return Parts(float("nan"), _largest(apart(mechanism, own.pose, declared)), last, step, falling, False)
-    if model.softly_held:
-        declared, _ = soft_motion(mechanism, model.give, truth.t)
-    softness = _largest(apart(mechanism, declared, truth.pose)) if model.softly_held else 0.0
-    step = _largest(apart(mechanism, own.pose, declared))
-    rests = [_largest(apart(mechanism, each.run.pose, declared)) for each in smaller]
-    if not rests:
-        return Parts(softness, step, float("nan"), float("nan"), False)
-    falling = len(rests) > 1 and rests[-1] < FALLS * rests[-2]
-    return Parts(softness, step, rests[-1], smaller[-1].change.dt, falling)
+    declared, softness = truth.pose, 0.0 if model.declares else float("nan")
+    early = truth.t <= horizon
+    if model.declares and model.softly_held:
+        declared, _ = soft_motion(mechanism, model.give, truth.t, tolerance)
+        softness = _largest(apart(mechanism, declared, truth.pose)[early])
+    left = [_largest(apart(mechanism, run.pose, declared)[early]) for run in (own, *(each.run for each in smaller))]
+    if not smaller:
+        return Parts(softness, left[0], float("nan"), float("nan"), False, model.declares)
+    return Parts(softness, left[0], left[-1], smaller[-1].change.dt, left[-1] < FALLS * left[-2], model.declares)
 
 
 def _largest(values: Array) -> float:
@@ -209,6 +249,22 @@ class Checked:
     def fronts(self) -> list[Tried]:
         return best(self.table)
 
+    @property
+    def chaotic(self) -> bool:
+        """Whether neighbouring starts part exponentially within the motion."""
+        return self.judge.horizon < self.duration
+
+    def until_horizon(self, each: Errors) -> float:
+        """The largest error before neighbouring starts part exponentially."""
+        early = each.whole[each.t <= self.judge.horizon]
+        return float(early.max()) if np.isfinite(early).all() else float("inf")
+
+    def rerun(self, reading: Reading) -> tuple[float, float]:
+        """(error, CPU time [s]) of the same model with other settings, read anew, in the same motion."""
+        spacing = float(self.judge.trajectory.t[1])
+        run = reading.model.run(len(self.judge.trajectory.t) - 1, max(1, round(spacing / reading.model.dt)))
+        return errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
+
 
 def check(
     reading: Reading,
@@ -216,14 +272,13 @@ def check(
     duration: float,
     tolerance: float,
     told: Callable[[str], None] = lambda words: None,
-    patience: float | None = None,
+    plan: Plan | None = None,
 ) -> Checked:
-    """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work;
-    `patience` [s]: see `settings.tried`.
+    """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work.
 
     Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
     """
-    mechanism, model = reading.mechanism, reading.model
+    mechanism, model, plan = reading.mechanism, reading.model, plan or Plan.usual()
     told("comparing the accelerations at t = 0")
     agreement = refuse_disagreement(reading)
     every = max(1, round(duration / SAMPLES / model.dt))
@@ -249,10 +304,10 @@ def check(
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")
 
-    table = tried(reading, truth, samples, every, own, progress, patience)
+    table = tried(reading, truth, samples, every, own, progress, plan)
     told("telling softness from the step")
     smaller = same_step(table, table[0])[1 : 1 + SMALLER]
-    parts = parts_of(reading, truth, own, smaller)
+    parts = parts_of(reading, truth, own, smaller, QUICK if plan.quick else TOLERANCE, judge.horizon)
     return Checked(
         name,
         reading,

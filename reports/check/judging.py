@@ -49,11 +49,13 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
     return (free + inverse * (rows.T @ solve_symmetric(matrix, right))).reshape(-1, 3)
 
 
-def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array) -> tuple[Array, Array]:
+def soft_motion(
+    mechanism: Mechanism, give: Callable[[Array], Give], t: Array, tolerance: float = TOLERANCE
+) -> tuple[Array, Array]:
     """Poses and twists (times, bodies, 3) of joints that give way; NaN from where the equations are not solved."""
     count = mechanism.pose.size
     lengths = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
-    allowed = TOLERANCE * np.concatenate([lengths, lengths / mechanism.time_scale])
+    allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
@@ -62,7 +64,7 @@ def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array) -
         return np.concatenate([state[count:], change.reshape(-1)])
 
     start = np.concatenate([mechanism.pose.reshape(-1), mechanism.twist.reshape(-1)])
-    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "DOP853", t_eval=t, rtol=TOLERANCE, atol=allowed)
+    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "DOP853", t_eval=t, rtol=tolerance, atol=allowed)
     out = np.full((len(t), 2, *mechanism.pose.shape), np.nan)
     done = found.y.shape[1]
     out[:done] = found.y.T.reshape(done, 2, -1, 3)
@@ -72,6 +74,7 @@ def soft_motion(mechanism: Mechanism, give: Callable[[Array], Give], t: Array) -
 LOOSER = Lagrange(tolerance=1e-10)  # the judge at another tolerance: its own error is what that changes
 KNOWN = 0.1  # of a tolerance: the most that the judge's estimate of its own error may be where others are held to it
 NUDGE = 1e-7  # of the length, and of the speed: small enough to be a derivative, far above the judge's error
+SMALL = 1e-2  # of the length, and of the speed: a disturbance that is larger no longer grows as a small one
 SEEDS = (1, 2)
 # A disturbance of a motion that is not chaotic grows about as the time; this many times that is taken as exponential.
 GROWN = 100.0
@@ -89,6 +92,17 @@ class IdealMotion:
     growth: Array  # (times,) how many times a small disturbance of the start has grown
     horizon: float  # s; the duration if errors grow no faster than about linearly
     cut: bool = False
+
+    @property
+    def tenfold(self) -> float:
+        """In how many seconds, on average, a small disturbance of the start grows tenfold; infinite if it does not.
+
+        Counted for as long as it is small: its growth ends where it is as large as the motion.
+        """
+        small = self.growth * NUDGE < SMALL
+        last = len(small) - 1 if small.all() else max(int(np.argmin(small)) - 1, 0)
+        tens = float(np.log10(max(self.growth[last], 1.0)))
+        return float(self.trajectory.t[last]) / tens if tens > 0 else float("inf")
 
 
 def judged(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:

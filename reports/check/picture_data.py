@@ -77,8 +77,8 @@ def shown_of(found: Checked, advised: Tried | None = None) -> PictureData:
         found.judge.horizon if found.judge.horizon < found.duration else None,
         float(own.t[sample]),
         ground_points(mechanism).tolist(),
-        _pose(mechanism, found.judge.trajectory.pose[sample]),
-        _pose(mechanism, found.own.pose[sample]),
+        pose_of(mechanism, found.judge.trajectory.pose[sample]),
+        pose_of(mechanism, found.own.pose[sample]),
     )
 
 
@@ -86,7 +86,8 @@ def _curves(errors: Errors, known: list[str]) -> Curves:
     return {quantity: errors.of[quantity].tolist() for quantity in known}
 
 
-def _pose(mechanism: Mechanism, pose: Array) -> Pose:
+def pose_of(mechanism: Mechanism, pose: Array) -> Pose:
+    """What is drawn of a pose (bodies, 3) [m, m, rad]."""
     reach = 2 * max(mechanism.length_scale, float(np.ptp(mechanism.pose[:, :2], axis=0).max()))
     rails, links = [], []
     for joint in mechanism.joints:

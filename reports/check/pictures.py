@@ -8,10 +8,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from reports.check.judging import UNITS
-from reports.check.picture_data import Lines, PictureData
-from reports.plots.theme import LIGHT, new_figure, settings, style_axes, svg
+from reports.check.picture_data import Lines, PictureData, Pose
+from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
 LEAST = 1e-16
+BARS: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
 def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
@@ -59,26 +60,38 @@ def _worst(shown: PictureData) -> Figure:
     with settings():
         figure = new_figure(4.2, theme, width=6.2)
         panel = figure.subplots()
-        style_axes(panel, theme)
-        panel.set_aspect("equal", adjustable="datalim")
-        if shown.ground:
-            points = np.array(shown.ground).T
-            panel.plot(
-                *points, linestyle="none", marker="^", markersize=8, color=theme.quiet, label="held to the ground"
-            )
-        for pose, colour, dashes, width in ((shown.ideal, theme.ink, "-", 1.0), (shown.found, theme.first, "--", 0.8)):
-            _draw(panel, pose.rails, linewidth=0.6, color=colour, alpha=0.5)
-            _draw(panel, pose.links, linewidth=width, color=colour, linestyle=dashes)
-        bars: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
-        _draw(panel, shown.ideal.bars, "ideal joints", color=theme.ink, linewidth=3.0, markersize=6, **bars)
-        dashed = {"color": theme.first, "linewidth": 1.5, "linestyle": "--", "markersize": 4}
-        _draw(panel, shown.found.bars, "your settings", **dashed, **bars)
-        panel.set_xlabel("x in the plane of motion, m")
-        panel.set_ylabel("y, m")
+        plane(panel, theme, shown.ground, "held to the ground")
+        ideal(panel, theme, shown.ideal, "ideal joints")
+        beside(panel, theme, shown.found, "your settings")
         legend = figure.legend(loc="outside lower center", ncols=3, frameon=False)
         for text in legend.get_texts():
             text.set_color(theme.ink)
     return figure
+
+
+def plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) -> None:
+    """An empty plane of motion, with the points that are held to the ground (points, 2) [m]."""
+    style_axes(panel, theme)
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_xlabel("x in the plane of motion, m")
+    panel.set_ylabel("y, m")
+    if len(ground):
+        panel.plot(*np.array(ground).T, linestyle="none", marker="^", markersize=8, color=theme.quiet, label=label)
+
+
+def ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
+    """The pose of ideal joints: full lines."""
+    _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
+    _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
+    _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BARS)
+
+
+def beside(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
+    """The pose of a run, dashed over the other."""
+    dashed: dict[str, Any] = {"color": theme.first, "linestyle": "--"}
+    _draw(panel, pose.rails, linewidth=0.6, color=theme.first, alpha=0.5)
+    _draw(panel, pose.links, linewidth=0.8, **dashed)
+    _draw(panel, pose.bars, label, linewidth=1.5, markersize=4, **dashed, **BARS)
 
 
 def _draw(panel: Any, lines: Lines, label: str | None = None, **look: Any) -> None:

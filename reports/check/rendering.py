@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import textwrap
 from collections.abc import Sequence
 from html import escape
 
@@ -18,17 +19,22 @@ img { max-width: 100%; height: auto }
 """
 
 
-def plain(sections: Sequence[Section]) -> str:
-    """For a terminal."""
+def plain(sections: Sequence[Section], width: int = 120) -> str:
+    """For a terminal of so many columns."""
     lines: list[str] = []
     for section in sections:
-        lines += [section.title, *(f"  {sentence}" for sentence in section.sentences)]
+        lines += [section.title] if section.title else []
+        lines += [line for sentence in section.sentences for line in textwrap.wrap(sentence, width)]
+        for label, sentence in section.facts:
+            head = f"  {label:<9} "
+            lines += textwrap.wrap(sentence, width, initial_indent=head, subsequent_indent=" " * len(head))
+        lines += ["", *(f"      {line}" for line in section.code)] if section.code else []
         if section.rows:
+            lines += [""] if lines else []
             widths = [max(map(len, column)) for column in zip(section.header, *section.rows, strict=True)]
             for row in (section.header, *section.rows):
                 cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
                 lines.append(f"    {'  '.join(cells)}".rstrip())
-        lines += [f"      {line}" for line in section.code]
         lines.append("")
     return "\n".join(lines)
 
@@ -39,6 +45,7 @@ def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> s
     for section in sections:
         lines += [f"## {section.title}", ""]
         lines += [f"* {_cell(sentence)}" for sentence in section.sentences]
+        lines += [f"* {label}: {_cell(sentence)}" for label, sentence in section.facts]
         if section.code:
             lines += ["", "```", *section.code, "```"]
         if section.rows:
@@ -52,10 +59,19 @@ def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> s
 
 def html(name: str, sections: Sequence[Section]) -> str:
     """One file with everything in it."""
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(name)}</title>'
+        f"<style>{STYLE}</style></head><body>\n{body(name, sections)}\n</body></html>\n"
+    )
+
+
+def body(name: str, sections: Sequence[Section]) -> str:
+    """What stands in the page, which a notebook can show too."""
     parts = [f"<h1>{escape(name)}</h1>"]
     for section in sections:
-        parts.append(f"<h2>{escape(section.title)}</h2>")
+        parts += [f"<h2>{escape(section.title)}</h2>"] if section.title else []
         parts += [f"<p>{escape(sentence)}</p>" for sentence in section.sentences]
+        parts += [f"<p><b>{label}</b>: {escape(sentence)}</p>" for label, sentence in section.facts]
         if section.code:
             parts.append(f"<pre>{escape(chr(10).join(section.code))}</pre>")
         if section.rows:
@@ -69,11 +85,7 @@ def html(name: str, sections: Sequence[Section]) -> str:
             title, drawing = section.picture
             data = base64.b64encode(drawing.encode()).decode()
             parts.append(f'<img alt="{escape(title)}" src="data:image/svg+xml;base64,{data}">')
-    body = "\n".join(parts)
-    return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(name)}</title>'
-        f"<style>{STYLE}</style></head><body>\n{body}\n</body></html>\n"
-    )
+    return "\n".join(parts)
 
 
 def _cell(text: str) -> str:

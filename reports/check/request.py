@@ -5,45 +5,73 @@ A user's script is run in that process: if it raises, ends the process or never 
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from engines import Unsupported
+from engines.importers import read_object
 from reference.checks import InvalidMechanism
-from reports.check.checked import check, read
-from reports.check.telling import Section, data, sections, verdict
+from reports.check.applying import Applied, applied
+from reports.check.checked import PATIENCE, SEARCH, Checked, Plan, check, read
+from reports.check.telling import Section, answer, data, sections, verdict
+
+USUAL_TOLERANCE = 1e-4  # of settings that are advised where nobody has asked for one
 
 
 @dataclass(frozen=True)
 class CheckRequest:
-    """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is."""
+    """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is.
+
+    `tolerance`: None if nobody asked for one; `search`: for settings that meet it, until they are found; `apply`: the
+    file that they are written into.
+    """
 
     word: str
     folder: str
     duration: float
-    tolerance: float
+    tolerance: float | None = None
     without: tuple[str, ...] = ()
     key: str = ""
     step: float | None = None
-    pictures: bool = True
+    pictures: bool = False
+    quick: bool = False
+    search: bool = False
+    apply: str = ""
     notes: str = ""
 
     @property
     def label(self) -> str:
         return self.word
 
+    @property
+    def plan(self) -> Plan:
+        if not self.search:
+            return Plan(PATIENCE, quick=self.quick)
+        return Plan(SEARCH, USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
+
 
 @dataclass(frozen=True)
 class CheckReport:
-    """What was found, as sections and as plain data."""
+    """What was found, as the answer, as sections and as plain data; `trouble`: why nothing was written, if asked to."""
 
-    met: bool
+    request: CheckRequest
     verdict: str
+    answer: Section
     sections: tuple[Section, ...]
     data: dict[str, Any]
-    seconds: float
+    trouble: str = ""
+
+    @property
+    def fine(self) -> bool:
+        """Whether a tolerance that was asked for is met, by the user's settings or by those that were looked for."""
+        mended = (self.request.search or self.data["applied"] is not None) and self.data["advised"] is not None
+        return self.request.tolerance is None or self.data["met"] or mended
+
+    def _repr_html_(self) -> str:
+        from reports.check.rendering import body
+
+        return body(self.verdict, self.sections)
 
 
 @dataclass(frozen=True)
@@ -53,29 +81,54 @@ class Refused:
     sentence: str
 
 
-def answered(request: CheckRequest) -> CheckReport | Refused:
-    """In a worker: the check, or why there is none."""
-    begin = time.monotonic()
+def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
+    """In a worker: the check, or why there is none. `model`: an engine's own object, in the place of a file."""
 
     def told(words: str) -> None:
         if request.notes:
             Path(request.notes).write_text(words, encoding="utf-8")
 
+    tolerance = USUAL_TOLERANCE if request.tolerance is None else request.tolerance
     try:
         told("reading")
-        reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
-        found = check(reading, reading.title or Path(request.word).name, request.duration, request.tolerance, told)
-        drawn = {}
-        if request.pictures:
-            told("drawing")
-            from reports.check.picture_data import shown_of
-            from reports.check.pictures import pictures  # a second of imports
-
-            drawn = pictures(shown_of(found))
+        if model is None:
+            reading = read(request.word, Path(request.folder), request.without, request.key, request.step)
+        else:
+            reading = read_object(model, request.without, request.step)
+        name = reading.title or Path(request.word).name
+        found = check(reading, name, request.duration, tolerance, told, request.plan)
     except (Unsupported, InvalidMechanism, ValueError) as reason:
         return Refused(_one_line(request, reason))
-    told_sections = tuple(sections(found, drawn))
-    return CheckReport(found.met, verdict(found), told_sections, data(found), time.monotonic() - begin)
+    written, trouble = None, ""
+    if request.apply:
+        told("writing the advised settings and running them")
+        try:
+            written = applied(found, Path(request.folder) / request.apply)
+        except (Unsupported, InvalidMechanism, ValueError) as reason:
+            trouble = _one_line(request, reason)
+    return _report(request, found, written, trouble, told)
+
+
+def _report(request: CheckRequest, found: Checked, written: Applied | None, trouble: str, told: Any) -> CheckReport:
+    drawn = {}
+    if request.pictures:
+        told("drawing")
+        from reports.check.picture_data import shown_of
+        from reports.check.pictures import pictures  # a second of imports
+
+        drawn = pictures(shown_of(found))
+    asked = request.tolerance is not None
+    first, *others = sections(found, drawn, asked)
+    brief = answer(found, asked)
+    if written is not None:
+        notes = "".join(f"; {note}" for note in written.notes)
+        fact = (
+            "written",
+            f"{written.file}: {written.words}; run from the file: off by {written.error:.2g}, at "
+            f"{1e3 * written.cpu:.2g} ms of CPU time{notes}",
+        )
+        first, brief = (replace(each, facts=(*each.facts, fact)) for each in (first, brief))
+    return CheckReport(request, verdict(found, asked), brief, (first, *others), data(found, asked, written), trouble)
 
 
 def _one_line(request: CheckRequest, reason: Exception) -> str:

@@ -2,7 +2,7 @@
 
 The cells are of the report's grid. No number of a scene and no bound stands here: `reports.gate.theory` says where a
 bound comes from, `reports.gate.change` what a baseline's number is worth. It stands in the package, so that an
-installation has it: pytest -p reports.gate.pytest_plugin -m crosscheck --pyargs reports.gate.grid_tests
+installation has it, in any folder: pytest -m crosscheck (planar_crosscheck_pytest.py)
 """
 
 from __future__ import annotations

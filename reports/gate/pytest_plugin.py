@@ -1,7 +1,7 @@
 """The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --cost --crosscheck-report`, and its table.
 
-The tests are in `reports.gate.grid_tests`. A conftest takes this with `pytest_plugins = ["reports.gate.pytest_plugin"]`
-and a command line with `-p reports.gate.pytest_plugin`. Only the cells of selected tests are run.
+The tests are in `reports.gate.grid_tests`. Where our wheel is installed, `pytest -m crosscheck` brings both in any
+folder (planar_crosscheck_pytest.py). Only the cells of selected tests are run.
 """
 
 from __future__ import annotations

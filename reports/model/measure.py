@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
+from html import escape
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -93,6 +94,12 @@ class Measurement:
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
+
+    def _repr_html_(self) -> str:
+        """What is known of it, for a notebook."""
+        known = ((name, value) for name, value in self.as_dict().items() if value not in ("", 0) and value == value)
+        rows = (f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>" for name, value in known)
+        return f"<table>{''.join(rows)}</table>"
 
 
 TIMINGS = ("cpu", "runs", "build")

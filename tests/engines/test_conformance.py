@@ -194,7 +194,7 @@ def test_it_conforms(conformance):
 
 
 def test_three_lines_of_another_package_check_its_engine(pytester):
-    pytester.makeconftest('pytest_plugins = ["engines.conformance.pytest_plugin"]')
+    pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
     pytester.makepyfile(THEIRS)
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
     counted = result.parseoutcomes()
@@ -204,7 +204,7 @@ def test_three_lines_of_another_package_check_its_engine(pytester):
 
 
 def test_a_test_that_names_no_engine_is_refused(pytester):
-    pytester.makeconftest('pytest_plugins = ["engines.conformance.pytest_plugin"]')
+    pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
     pytester.makepyfile("def test_it_conforms(conformance):\n    conformance()\n")
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider")
     result.stdout.fnmatch_lines(["*it names no engine; mark it pytest.mark.conforms(ENGINE)*"])

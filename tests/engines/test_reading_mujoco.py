@@ -96,6 +96,10 @@ ELEMENTS = {
         '<equality><connect site1="end" site2="mine"/></equality>',
     ),
     "a weld": (FOUR_BAR, '<equality><weld name="C" body1="coupler" body2="rocker"/></equality>'),
+    "a weld that holds a point alone": (
+        FOUR_BAR,
+        '<equality><weld name="C" body1="coupler" body2="rocker" torquescale="0"/></equality>',
+    ),
     "a coupling of two grounded hinges": (
         FOUR_BAR,
         '<equality><joint joint1="A" joint2="D" polycoef="0 -1.5 0 0 0"/></equality>',

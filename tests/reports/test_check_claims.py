@@ -12,10 +12,10 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
-from reports.check.checked import Checked, parts_of, tried
+from reports.check.checked import Checked, Plan, parts_of, tried
 from reports.check.facts import facts_of
 from reports.check.judging import Errors, errors, opening
-from reports.check.telling import data, sections, verdict
+from reports.check.telling import answer, data, number, sections, verdict
 from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 
 
@@ -48,13 +48,9 @@ def priced(found: Checked, *rows: tuple[float, float], tolerance: float, own: in
     return replace(found, table=table, own_errors=errors, cost=rows[own][1], tolerance=tolerance)
 
 
-def answer(found: Checked) -> str:
-    return " ".join(sections(found)[0].sentences)
-
-
-def source(found: Checked) -> str:
-    (told,) = [each for each in sections(found) if each.title == "Where the error comes from"]
-    return " ".join(told.sentences)
+def told(found: Checked, label: str) -> str:
+    """What the first screen says of this."""
+    return dict(answer(found).facts)[label]
 
 
 # ---------------------------------------------------------------------------------------------------------- advice
@@ -64,19 +60,19 @@ def source(found: Checked) -> str:
     ("rows", "tolerance", "said"),
     [
         # (error, cost) of the user's own settings first.
-        ([(1e-5, 1.0), (1e-6, 2.0)], 1e-4, "No setting that was tried meets it much cheaper."),
-        ([(1e-5, 1.0), (2e-5, 0.5)], 1e-4, "The cheapest documented setting that meets it: setting 1."),
-        ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1e-4, "The cheapest documented setting that meets it: setting 1."),
-        ([(1e-3, 1.0), (2e-5, 4.0)], 1e-4, "Its error is 2e-05 instead of 0.001, at 4 times your CPU time."),
-        ([(1e-3, 1.0), (2e-3, 0.5)], 1e-4, "None of the 2 documented settings that were tried meets it; the best"),
-        ([(1e-3, 1.0), (5e-4, 9.0)], 1e-4, "the best reached 0.0005 (setting 1)."),
+        ([(1e-5, 1.0), (1e-6, 2.0)], 1e-4, "no setting that was tried meets it much cheaper."),
+        ([(1e-5, 1.0), (2e-5, 0.5)], 1e-4, "setting 1: the error is 2.0e-5 instead of 1.0e-5, at 0.5 times"),
+        ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1e-4, "setting 1: the error is"),
+        ([(1e-3, 1.0), (2e-5, 4.0)], 1e-4, "the error is 2.0e-5 instead of 1.0e-3, at 4 times your CPU time."),
+        ([(1e-3, 1.0), (2e-3, 0.5)], 1e-4, "none of the 2 documented settings that were tried meets 1.0e-4; the"),
+        ([(1e-3, 1.0), (5e-4, 9.0)], 1e-4, "the best reached 5.0e-4 (setting 1)."),
     ],
 )
 def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, tolerance, said):
     found = priced(soft, *rows, tolerance=tolerance)
-    assert said in answer(found)
+    assert said in told(found, "advice")
     assert found.met == (rows[0][0] <= tolerance)
-    assert bool(sections(found)[0].code) == ("that meets it: " in answer(found) and not found.met)
+    assert bool(answer(found).code) == (": the error is" in told(found, "advice") and not found.met)
 
 
 def test_a_tenth_is_counted_from_the_error_of_the_advised_setting(soft):
@@ -84,26 +80,30 @@ def test_a_tenth_is_counted_from_the_error_of_the_advised_setting(soft):
     rows = [(1e-3, 1.0), (3e-5, 2.0), (9e-6, 4.0), (3e-6, 6.0)]
     found = priced(soft, *rows, tolerance=1e-4)
     assert found.decade is not None
-    assert "A tenth of that error costs 3 times as much: setting 3." in answer(found)
+    assert "A tenth of that error costs 3 times as much: setting 3." in told(found, "advice")
     without = priced(soft, *rows[:3], tolerance=1e-4)
     assert without.decade is None
-    assert "A tenth of that error was not reached by any setting that was tried." in answer(without)
+    assert "A tenth" not in told(without, "advice")
 
 
 def test_the_verdict_meets_where_the_error_is_within_the_tolerance_and_misses_where_not(soft):
-    for error, word in ((1e-4, "meet"), (1.001e-4, "miss")):
+    for error, word in ((1e-4, "met"), (1.001e-4, "missed")):
         found = priced(soft, (error, 1.0), tolerance=1e-4)
-        assert verdict(found).startswith(f"Your settings {word} the tolerance: the largest error in 0.2 s is 0.0001")
+        said = "model.xml in MuJoCo is off by up to 1.0e-4 in 0.2 s"
+        assert verdict(found) == f"{said}; the tolerance of 1.0e-4 is {word}."
+        assert verdict(found, asked=False) == f"{said}."
     gone = replace(soft, own_errors=replace(soft.own_errors, finished=False))
-    assert verdict(gone) == "Your settings miss the tolerance: MuJoCo gave up before 0.2 s."
+    assert verdict(gone, asked=False) == "model.xml in MuJoCo gives up before 0.2 s."
 
 
 def test_what_is_assumed_is_said_first_and_only_where_it_is(swing, soft, tmp_path):
     first = sections(swing)[0].sentences[0]
-    assert re.match(r"Assumed: a step of 0\.01667 s, .*--step\)\. With it, the settings m..[ts] the tolerance", first)
+    assert re.match(r"With a step of 0\.01667 s, since .*--step\), swing\.py in pymunk is off by", first)
+    assert told(swing, "assumed") == data(swing)["assumed"]
     assert data(swing)["assumed"]
     named = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2, step=1 / 60)
-    assert verdict(named).startswith("Your settings")
+    assert verdict(named).startswith("swing.py in pymunk")
+    assert told(named, "assumed").startswith("a step of 16.67 ms, as in the model")
     assert data(soft)["assumed"] == ""
     assert data(soft)["cpu"] == soft.own.stepping > 0
 
@@ -112,10 +112,10 @@ def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
     """A run of more than LONGEST leaves no time for others, and is itself one of the settings."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
-    (only,) = tried(reading, truth, 100, 1, slow, lambda number, count: None, patience=0.0)
+    (only,) = tried(reading, truth, 100, 1, slow, lambda number, count: None, Plan(0.0))
     assert only.run is slow
     assert only.error == errors(reading.mechanism, truth, slow).largest
-    assert "None of the 1 documented settings" in answer(replace(soft, table=[only]))
+    assert "none of the 1 documented settings" in told(replace(soft, table=[only]), "advice")
 
 
 # ----------------------------------------------------------------------------------------------------------- parts
@@ -131,28 +131,35 @@ def off_by(found: Checked, size: float, step: float):
 @pytest.mark.parametrize(
     # It falls if the last of the steps takes a quarter of it away.
     ("sizes", "falls"),
-    [([4e-3, 2e-3, 1.4e-3], True), ([4e-3, 2e-3, 1.6e-3], False), ([1e-3, 2e-3], False), ([1e-3], False)],
+    [
+        ([4e-3, 2e-3, 1.4e-3], True),
+        ([4e-3, 2e-3, 1.6e-3], False),
+        ([1e-3, 2e-3], False),
+        ([1e-3], True),
+        ([7e-3], False),
+    ],
 )
 def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, sizes, falls):
     smaller = [off_by(swing, size, 0.01 / 2**place) for place, size in enumerate(sizes)]
     truth = swing.judge.trajectory
     parts = parts_of(swing.reading, truth, off_by(swing, 8e-3, 0.02).run, smaller)
-    assert (parts.step, parts.rest, parts.falling) == (pytest.approx(8e-3), sizes[-1], falls)
-    told = source(replace(swing, parts=parts))
-    assert ("it still falls: the step explains it" in told) == falls
-    assert ("it no longer falls: a smaller step is no help" in told) == (not falls)
-    assert f"off the ideal motion by 0.008; at a step of {10 / 2 ** (len(sizes) - 1):.3g} ms" in told
+    assert (parts.step, parts.rest, parts.falling) == (pytest.approx(8e-3), pytest.approx(sizes[-1]), falls)
+    why = told(replace(swing, parts=parts), "why")
+    assert ("and still falls" in why) == falls
+    assert ("and no longer falls" in why) == (not falls)
+    assert "the step of 16.67 ms makes 8.0e-3" in why
+    assert f"at {10 / 2 ** (len(sizes) - 1):.3g} ms it is {number(sizes[-1])}" in why
 
 
 def test_the_joint_that_opens_most_is_named_with_its_gap_and_time(soft):
     mechanism, t = soft.reading.mechanism, soft.own.t
     gap = np.abs(mechanism.gap(soft.own.pose, t))
     sample, row = np.unravel_index(int(np.nanargmax(gap)), gap.shape)
-    told = re.search(r"The joint that opens most is (.*): (.*) m at (.*) s\.", source(soft))
-    assert told is not None
-    assert told[1] == mechanism.row_names[row]
-    assert float(told[2]) == pytest.approx(gap[sample, row], rel=0.05)
-    assert float(told[3]) == pytest.approx(t[sample], rel=0.01)
+    said = re.search(r"(.*) opens most: (.*) m at (.*) s", told(soft, "joint"))
+    assert said is not None
+    assert said[1] == mechanism.row_names[row]
+    assert float(said[2]) == pytest.approx(gap[sample, row], rel=0.05)
+    assert float(said[3]) == pytest.approx(t[sample], rel=0.01)
 
 
 # ----------------------------------------------------------------------------------------------------------- facts
@@ -178,13 +185,13 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive, soft):
     for reach, turn in ((b + a, 0.0), (b - a, np.pi)):
         line = np.arccos((reach**2 + d**2 - c**2) / (2 * reach * d))
         wanted.append(((line + turn - start) % (2 * np.pi)) / rate)
-    told = facts.dead_centres
-    assert {name for _, name in told} == {"rocker"}
+    found = facts.dead_centres
+    assert {name for _, name in found} == {"rocker"}
     # Linear between samples of 10 ms: the times are good to much less than one.
-    assert [t for t, _ in told] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
-    assert len(told) >= 1
+    assert [t for t, _ in found] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
+    assert len(found) >= 1
     read = " ".join(sections(replace(soft, facts=facts))[1].sentences)
-    assert f"Dead centres, where a body turns back: rocker at {told[0][0]:.3g} s" in read
+    assert f"Dead centres, where a body turns back: rocker at {found[0][0]:.3g} s" in read
     assert "No position on the way is near-singular." in read
     assert facts.singular == ()
 
@@ -204,10 +211,11 @@ def test_growth_and_the_fastest_motion_are_told_as_they_are(soft):
     def read(found):
         return " ".join(sections(found)[1].sentences)
 
-    assert "which is not exponential" in read(soft)
+    assert re.search(r"are [\d.]+ times as far apart after 0\.2 s: not exponential", told(soft, "motion"))
     wild = replace(soft, judge=replace(soft.judge, horizon=0.1))
-    assert "From about 0.1 s on, small errors grow exponentially" in read(wild)
-    assert "which is not exponential" not in read(wild)
+    before = number(float(soft.own_errors.whole[soft.own_errors.t <= 0.1].max()))
+    assert "neighbouring starts part exponentially from 0.1 s on, tenfold every" in told(wild, "motion")
+    assert f"until then your run is off by {before}" in told(wild, "motion")
     # At 40 rad/s a radian takes 25 ms: 12.5 of the steps of 2 ms.
     fast = replace(soft, facts=replace(soft.facts, fastest_rotation=3.0, stiffest_mode=40.0))
     assert "a radian of the fastest takes 0.025 s, 12 of your steps." in read(fast)
@@ -259,8 +267,8 @@ def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared_and_said_
 
 
 def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
-    (own,) = [each for each in sections(soft) if each.title == "Your own settings"]
-    assert "Energy is the kinetic energy and the potentials of gravity and springs together" in " ".join(own.sentences)
+    assert "energy (kinetic, and of gravity and springs) by" in told(soft, "forces")
+    assert "reactions (forces and moments of the joints' rows) are off by" in told(soft, "forces")
     truth, mechanism = soft.judge.trajectory, soft.reading.mechanism
     # Lifting everything by 1 mm adds m g h, in the largest kinetic energy.
     lifted = replace(truth, pose=truth.pose + np.array([0.0, 1e-3, 0.0]))
@@ -271,7 +279,13 @@ def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
 
 @pytest.mark.parametrize("falling", [True, False])
 def test_a_third_part_is_told_where_an_error_no_longer_falls(soft, falling):
-    told = source(replace(soft, parts=replace(soft.parts, falling=falling, rest=0.123)))
-    assert ("0.12 is left, and it still falls: there is no sign of a third part." in told) == falling
-    assert ("0.12 is left, and it no longer falls: this much neither softness nor step explains." in told) != falling
-    assert "No smaller step removes this; stiffer joints do." in told
+    why = told(replace(soft, parts=replace(soft.parts, falling=falling, rest=0.123)), "why")
+    assert ("no sign of a fault that is neither" in why) == falling
+    assert ("0.12 is neither: it stays at" in why) != falling
+    assert "which only stiffer ones mend" in why
+
+
+def test_what_is_off_by_more_than_a_radian_tells_no_cause(soft):
+    why = told(replace(soft, parts=replace(soft.parts, rest=1.5)), "why")
+    assert why.startswith("not told: ")
+    assert "neither" not in why

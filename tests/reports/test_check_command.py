@@ -31,10 +31,10 @@ __all__ = ["here"]
 def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
     (here / "four_bar.xml").write_text(FOUR_BAR)
     words = ("check", "four_bar.xml", "--duration", 0.2, "--html", "out.html", "--markdown", "sub/out.md", "--json")
-    assert call(*words) == 1
+    assert call(*words, "--tolerance", 1e-4) == 1
     out, err = capfd.readouterr()
     assert json.loads(out)["met"] is False
-    assert "crosscheck: Your settings miss the tolerance" in err.splitlines()[-1]
+    assert err.splitlines()[-1].endswith("the tolerance of 1.0e-4 is missed.")
     assert "following the ideal motion" in err  # progress
     assert "data:image/svg+xml" in (here / "out.html").read_text()
     page = (here / "sub/out.md").read_text()
@@ -46,7 +46,7 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
 def test_a_model_within_its_tolerance_ends_well(here, capfd):
     (here / "four_bar.xml").write_text(FOUR_BAR)
     assert call("check", "four_bar.xml", "--duration", 0.05, "--tolerance", 0.1) == 0
-    assert "Your settings meet the tolerance" in capfd.readouterr().out
+    assert "the tolerance of 0.1 is met." in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
         file.write_bytes(text)
     elif text is not None:
         file.write_text(text)
-    answer = answered(CheckRequest(word, str(tmp_path), 0.5, 1e-4, pictures=False))
+    answer = answered(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
     assert isinstance(answer, Refused)
     assert sentence in answer.sentence
     assert "\n" not in answer.sentence
@@ -243,13 +243,13 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
 def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
     (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
-    answer = answered(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,), pictures=False))
+    answer = answered(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,)))
     if sentence:
         assert isinstance(answer, Refused)
         assert sentence in answer.sentence
     else:
         assert isinstance(answer, CheckReport)
-        assert answer.met
+        assert answer.fine
 
 
 def test_a_step_longer_than_the_motion_is_refused(tmp_path):

@@ -14,6 +14,7 @@ import zipfile
 import numpy as np
 import pytest
 
+from tests.reports.test_check import FOUR_BAR
 from tests.tools.installations import ROOT, distribution, environment_with, our_wheel, run, wheel_of
 
 STEPS = ("--every", "1", "--every", "3", "--every", "10")
@@ -21,9 +22,9 @@ METHODS = ("impulses default", "impulses closed")
 PACKAGES = ("engines", "reference", "reports")
 # The gate's baseline, and what the pages of versions and of the atlas are written from.
 SHIPPED = ("errors", "timings", "versions", "atlas", "atlas_timings")
-# The grid's tests by their plugin alone, with every warning an error.
-GRID = ("-m", "pytest", "-q", "-p", "reports.gate.pytest_plugin", "-p", "no:cacheprovider", "-W", "error")
-GRID = (*GRID, "-m", "crosscheck", "--pyargs", "reports.gate.grid_tests")
+MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
+# As anybody starts it, with every warning an error.
+PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error")
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_every_template_snippet_asset_and_baseline_of_the_checkout_is_in_the_whe
     assert {path.as_posix() for path in modules} <= names
     results = {name for name in names if name.startswith("reports/results/")}
     assert results == {f"reports/results/{name}.csv" for name in SHIPPED}
-    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {*PACKAGES, "planar_crosscheck.py"}
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {*PACKAGES, *MODULES}
 
 
 def test_an_installation_has_all_that_the_checkout_registers_in_the_same_order(programs, tmp_path):
@@ -192,12 +193,34 @@ def test_their_engine_one_in_a_file_and_ours_are_held_to_promises_and_the_baseli
     (tmp_path / "own_engine.py").write_text(text, encoding="utf-8")
     engines = ("--engine", "impulses", "--engine", "own_engine.py:OWN", "--engine", "pymunk tuned")
     scenes = ("--scene", "flywheel", "--scene", "free_four_bar")
-    ended = run(programs / "python", *GRID, *engines, *scenes, folder=tmp_path)
+    ended = run(programs / "python", *PYTEST, "-m", "crosscheck", *engines, *scenes, folder=tmp_path)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     # Four methods in two scenes, of theory and of change; and that no cell of the baseline is missing.
     assert f"{4 * 2 * 2 + 1} passed" in ended.stdout
     assert "impulses half" in ended.stdout
     assert "free_four_bar  pymunk tuned" in ended.stdout
+
+
+OWN = """
+from engines.importers import mujoco
+
+def test_the_linkage_is_right(crosscheck):
+    crosscheck.check("model.xml", tolerance=1e-4, duration=0.2)
+
+def test_it_is_read():
+    assert mujoco.read("model.xml").degrees_of_freedom() == (1, 1)
+"""
+
+
+def test_a_project_of_ones_own_has_the_fixture_and_keeps_an_option_of_the_grids_name(programs, tmp_path):
+    (tmp_path / "test_own.py").write_text(OWN, encoding="utf-8")
+    (tmp_path / "model.xml").write_text(FOUR_BAR, encoding="utf-8")
+    (tmp_path / "conftest.py").write_text("def pytest_addoption(parser): parser.addoption('--engine')\n")
+    ended = run(programs / "python", *PYTEST, "--engine", "mine", "-m", "not crosscheck", folder=tmp_path)
+    assert ended.returncode == 1
+    assert "1 failed, 1 passed" in ended.stdout
+    assert "four bar in MuJoCo is off by up to" in ended.stdout
+    assert '<option timestep="' in ended.stdout
 
 
 # Of every family: its colour in light pictures, and its mark.

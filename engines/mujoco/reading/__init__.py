@@ -19,8 +19,9 @@ from engines.mujoco.reading.forces import forces, off, turns
 from engines.mujoco.reading.frame import FREE, HINGE, bodies_of, find_frame, find_groups, name_of
 from engines.mujoco.reading.obstacles import limited_forces
 from engines.mujoco.reading.own_model import OwnMuJoCo, heard
+from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
-from engines.reading import Note, Reading, refuse, refuse_at_start
+from engines.reading import Note, Reading, Source, refuse, refuse_at_start
 from reference.forces import Force
 from reference.mechanism import Mechanism
 
@@ -68,6 +69,14 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     refuse_at_start(own, mechanism)
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""
     return Reading(mechanism, own, tuple(scene.notes), title)
+
+
+def read_object(model: Any, without: Sequence[str] = (), step: float | None = None) -> Reading:
+    """The reading of a mujoco.MjModel in its first state; step [s]: instead of its own."""
+    if step is not None:
+        model = copy.copy(model)
+        model.opt.timestep = step
+    return read(model, None, without)
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
@@ -177,7 +186,12 @@ class Reader:
             raise ValueError(f"--key is {key!r}; {word} has no keyframes")
         reading = read(model, data, without)
         notes = (*reading.notes, *(Note("a warning of MuJoCo's", words) for words in dict.fromkeys(warnings)))
-        reading = replace(reading, notes=notes)
+        source = Source(
+            path,
+            lambda change: rewritten(path.read_bytes(), change),
+            lambda other: self.read(other.name, other.parent, without, key, None),
+        )
+        reading = replace(reading, notes=notes, source=None if path.suffix.lower() == ".mjb" else source)
         if path.suffix.lower() != ".urdf" or "<mujoco" in path.read_text(encoding="utf-8", errors="replace"):
             return reading
         assert isinstance(reading.model, OwnMuJoCo)

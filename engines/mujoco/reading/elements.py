@@ -200,6 +200,9 @@ def _connected(scene: Scene, index: int, element: str) -> list[Joint]:
     return [Pin(label, scene.name(first), scene.name(second), scene.own(first, at), scene.own(second, other))]
 
 
+TORQUE_SCALE = 10  # its place in eq_data of a weld
+
+
 def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
     first, second, at, other = _ends(scene, index, element)
     if first == second:
@@ -212,6 +215,9 @@ def _welded(scene: Scene, index: int, element: str) -> list[Joint]:
         raise refuse(element, f"it is open by {np.abs(scene.data.efc_pos[rows]).max():.2g} m or rad at the start")
     label = scene.names.new(plain_name(scene.model, EQUALITY, index))
     points = scene.own(first, at), scene.own(second, other)
+    if scene.model.eq_data[index][TORQUE_SCALE] == 0:
+        scene.note(element, "it holds a point and no angle, since its torquescale is zero")
+        return [Pin(label, scene.name(first), scene.name(second), *points)]
     turned = scene.angle(second) - scene.angle(first)
     return [Weld(label, scene.name(first), scene.name(second), *points, turned)]
 

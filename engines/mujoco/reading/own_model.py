@@ -124,8 +124,8 @@ class OwnMuJoCo:
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
         return obstacles(self.scene, self._fresh(self.scene.model), self._directions, t, pose, twist)
 
-    def changes(self, smallest: float) -> list[Change]:
-        return changes(self.scene.model, self.softly_held, smallest, self.urdf)
+    def changes(self, smallest: float, further: bool = False) -> list[Change]:
+        return changes(self.scene.model, self.softly_held, smallest, self.urdf, further)
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
         model, spacing = copy.copy(self.scene.model), every * self.dt

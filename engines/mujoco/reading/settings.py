@@ -114,6 +114,7 @@ OTHERS = ("armature", "fluid", "forcelimit", "sleep")  # that no flag of MuJoCo'
 TIED_STEPS = 5.0  # time constant of the stiffer loops, in steps: the same rule as the tuned variant's
 SHIPPED = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # solref and solimp of an equality about which nothing is said
 HALVINGS = (1, 2, 4, 8, 16, 32)
+FURTHER = (*HALVINGS, 64, 128, 256, 512, 1024)
 
 
 def switch_off(model: Any, element: str) -> None:
@@ -133,10 +134,15 @@ def switch_off(model: Any, element: str) -> None:
         raise ValueError(f"--without is {element!r}; it must be one of {', '.join((*ELEMENTS, *OTHERS))}")
 
 
-def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list[Change]:
+def tied_values(dt: float) -> dict[str, str]:
+    """solref and solimp of loops that are as stiff as a step [s] bears."""
+    return {"solref": f"{TIED_STEPS * dt:.9g} 1", "solimp": " ".join(f"{value:g}" for value in STIFFEST)}
+
+
+def changes(model: Any, soft: bool, smallest: float, urdf: bool = False, further: bool = False) -> list[Change]:
     """Steps down to `smallest` [s], by the model's own integrator and RK4; `soft`: loops as they are, and stiffer.
 
-    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options.
+    `urdf`: the lines to copy bring the element in which a URDF file holds MuJoCo's options. `further`: more halvings.
     """
     own_step = float(model.opt.timestep)
     own = mujoco.mjtIntegrator(model.opt.integrator).name.split("_")[1]
@@ -144,7 +150,7 @@ def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list
     out = []
     for tied in (False, True) if soft else (False,):
         for integrator in integrators:
-            for divisor in HALVINGS:
+            for divisor in FURTHER if further else HALVINGS:
                 dt = own_step / divisor
                 if dt < smallest:
                     break
@@ -153,8 +159,7 @@ def changes(model: Any, soft: bool, smallest: float, urdf: bool = False) -> list
                 option = f'<option timestep="{dt!r}" integrator="{name}"/>'
                 lines = [f"<mujoco>{option}</mujoco>" if urdf else option]
                 if tied:
-                    impedance = " ".join(f"{value:g}" for value in STIFFEST)
-                    values = f'solref="{TIED_STEPS * dt:g} 1" solimp="{impedance}"'
+                    values = " ".join(f'{name}="{value}"' for name, value in tied_values(dt).items())
                     lines.append(f"<default><equality {values}/></default>")
                     if _set_by_hand(model):
                         lines.append("<!-- an equality with a solref or solimp of its own needs these values there -->")

@@ -25,6 +25,7 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 MOST_SHAPES = 400
 DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
+FURTHER = (*DIVISORS, 512, 1024, 2048, 4096)
 MORE_ITERATIONS = 50
 SMALL = 1e-4  # of the mechanism's time: a step for the accelerations at t = 0, and half of it
 SWEEPS = 20_000  # at that step: impulses are passed on until nothing is left
@@ -129,12 +130,13 @@ class OwnPymunk:
         met = [*asleep, *obstacles(space, bodies, words, labels, t, pose)]
         return sorted(met, key=lambda each: each.t)
 
-    def changes(self, smallest: float) -> list[Change]:
+    def changes(self, smallest: float, further: bool = False) -> list[Change]:
         space = self.described.space
         own, more = space.iterations, max(MORE_ITERATIONS, 2 * space.iterations)
         out = []
-        for iterations, bias in ((own, None), (own, 0.0), (more, None), (more, 0.0)):
-            for divisor in DIVISORS:
+        kinds = [(own, None), (own, 0.0), (more, None), (more, 0.0)]
+        for iterations, bias in [*kinds, (10 * more, 0.0)] if further else kinds:
+            for divisor in FURTHER if further else DIVISORS:
                 dt = self.step / divisor
                 if dt < smallest:
                     break

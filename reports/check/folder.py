@@ -1,0 +1,85 @@
+"""Many models at once: which files of a folder are models, and their answers as one table, for people and for JUnit."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as xml
+from collections.abc import Sequence
+from pathlib import Path
+
+from reports.check.request import CheckReport, CheckRequest, Refused
+from reports.check.telling import number
+
+HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
+LOOKED_AT = 65536  # bytes of a file: a model says early what it is
+MODEL = re.compile(rb"<(mujoco|robot)[\s/>]")
+SPACE = re.compile(rb"^(import|from) pymunk\b", re.MULTILINE)
+Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
+
+
+def models(folder: Path) -> list[Path]:
+    """Files below a folder that are models or scripts with a space, in the order of their names."""
+    kinds = {".xml": MODEL, ".mjcf": MODEL, ".urdf": MODEL, ".py": SPACE}
+    found = []
+    for path in sorted(folder.rglob("*")):
+        wanted = kinds.get(path.suffix.lower())
+        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
+        if wanted is None or hidden or not path.is_file():
+            continue
+        with path.open("rb") as file:
+            if wanted.search(file.read(LOOKED_AT)):
+                found.append(path)
+    return found
+
+
+def rows(answers: Answers) -> list[tuple[str, ...]]:
+    """Under HEADER, a model each."""
+    out = []
+    for request, answer in answers:
+        if isinstance(answer, Refused):
+            out.append((request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-"))
+            continue
+        data, advised = answer.data, answer.data["advised"]
+        missed = " (missed)" if data["asked"] and not data["met"] else ""
+        error = "gave up" if data["error"] is None else number(data["error"])
+        times = number(advised["cpu"] / data["cpu"]) if advised and data["cpu"] else "-"
+        told = (advised["words"], number(advised["error"]), times) if advised else ("none that was tried", "-", "-")
+        out.append((request.word, f"{error}{missed}", _cause(data["parts"]), *told))
+    return out
+
+
+def _cause(parts: dict[str, float | None]) -> str:
+    """Which part of the error is the largest."""
+    if parts["step"] is None:
+        return "gave up"
+    softness = parts["softness"] or 0.0
+    if not parts["falling"] and parts["divided"] and (parts["rest"] or 0.0) > max(softness, 0.5 * parts["step"]):
+        return "neither softness nor step"
+    if not parts["divided"]:
+        return "step and softness"
+    return "softness" if softness > parts["step"] else "step"
+
+
+def _short(request: CheckRequest, answer: Refused) -> str:
+    return answer.sentence.removeprefix(f"{request.word}: ")
+
+
+def junit_xml(answers: Answers, seconds: float) -> str:
+    """As JUnit XML: a test a model, which fails where a tolerance that was asked for is missed, and is skipped where
+    the model can't be judged.
+    """
+    missed = sum(isinstance(answer, CheckReport) and not answer.fine for _, answer in answers)
+    refused = sum(isinstance(answer, Refused) for _, answer in answers)
+    counts = {"tests": str(len(answers)), "failures": str(missed), "errors": "0", "skipped": str(refused)}
+    root = xml.Element("testsuites", counts)
+    suite = xml.SubElement(root, "testsuite", {"name": "crosscheck check", **counts, "time": f"{seconds:.1f}"})
+    for request, answer in answers:
+        case = xml.SubElement(suite, "testcase", {"classname": "crosscheck.check", "name": request.word})
+        if isinstance(answer, Refused):
+            xml.SubElement(case, "skipped", {"message": _short(request, answer)})
+        elif not answer.fine:
+            failure = xml.SubElement(case, "failure", {"message": answer.verdict})
+            told = (f"{label}: {sentence}" for label, sentence in answer.answer.facts)
+            failure.text = "\n".join([*told, *answer.answer.code])
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

@@ -1,0 +1,190 @@
+"""`crosscheck check` writes what it advises into a user's file, looks for settings, and checks folders of models."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+import pytest
+
+from engines.mujoco.reading.rewriting import rewritten
+from engines.pymunk.reading.script import BEGIN, END
+from engines.reading import Change
+from reports.check.request import CheckReport, CheckRequest, Refused, answered
+from tests.reports.test_check import FOUR_BAR, PENDULUM
+from tests.reports.test_command_line import call, here
+
+__all__ = ["here"]
+STEPS_ITSELF = PENDULUM.replace("def make():", "if True:").replace("    return space", "").replace("make()", "")
+LOOP = f"{STEPS_ITSELF}\nfor _ in range(30):\n    space.step(0.01)\nprint(bob.position.x, bob.position.y)\n"
+INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\n        world.step(0.01)\n"
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    """Few settings are tried where none are looked for."""
+    monkeypatch.setattr("reports.check.request.PATIENCE", 0.4)
+
+
+def checked(folder, word, **terms) -> CheckReport:
+    """The answer in this process, of half a second of motion."""
+    found = answered(CheckRequest(word, str(folder), 0.5, **terms))
+    assert isinstance(found, CheckReport), found
+    return found
+
+
+def test_a_model_is_written_with_the_advised_settings_and_nothing_else_and_reaches_what_was_promised(tmp_path):
+    text = FOUR_BAR.replace("<worldbody>", "<!-- mine: <option> > -->\n<worldbody>")
+    (tmp_path / "model.xml").write_text(text)
+    found = checked(tmp_path, "model.xml", tolerance=1e-4, apply="new.xml")
+    advised, written = found.data["advised"], found.data["applied"]
+    assert found.fine
+    assert not found.data["met"]
+    assert written["error"] == pytest.approx(advised["error"], rel=1e-6)
+    made = (tmp_path / "new.xml").read_text()
+    assert advised["lines"][0] in made
+    for tag in ("<option", "<connect"):  # all else stands as it stood
+        old, new = (
+            next(line for line in each.splitlines() if tag in line and "--" not in line) for each in (text, made)
+        )
+        made = made.replace(new, old)
+    assert made == text
+
+
+def test_what_is_written_twice_is_the_same_file(tmp_path):
+    (tmp_path / "model.xml").write_text(FOUR_BAR)
+    (tmp_path / "swing.py").write_text(PENDULUM)
+    for word, new in (("model.xml", "new.xml"), ("swing.py:make", "new.py")):
+        checked(tmp_path, word, tolerance=1e-2, apply=new)
+        before = (tmp_path / new).read_bytes()
+        again = checked(tmp_path, word.replace(word.split(":")[0], new), tolerance=1e-2, apply=new)
+        assert again.data["met"]
+        assert (tmp_path / new).read_bytes() == before
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
+        "model.xml",
+        "new.py",
+        "new.xml",
+        "swing.py",
+    ]
+
+
+@pytest.mark.parametrize(("text", "word"), [(LOOP, "x.py"), (LOOP, "x.py:space"), (INSIDE, "x.py:main")])
+def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_path, text, word):
+    (tmp_path / "x.py").write_text(text)
+    found = checked(tmp_path, word, tolerance=3e-3, apply="y.py")
+    assert found.data["step"] == 0.01
+    assert found.data["assumed"] == ""
+    assert any("stopped before the first step" in note["reason"] for note in found.data["notes"])
+    assert found.data["applied"]["error"] == pytest.approx(found.data["advised"]["error"], rel=1e-6)
+    # A stricter tolerance, from the file that was written: its lines are written anew, not a second time.
+    other = checked(tmp_path, word.replace("x.py", "y.py"), tolerance=1e-3, search=True, apply="y.py")
+    assert other.data["applied"]["error"] <= 1e-3
+    before, block = (tmp_path / "y.py").read_text().split(BEGIN)
+    assert f"{before.rstrip(' ')}{block.split(END)[1][1:]}" == text
+    if text is LOOP:  # and it runs as before, with the same times
+        places = [
+            [float(part) for part in subprocess.check_output([sys.executable, tmp_path / name]).split()]
+            for name in ("x.py", "y.py")
+        ]
+        assert places[1] == pytest.approx(places[0], abs=0.1)  # ten steps of the first: they are of first order
+        assert places[1] != places[0]
+
+
+def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
+    push = PENDULUM.replace("    return space", "    bob.force = (0, 4)\n    return space")
+    (tmp_path / "x.py").write_text(push)
+    found = checked(tmp_path, "x.py:make", tolerance=1e-3, search=True, apply="y.py")
+    assert found.data["applied"]["error"] <= 1e-3
+    space = "import y; space = y.make(); space.step(1 / 60); print(*[body.velocity.y for body in space.bodies])"
+    speeds = [
+        float(subprocess.check_output([sys.executable, "-c", code], cwd=tmp_path).split()[-1])
+        for code in (space, space.replace(" y;", " x as y;"))
+    ]
+    assert speeds[0] == pytest.approx(speeds[1], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("source", "wanted"),
+    [
+        (
+            b"<mujoco><worldbody/></mujoco>",
+            b'<mujoco>\n  <option timestep="0.001" integrator="RK4"/><worldbody/></mujoco>',
+        ),
+        (
+            b"<mujoco><option gravity='0 0 -1' timestep = '.1'><flag/></option></mujoco>",
+            b'<mujoco><option gravity=\'0 0 -1\' timestep="0.001" integrator="RK4"><flag/></option></mujoco>',
+        ),
+        (b"<robot></robot>", b'<robot>  <mujoco><option timestep="0.001" integrator="RK4"/></mujoco>\n</robot>'),
+        (b"<robot><mujoco/></robot>", b'<robot><mujoco><option timestep="0.001" integrator="RK4"/></mujoco></robot>'),
+    ],
+)
+def test_options_are_set_where_they_are_or_where_they_belong(source, wanted):
+    change = Change("", 0.001, (), (("integrator", "RK4"), ("tied", False)))
+    assert rewritten(source, change) == wanted
+    assert rewritten(wanted, change) == wanted
+
+
+def test_quick_tries_four_settings_and_tells_the_same_causes(tmp_path):
+    (tmp_path / "model.xml").write_text(FOUR_BAR)
+    quick, whole = (checked(tmp_path, "model.xml", tolerance=1e-4, quick=quick) for quick in (True, False))
+    assert len(quick.data["tried"]) == 1 + 4
+    # The declared motion is known to a thousandth of itself at the rougher tolerance.
+    assert quick.data["parts"]["softness"] == pytest.approx(whole.data["parts"]["softness"], rel=1e-3)
+    assert quick.data["error"] == whole.data["error"]
+
+
+def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
+    monkeypatch.setattr("reports.check.request.SEARCH", 2.0)
+    (tmp_path / "swing.py").write_text(PENDULUM)
+    for goal, found in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
+        answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
+        assert answer.fine == found
+        assert (answer.data["advised"] is not None) == found
+        assert ("none of the" in dict(answer.answer.facts)["advice"]) != found
+        assert sum(each["error"] <= goal for each in answer.data["tried"]) == found  # it ends with the first
+
+
+def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd):
+    (here / "model.xml").write_text(FOUR_BAR)
+    words = ("check", "model.xml", "--duration", 0.2, "--quick")
+    for more, status in (((), 0), (("--tolerance", 1e-5), 1), (("--tolerance", 0.5), 0), (("--fix-to", 1e-3), 0)):
+        assert call(*words, *more) == status
+    capfd.readouterr()
+    assert call(*words, "--tolerance", 1e-12, "--apply", "new.xml") == 2
+    assert "nothing was written" in capfd.readouterr().err
+    assert not (here / "new.xml").exists()
+    assert call(*words, "--apply", "new.txt") == 2
+    assert "it must end in .xml" in capfd.readouterr().err
+    assert call("check", "--schema") == 0
+    assert json.loads(capfd.readouterr().out)["title"] == "crosscheck check --json"
+    assert call("check") == 2
+    assert "no model was given" in capfd.readouterr().err
+
+
+def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd):
+    for name, text in (("a.xml", FOUR_BAR), ("b.py", PENDULUM), ("c.xml", "<mujoco/>"), ("other.xml", "<svg/>")):
+        (here / "models").mkdir(exist_ok=True)
+        (here / "models" / name).write_text(text)
+    words = ("check", "models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")
+    assert call(*words, "--junit", "r.xml", "--markdown", "t.md") == 1
+    out, err = capfd.readouterr()
+    assert "1 of 3 models miss 0.0001: models/a.xml" in err.splitlines()[-1]
+    told = {each["model"]: each for each in json.loads(out)}
+    assert list(told) == ["models/a.xml", "models/b.py", "models/c.xml"]
+    assert told["models/a.xml"]["found"]["met"] is False
+    assert "give the name of the space, or of a function" in told["models/b.py"]["refused"]
+    suite = xml.parse(here / "r.xml").getroot()[0]
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("3", "1", "2")
+    assert [child.tag for case in suite for child in case] == ["failure", "skipped", "skipped"]
+    assert "| models/a.xml | " in (here / "t.md").read_text()
+    assert call("check", "models", "--apply", "x.xml") == 2
+    assert "--apply is for one model" in capfd.readouterr().err
+
+
+def test_a_script_of_two_spaces_has_to_be_told_which(tmp_path):
+    (tmp_path / "x.py").write_text("import pymunk\none, other = pymunk.Space(), pymunk.Space()\n")
+    found = answered(CheckRequest("x.py", str(tmp_path), 0.5))
+    assert isinstance(found, Refused)
+    assert "its spaces are one, other; give the name of the space" in found.sentence

@@ -1,0 +1,185 @@
+"""What a notebook, a script and somebody's own tests use: the module planar_crosscheck, importers and fixtures."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+import xml.etree.ElementTree as xml
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pymunk
+import pytest
+
+import engines.conformance
+import planar_crosscheck
+from engines import importers
+from engines.conformance import CHECKS, conform
+from engines.pymunk import DEFAULT
+from reference.checks import InvalidMechanism
+from reference.linkage import linkage
+from reference.scenes.four_bar.scenes import FreeFourBar
+from tests import ROOT
+from tests.reports.test_check import FOUR_BAR, PENDULUM
+
+POINTS = {"A": (0, 0), "B": (0, 0.3), "C": (0.8, 0.6), "D": (0.7, 0)}
+BARS = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
+
+
+def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkeypatch):
+    (tmp_path / "model.xml").write_text(FOUR_BAR)
+    monkeypatch.chdir(tmp_path)
+    lines = re.findall(r"^    (.*)$", str(planar_crosscheck.__doc__), re.MULTILINE)
+    assert len(lines) <= 11
+    values = {}
+    exec("\n".join(lines), values)
+    assert values["found"].data["met"] is False
+    assert values["mechanism"].degrees_of_freedom() == (1, 1)
+    shown = values["beside"]._repr_html_()
+    for words in ("mujoco default at 2 ms", "<th>largest</th>", "<svg"):
+        assert words in shown
+
+
+def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
+    found = linkage(POINTS, BARS, "AD")
+    for body, (first, second) in zip(found.bodies, BARS.values(), strict=True):
+        x, y, angle = body.pose
+        length = math.dist(POINTS[first], POINTS[second])
+        assert body.mass == pytest.approx(length)
+        assert body.inertia == pytest.approx(length**3 / 12)
+        ends = np.array([x, y]) + np.outer([-length / 2, length / 2], [math.cos(angle), math.sin(angle)])
+        np.testing.assert_allclose(ends, [POINTS[first], POINTS[second]], atol=1e-15)
+    assert found.degrees_of_freedom() == (1, 1)
+    # A third bar at a point, and one that hangs freely.
+    more = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
+    assert [joint.name for joint in more.joints] == ["A", "B", "D", "C", "C 2"]
+    assert more.degrees_of_freedom() == (2, 2)
+    xml.fromstring(planar_crosscheck.draw(more)._repr_svg_())
+
+
+@pytest.mark.parametrize(
+    ("points", "bars", "ground", "sentence"),
+    [
+        (POINTS, {"crank": "AX"}, "A", "no point is called 'X'; there are A, B, C, D"),
+        (POINTS, BARS, "AZ", "no point is called 'Z'"),
+        (POINTS, {"crank": "A"}, "A", "bar 'crank': its ends are 'A'; give the names of two different points"),
+        ({**POINTS, "E": (0, 0)}, {"crank": "AE"}, "A", "are the same place; it has no length"),
+        (POINTS, {}, "A", "it has no bodies"),
+    ],
+)
+def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sentence):
+    with pytest.raises(InvalidMechanism, match=re.escape(sentence)):
+        linkage(points, bars, ground)
+
+
+def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch):
+    scene = FreeFourBar()
+    found = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
+    truth = scene.motion(found.run.t)
+    assert np.abs(found.truth.pose - truth.pose).max() < 1e-9
+    off = np.abs(found.run.pose - truth.pose)[..., 2].max()
+    assert found.rows()[0]["largest"] == pytest.approx(off, rel=1e-6)
+    with pytest.raises(ValueError, match="no engine is called 'pymunky'; there are pymunk default"):
+        planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
+    with pytest.raises(ValueError, match="dt is 3 s and duration"):
+        planar_crosscheck.compare(scene.mechanism(), DEFAULT, 3, 1.0)
+    # pandas is not needed, and where it is there it is given columns of equal length.
+    pandas = SimpleNamespace(DataFrame=lambda data, index: (data, index), Index=lambda values, name: tuple(values))
+    monkeypatch.setitem(sys.modules, "pandas", pandas)
+    columns, index = found.frame()
+    assert {len(column) for column in columns.values()} == {len(index)}
+    assert {len(column) for column in found.run.table().values()} == {len(found.run.t)}
+    np.testing.assert_array_equal(found.run.table()["angle 2"], found.run.pose[:, 2, 2])
+    assert found.run._repr_html_().count("<tr>") == 7
+
+
+def test_models_are_read_as_files_and_as_objects(tmp_path):
+    (tmp_path / "model.xml").write_text(FOUR_BAR)
+    (tmp_path / "swing.py").write_text(PENDULUM)
+    from_file = importers.mujoco.read(tmp_path / "model.xml")
+    assert importers.mujoco.read(mujoco.MjModel.from_xml_string(FOUR_BAR)) == from_file  # type: ignore[attr-defined]
+    values: dict = {}
+    exec(PENDULUM, values)
+    space = values["make"]()
+    assert isinstance(space, pymunk.Space)
+    assert importers.pymunk.read(space) == importers.pymunk.read(f"{tmp_path / 'swing.py'}:make")
+    found = planar_crosscheck.check(space, duration=0.2, step=0.01, quick=True)
+    assert found.data["step"] == 0.01
+    assert "<svg" not in found._repr_html_()  # pictures are images of their own
+    assert "data:image/svg+xml" in found._repr_html_()
+    with pytest.raises(ValueError, match=r"it is dict; give a file, a mujoco\.MjModel or a pymunk\.Space"):
+        planar_crosscheck.check({})
+
+
+THEIRS = """
+import pytest
+
+def test_right(crosscheck):
+    assert crosscheck.check("model.xml", tolerance=0.1, duration=0.1, quick=True).data["met"]
+
+def test_wrong(crosscheck):
+    crosscheck.check("model.xml", tolerance=1e-7, duration=0.1, quick=True)
+
+def test_missing(crosscheck):
+    crosscheck.check("nothing.xml")
+"""
+
+
+def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_is_missing(pytester):
+    pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
+    folder = pytester.mkdir("sub")
+    (folder / "test_mine.py").write_text(THEIRS)
+    (folder / "model.xml").write_text(FOUR_BAR)
+    result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(["four bar in MuJoCo is off by*; the tolerance of 1.0e-7 is missed."])
+    result.stdout.fnmatch_lines(["*<option timestep=*", "nothing.xml: there is no such file"])
+    assert "During handling" not in result.stdout.str()
+
+
+def test_the_grid_is_brought_by_its_mark_alone_and_options_of_its_names_stay_anybodys(pytester):
+    plugin = ("-p", "planar_crosscheck_pytest", "-p", "no:cacheprovider", "-q")
+    pytester.makeini(f"[pytest]\npythonpath = {ROOT}\n")
+    pytester.makepyfile("def test_of_mine(request):\n    assert request.config.getoption('--engine') == 'mine'\n")
+    pytester.makeconftest("def pytest_addoption(parser): parser.addoption('--engine')")
+    for more in ((), ("-m", "not crosscheck")):
+        pytester.runpytest_subprocess(*plugin, "--engine", "mine", *more).assert_outcomes(passed=1)
+    pytester.makeconftest("")
+    chosen = ("--scene", "pendulum_1", "--engine", "pymunk default")
+    result = pytester.runpytest_subprocess(*plugin, "-m", "crosscheck", *chosen, "--collect-only")
+    result.stdout.fnmatch_lines(["*::test_a_method_is_as_exact*pendulum_1-pymunk default*", "3/* deselected*"])
+    assert "test_of_mine" not in result.stdout.str()
+
+
+# ------------------------------------------------------------------------------------------------------ conformance
+
+
+@pytest.mark.parametrize(
+    ("expected", "sentence"),
+    [
+        ({}, "reactions_have_sign_and_size: .*: reactions_have_sign_and_size: "),
+        ({"reactions_have_sign_and_size": "bug 12"}, ""),
+        ({"reactions_have_sign_and_size: hanging bar": "bug 12"}, "reactions_have_sign_and_size: (?!hanging bar)"),
+        ({"reactions_have_sign_and_size": " "}, "it is expected to fail, and no reason is given"),
+        (
+            {"reactions_have_sign_and_size": "bug 12", "has_a_name": "bug 13"},
+            r"has_a_name: .*\(bug 13\), and it does not",
+        ),
+        ({"reactions_have_sign_and_size": "bug 12", "has_a_nose": "bug 14"}, "'has_a_nose' is no check; there are"),
+    ],
+)
+def test_failures_that_are_expected_have_to_come_true(monkeypatch, expected, sentence):
+    from tests.wrong.adapters import Wrong
+
+    few = ("reactions_have_sign_and_size", "has_a_name")
+    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in few))
+    engine = Wrong("reactions have the other sign")
+    if not sentence:
+        results = conform(engine, expected)
+        assert {case.check.name for case, _ in results} == set(few)
+        return
+    with pytest.raises(AssertionError, match=sentence) as raised:
+        planar_crosscheck.conform(engine, expected)
+    assert str(raised.value).startswith("wrong reactions have the other sign does not conform:\n")
