@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from functools import cache
 
 from engines import Engine
 from engines.registry import method
@@ -23,6 +21,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
+from reports.write.holders import VARIANTS, Column, column_of
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
 from reports.write.tables import NOTHING, markdown, milliseconds, number
 
@@ -31,28 +30,7 @@ BUDGET = 1e-2
 WITHIN = SAME_COST * BUDGET  # what scatters by less is equal
 
 
-class Column(StrEnum):
-    SHIPPED = "as shipped"
-    SETTINGS = "documented settings"
-    CODE = "with our code"
-    NAIVE = "naive"  # our code alone holds a joint that the engine does not have: in no table of engines
-    WHOLE = ""  # of an engine that has no such variants
-
-
-VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
 NO_JOINT, NOT_BUILT, TOO_DEAR = "no such joint", "not built", "too dear"
-
-
-@cache
-def column_of(scene: Scene, engine: Engine) -> Column:
-    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
-    mechanism = mechanism_of(scene)
-    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
-    if "ours" in held:
-        return Column.NAIVE
-    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
-        return Column.CODE
-    return VARIANTS.get(engine.variant, Column.SETTINGS)
 
 
 def runs_of(engine: Engine, scene: Scene, step: float) -> str:

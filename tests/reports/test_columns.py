@@ -10,16 +10,16 @@ import pytest
 
 from engines import Holder, mujoco, pymunk
 from engines.lagrange import Lagrange
+from engines.pymunk.methods import SKATE_POINT
 from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import SCENES
+from reports.model.cells import Cell
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.comparison import compared_lines
 from reports.write.columns import (
-    Column,
-    column_of,
     empty,
     equal_cost,
     equal_error,
@@ -29,6 +29,7 @@ from reports.write.columns import (
     reached,
     runs_of,
 )
+from reports.write.holders import Column, column_of, told_rows, told_variant
 from tests.rows import falling, row_of, table
 from tests.toys import Disc, Toy
 
@@ -162,6 +163,14 @@ def test_of_our_engines_neither_holds_a_skate_by_settings_and_pymunk_none_as_shi
     usual = [Column.SHIPPED, Column.SETTINGS, Column.CODE]
     assert on[FREE] == usual * 2
     assert on[SLEIGH] == [Column.NAIVE, Column.CODE, Column.CODE, Column.SHIPPED, Column.CODE, Column.CODE]
+
+
+def test_a_users_trick_does_not_bear_the_usual_name_of_an_engine_on_any_page():
+    assert [told_variant(scene, pymunk.DEFAULT) for scene in (FREE, SLEIGH)] == ["default", "naive"]
+    assert told_variant(SLEIGH, mujoco.DEFAULT) == "default"  # a contact of its own
+    assert told_variant(SLEIGH, SKATE_POINT) == SKATE_POINT.variant
+    cell = Cell(SLEIGH, pymunk.DEFAULT, 1)
+    assert told_rows({cell: row_of("pymunk default")})[cell].method == "pymunk naive"
 
 
 def test_a_cell_is_empty_where_the_engine_has_no_such_joint_and_says_what_our_adapter_does_not_build():

@@ -116,7 +116,7 @@ def words(material: Material) -> Mapping[str, Any]:
             "mujoco": [error_at(material, MUJOCO[0], engine) for engine in (mujoco.DEFAULT, mujoco.TUNED)],
             "pymunk": [error_at(material, PYMUNK[0], engine) for engine in (pymunk.DEFAULT, pymunk.LEAPFROG)],
         },
-        "before_term": old[0] if old else UNMEASURED,
+        "before_term": old[0] if old and rows["mujoco"] is not None else UNMEASURED,
     }
 
 
