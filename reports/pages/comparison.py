@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -13,7 +12,7 @@ from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.theme import svg
-from reports.write.columns import WITHIN, Column, Line, error_within, lines, reached, runs_of
+from reports.write.columns import NO_JOINT, NOT_BUILT, Column, Line, empty, lines, reached, runs_of, within_budget
 from reports.write.tables import NOTHING, markdown, number
 
 PICTURE = "compared.svg"
@@ -40,12 +39,6 @@ def compared_lines(pages: Mapping[Page, Material]) -> list[Line]:
     return found
 
 
-def absent(line: Line, column: Column) -> bool:
-    """Whether the engine has no way to hold the scene's joints in this column."""
-    rows = [row for _, own in line.columns.get(column, ()) for row in own]
-    return not rows or all(row.outcome == Outcome.UNSUPPORTED for row in rows)
-
-
 def picture(found: list[Line]) -> str:
     """The SVG text; empty without rows."""
     rows = []
@@ -70,7 +63,10 @@ def picture(found: list[Line]) -> str:
                     for column, each in places.items()
                 },
                 {
-                    column: [line.engine for line, place in each if absent(line, place)]
+                    column: {
+                        word: [line.engine for line, place in each if empty(line, place) == word]
+                        for word in (NO_JOINT, NOT_BUILT)
+                    }
                     for column, each in places.items()
                     if column is not Column.CODE  # not every engine has a variant with our code
                 },
@@ -85,28 +81,21 @@ def table(found: list[Line]) -> str:
     """A line an engine and scene: the error within BUDGET in each column, and in brackets that at a millisecond."""
     body = []
     for line in found:
-        cells = []
-        for column in COLUMNS:
-            if column not in line.columns:
-                cells.append("*no such joint*" if Column.WHOLE not in line.columns else NOTHING)
-                continue
-            cells.append(_cell(line, column))
-        if Column.WHOLE in line.columns:
-            cells[-1] = _cell(line, Column.WHOLE)
+        whole = Column.WHOLE in line.columns
+        cells = [_cell(line, Column.WHOLE if whole and column is COLUMNS[-1] else column) for column in COLUMNS]
         body.append([SCENES[line.scene.name], line.engine, *cells])
     return markdown(["scene", "engine", *COLUMNS], body, left=5) if body else ""
 
 
 def _cell(line: Line, column: Column) -> str:
-    methods = line.columns[column]
-    if absent(line, column):
-        return "*no such joint*"
-    least = min(error_within(rows, line.name, WITHIN) for _, rows in methods)
-    at_cost = number(least) if math.isfinite(least) else NOTHING
-    engine, rows = methods[-1]
+    if column not in line.columns and (Column.WHOLE in line.columns or column is Column.CODE):
+        return NOTHING  # no variant of this kind
+    if word := empty(line, column):
+        return f"*{word}*"
+    engine, rows = line.columns[column][-1]
     row = next((row for row in rows if abs(row.step - MILLISECOND) < 0.01 * MILLISECOND), None)
     at_step = NOTHING if row is None else number(getattr(row, line.name))
     if row is not None and not Outcome(row.outcome).comparable:
         at_step = str(row.outcome)
     runs = runs_of(engine, line.scene, MILLISECOND)
-    return f"{at_cost} ({at_step}{'; ' + runs if runs else ''})"
+    return f"{within_budget(line, column)} ({at_step}{'; ' + runs if runs else ''})"

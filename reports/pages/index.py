@@ -13,7 +13,9 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.usual_steps import USUAL_STEPS
+from reports.pages import comparison
 from reports.pages.findings import findings
+from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.write import unmeasured
 from reports.write.columns import BUDGET, equal_cost, equal_error, equal_step
 from reports.write.page_tables import TARGETS
@@ -160,6 +162,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
             titles={page.name: page.title for page in pages},
             findings=[found for found in told if found.page in known],
             symptoms=[(each, link(each.page, each.heading, files)) for each in SYMPTOMS if each.page in known],
+            compared=comparison.table(comparison.compared_lines(pages)),
             equal_cost=equal_cost(entries),
             equal_error=equal_error(entries),
             equal_step=equal_step(entries),
@@ -179,5 +182,10 @@ def _overview_rows(page: Page, material: Material, scenes: Sequence[Scene]) -> l
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with what was found in it. Raises ValueError where the marks of the part are missing."""
-    return with_part(text, "findings", "\n".join(f"- {found.title}." for found in findings(pages)))
+    """The readme with the lines of `your_loop` and their errors. Nothing in it depends on timings.
+
+    Raises ValueError where the marks of the part are missing.
+    """
+    material = next((given for page, given in pages.items() if page.name == YOUR_LOOP.name), Material({}))
+    told = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.words(material)))
+    return with_part(text, "loop", unmeasured.without_marks(told).strip())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -23,7 +24,7 @@ from reports.plots.theme import svg
 from reports.write import page_tables, unmeasured
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
-from reports.write.holders import holders
+from reports.write.holders import holders, told_rows
 from reports.write.programs import advised_programs
 from reports.write.provenance import machine, row_versions, today, versions
 from reports.write.templates import inert_page, template_of
@@ -57,6 +58,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
 
     Raises jinja2.UndefinedError when the template names what the page does not give.
     """
+    material = replace(material, rows=told_rows(material.rows))
     rows = judged(material.sweep(page.scenes), page.quantity)
     files: dict[str, str] = {}
     pictures: dict[str, str] = {}

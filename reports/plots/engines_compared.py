@@ -31,12 +31,12 @@ Points = Sequence[tuple[float, float]]  # (CPU seconds per simulated second, err
 
 @dataclass(frozen=True)
 class Compared:
-    """A row of panels: `lines` by column and engine, `absent` by column which engines have no such joint."""
+    """A row of panels: `lines` by column and engine, `absent` by column and reason the engines without one."""
 
     title: str
     axis: str
     lines: Mapping[str, Mapping[str, Points]]
-    absent: Mapping[str, Sequence[str]]
+    absent: Mapping[str, Mapping[str, Sequence[str]]]
 
 
 def engines_compared(rows: Sequence[Compared], theme: Theme = LIGHT) -> Figure:
@@ -55,10 +55,12 @@ def engines_compared(rows: Sequence[Compared], theme: Theme = LIGHT) -> Figure:
                     if points:
                         shown = [(1e3 * cost, error) for cost, error in points]
                         panel.plot(*zip(*shown, strict=True), **_look(engine, engines, theme))
-                if absent := [NAMES.get(each, each) for each in row.absent.get(column, ())]:
-                    half = (len(absent) + 1) // 2
-                    words = ",\n".join(", ".join(part) for part in (absent[:half], absent[half:]) if part)
-                    _say(panel, 0.98, 0.98, f"no such joint: {words}", "right", theme)
+                absent = {
+                    word: ", ".join(NAMES.get(each, each) for each in names)
+                    for word, names in row.absent.get(column, {}).items()
+                    if names
+                }
+                _say(panel, 0.98, 0.98, "\n".join(f"{word}: {names}" for word, names in absent.items()), "right", theme)
                 panel.set_title(f"{row.title}, {column}", loc="left", fontweight="bold", fontsize=9, color=theme.ink)
             panels[0].set_ylabel(row.axis)
         _say(grid[0][0], 0.02, 0.12, "better: lower\nand further left", "left", theme)

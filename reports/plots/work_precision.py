@@ -39,6 +39,16 @@ def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
     return front
 
 
+def forwards(members: Iterable[Measurement]) -> list[Measurement]:
+    """The rows of one method from coarse to fine, without those that cost as much as one at a smaller step or more:
+    methods that look for their steps or sweeps by rough runs do so at large steps."""
+    kept: list[Measurement] = []
+    for row in sorted(members, key=lambda row: row.step):
+        if not kept or row.cpu < kept[-1].cpu:
+            kept.append(row)
+    return kept[::-1]
+
+
 def _shown_variants(rows: Sequence[Measurement]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for row in rows:
@@ -109,6 +119,7 @@ def work_precision(
     """Error against CPU time, one panel a scene, one series a method; the front that nothing beats is underlaid.
 
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
+    A series never runs backwards: see `forwards`.
     """
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
     scenes = _with_lines(rows)
@@ -124,7 +135,7 @@ def work_precision(
             if others:
                 panel.plot(*zip(*others, strict=True), ".", color=theme.quiet, markersize=3, zorder=2)
             for (_, engine, variant), members in groups(row for row in here if featured(row)).items():
-                series = [(1e3 * row.cpu, getattr(row, field)) for row in members]
+                series = [(1e3 * row.cpu, getattr(row, field)) for row in forwards(members)]
                 panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.set_xlabel("CPU time per simulated second [ms]")
             if panels.index(panel) % COLUMNS == 0:

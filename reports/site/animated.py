@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Sequence
 from html import escape
@@ -151,14 +152,21 @@ def _sheet() -> str:
         f".k{index} .own{{stroke-width:2.5}}.k{index} .pin{{stroke:none}}"
         for index, (role, width, dash) in enumerate(LOOKS)
     )
-    return (
-        f":root{{{light}}}@media(prefers-color-scheme:dark){{:root{{{dark}}}}}"
+    rules = (
         f"text{{font:14px {FONTS};fill:var(--ink)}}.title{{font-size:17px;font-weight:bold}}.small{{font-size:12px}}"
         ".end{text-anchor:end}.middle{text-anchor:middle}.paper{fill:var(--paper)}.grid{stroke:var(--grid)}"
         "path,line,circle{fill:none;vector-effect:non-scaling-stroke}"
         ".fixed path{stroke:var(--quiet);stroke-width:1.4}.fixed .support{fill:var(--grid)}"
         ".truth path,.truth line,.truth .pin{stroke:var(--ink);stroke-width:2}.truth .pin{fill:var(--paper)}"
         f"{looks}"
+    )
+    # A viewer that knows no variables leaves out what names one, and takes the light colour that stands before it.
+    rules = re.sub(
+        r"(fill|stroke):var\(--(\w+)\)", lambda found: f"{found[1]}:{getattr(LIGHT, found[2])};{found[0]}", rules
+    )
+    return (
+        f":root{{{light}}}@media(prefers-color-scheme:dark){{:root{{{dark}}}}}"
+        f"{rules}"
         f".stage g g,.cover{{animation:{SECONDS:g}s linear infinite}}"
         ".cover{animation-name:cover;transform-origin:0 0}"
         f"@keyframes cover{{0%{{transform:translate({LEFT:g}px) scaleX(0) translate(-{LEFT:g}px)}}"

@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from functools import cache
 
 from engines import Engine
 from engines.registry import method
@@ -23,6 +21,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
+from reports.write.holders import VARIANTS, Column, column_of
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
 from reports.write.tables import NOTHING, markdown, milliseconds, number
 
@@ -31,28 +30,7 @@ BUDGET = 1e-2
 WITHIN = SAME_COST * BUDGET  # what scatters by less is equal
 
 
-class Column(StrEnum):
-    SHIPPED = "as shipped"
-    SETTINGS = "documented settings"
-    CODE = "with our code"
-    NAIVE = "naive"  # our code alone holds a joint that the engine does not have: in no table of engines
-    WHOLE = ""  # of an engine that has no such variants
-
-
-VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
 NO_JOINT, NOT_BUILT, TOO_DEAR = "no such joint", "not built", "too dear"
-
-
-@cache
-def column_of(scene: Scene, engine: Engine) -> Column:
-    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
-    mechanism = mechanism_of(scene)
-    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
-    if "ours" in held:
-        return Column.NAIVE
-    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
-        return Column.CODE
-    return VARIANTS.get(engine.variant, Column.SETTINGS)
 
 
 def runs_of(engine: Engine, scene: Scene, step: float) -> str:
@@ -116,15 +94,23 @@ def _nothing(found: Iterable[Line], column: Column) -> str:
     return ""
 
 
+def empty(line: Line, column: Column) -> str:
+    """Why a cell is empty: the engine has no such joint, or our adapter builds none; '' for one that is not."""
+    if column not in line.columns:
+        return NO_JOINT
+    rows = [row for _, own in line.columns[column] for row in own]
+    if not rows or any(row.outcome != Outcome.UNSUPPORTED for row in rows):
+        return ""
+    # The engine lacks a thing where the sentence names a place in its documentation.
+    return NO_JOINT if any("https://" in row.sentence for row in rows) else NOT_BUILT
+
+
 def _told(line: Line, column: Column, cell: Cell) -> str:
     """A cell: empty, with the reason, where the engine has no such joint or our adapter builds none."""
-    if column not in line.columns:
-        return f"*{NO_JOINT}*"
-    rows = [row for _, own in line.columns[column] for row in own]
-    if not rows:
+    if word := empty(line, column):
+        return f"*{word}*"
+    if not any(own for _, own in line.columns[column]):
         return NOTHING
-    if all(row.outcome == Outcome.UNSUPPORTED for row in rows):
-        return f"*{NO_JOINT if any('https://' in row.sentence for row in rows) else NOT_BUILT}*"
     joints = mechanism_of(line.scene).joints
     engine_holds = column in (Column.SHIPPED, Column.SETTINGS)
     contact = engine_holds and any(isinstance(joint, Skate | Roll) for joint in joints)
@@ -182,19 +168,20 @@ def reached(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[f
     return better + [point for point in drawn[-1:] if point not in better]
 
 
-def equal_cost(entries: Iterable[Entry], folder: str = "", cost: float = WITHIN) -> str:
-    """One table of all engines: the error that each column reaches within this CPU time [s/s]."""
+def equal_cost(entries: Iterable[Entry], folder: str = "") -> str:
+    """One table of all engines: the error that each column reaches within BUDGET."""
+    return next((table for _, table in _table(_swept(entries), within_budget, folder, both=True)), "")
 
-    def cell(line: Line, column: Column) -> str:
-        methods = [rows for _, rows in line.columns[column]]
-        least = min((error_within(rows, line.name, cost) for rows in methods), default=math.inf)
-        if math.isfinite(least):
-            return number(least)
-        cheap = [row for rows in methods for row in rows if 0 < row.cpu <= cost]
-        failed = dict.fromkeys(row.outcome for row in cheap if not Outcome(row.outcome).comparable)
-        return f"**{', '.join(failed)}**" if failed else "not kept" if cheap else TOO_DEAR
 
-    return next((table for _, table in _table(_swept(entries), cell, folder, both=True)), "")
+def within_budget(line: Line, column: Column) -> str:
+    """The least error of a column within BUDGET, or why there is none."""
+    methods = [rows for _, rows in line.columns[column]]
+    least = min((error_within(rows, line.name, WITHIN) for rows in methods), default=math.inf)
+    if math.isfinite(least):
+        return number(least)
+    cheap = [row for rows in methods for row in rows if 0 < row.cpu <= WITHIN]
+    failed = dict.fromkeys(row.outcome for row in cheap if not Outcome(row.outcome).comparable)
+    return f"**{', '.join(failed)}**" if failed else "not kept" if cheap else TOO_DEAR
 
 
 def equal_error(entries: Iterable[Entry], folder: str = "") -> dict[str, str]:

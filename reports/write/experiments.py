@@ -16,6 +16,7 @@ from reports.model.page import Failure, Material, Observation
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Motion, trajectory_of
 from reports.write import tables
+from reports.write.holders import told_variant
 from reports.write.rows import Rows
 from reports.write.templates import template
 
@@ -77,7 +78,7 @@ def observe(material: Material, cell: Cell, setting: str, say: Callable[[Traject
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
         return ()
     told = _read(trajectory_of(answer), say) if answer.finished else answer.told
-    return (Observation(f"{cell.engine.name} {cell.engine.variant}", setting, told),)
+    return (Observation(f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}", setting, told),)
 
 
 def _read(run: Trajectory, say: Callable[[Trajectory], str]) -> str:

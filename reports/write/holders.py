@@ -2,15 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from enum import StrEnum
 from functools import cache
 
 from engines import Engine, Holder
 from reference.mechanism import Mechanism
 from reference.scene import Scene
 from reports.model.cells import Cell, mechanism_of
+from reports.model.measure import Measurement
 
 NOTHING_HELD = "no joints"
+
+
+class Column(StrEnum):
+    """The columns of a table of engines, and what stands in none."""
+
+    SHIPPED = "as shipped"
+    SETTINGS = "documented settings"
+    CODE = "with our code"
+    NAIVE = "naive"  # our code alone holds a joint that the engine does not have
+    WHOLE = ""  # of an engine that has no such variants
+
+
+VARIANTS = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
+
+
+@cache
+def column_of(scene: Scene, engine: Engine) -> Column:
+    """Where a method stands for a scene; one that is neither as shipped nor extended has settings."""
+    mechanism = mechanism_of(scene)
+    held = {engine.holder(joint, mechanism) for joint in mechanism.joints}
+    if "ours" in held:
+        return Column.NAIVE
+    if "engine, our rows" in held or len(engine.steps_of_runs(mechanism)) > 1:
+        return Column.CODE
+    return VARIANTS.get(engine.variant, Column.SETTINGS)
+
+
+def told_variant(scene: Scene, engine: Engine) -> str:
+    """The variant as a page names it: an engine's usual name is not lent to a trick of a user's."""
+    naive = engine.variant in VARIANTS and column_of(scene, engine) is Column.NAIVE
+    return str(Column.NAIVE) if naive else engine.variant
+
+
+def told_rows(rows: Mapping[Cell, Measurement]) -> dict[Cell, Measurement]:
+    """Rows under the variants that pages name."""
+    return {cell: replace(row, variant=told_variant(cell.scene, cell.engine)) for cell, row in rows.items()}
 
 
 def held_by(engine: Engine, mechanism: Mechanism) -> str:
@@ -48,6 +87,6 @@ def holders(cells: Iterable[Cell]) -> dict[str, str]:
     """Who holds the joints in these cells, by method; several answers where the cells of a method differ."""
     found: dict[str, dict[str, None]] = {}
     for cell in cells:
-        method = f"{cell.engine.name} {cell.engine.variant}"
+        method = f"{cell.engine.name} {told_variant(cell.scene, cell.engine)}"
         found.setdefault(method, {}).setdefault(held_in(cell.scene, cell.engine))
     return {method: " or ".join(told) for method, told in found.items()}

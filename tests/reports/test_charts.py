@@ -32,6 +32,7 @@ from reports.pages.scaling.page import scaling_chart
 from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
+from reports.plots.engines_compared import Compared, engines_compared
 from reports.plots.mechanisms import Strip, outline, path, stroboscope
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import LIGHT
@@ -154,6 +155,32 @@ def test_the_front_is_of_all_methods_and_those_not_featured_are_dots():
     figure = charts.work_precision(shown, featured)
     assert dots(panels(figure)[0]) == []
     assert "other methods" not in legend(figure)
+
+
+def test_a_series_never_runs_backwards_in_cpu_time():
+    steps = ((1e-2, 12.0), (3e-3, 9.0), (1e-3, 9.0), (3e-4, 30.0), (1e-4, 20.0))
+    rough = [row_of("mujoco extended", step=step, angle=step, cpu=cpu) for step, cpu in steps]
+    assert [row.step for row in charts.forwards(rough[::-1])] == [1e-3, 1e-4]
+    plain = falling("pymunk default", (1.1e-2, 1.3e-3, 1.7e-4))
+    assert charts.forwards(plain) == plain
+
+
+def test_all_engines_share_one_look_and_one_scale_in_every_panel_and_what_is_absent_is_named():
+    lines = {"as shipped": {"pymunk": [(1e-3, 1e-2), (1e-2, 1e-3)]}, "with our code": {"mujoco": [(5e-3, 1e-9)]}}
+    rows = [
+        Compared("four-bar", "angle", lines, {}),
+        Compared(
+            "skate", "position", {"as shipped": {}, "with our code": {}}, {"as shipped": {"no such joint": ["pymunk"]}}
+        ),
+    ]
+    figure = engines_compared(rows)
+    first, second, third, _ = panels(figure)
+    assert series(first) != series(second)
+    assert points(first.get_lines()[0]) == [pytest.approx(point) for point in ((1.0, 1e-2), (10.0, 1e-3))]
+    assert {panel.get_xlim() for panel in panels(figure)} == {first.get_xlim()}
+    assert {panel.get_ylim() for panel in panels(figure)} == {first.get_ylim()}
+    assert "no such joint: pymunk" in [text.get_text() for text in third.texts]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["pymunk", "MuJoCo"]
 
 
 def test_the_front_holds_what_nothing_beats_whatever_the_order():

@@ -278,8 +278,8 @@ def test_a_symptom_leads_to_a_section_that_is_there(symptom):
     assert not symptom.heading or place in {anchor(heading) for heading in headings(FILES[name])}
 
 
-_, SETTINGS = GUIDES
-BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_, _, SETTINGS = GUIDES
+BLOCK = re.compile(r"^```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SETTING = re.compile(r"`[^`\n]*`")  # to be pasted, or a release
 ADDRESS = re.compile(r"(?<=\])\([^)]*\)")
 FOOT = re.compile(r"^---\n.*", re.DOTALL | re.MULTILINE)

@@ -135,7 +135,7 @@ def test_the_naive_trailer_folds_half_a_second_late_at_both_steps():
     late = wheels.lateness(material)["late"]
     assert len(late) == 2
     assert all(0.4 < each < 0.7 for each in late)
-    told = {line.setting: line.outcome for line in wheels.folding(material) if line.method == "pymunk default"}
+    told = {line.setting: line.outcome for line in wheels.folding(material) if line.method == "pymunk naive"}
     exact = next(line for line in wheels.folding(material) if line.method == "the reference, coasting").outcome
     for outcome, each in zip(told.values(), late, strict=True):
         assert float(outcome.split()[0]) - float(exact.split()[0]) == pytest.approx(each, abs=2e-4)

@@ -23,6 +23,7 @@ from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.cli.commands import invoke
 from reports.model.ending import BadInput, FileTrouble
 from reports.model.tasks import answered
+from reports.plots.theme import LIGHT
 from reports.site import markdown
 from reports.site.animated import PAUSE, animation, film
 from reports.site.build import MARKER, build, reference_pages, tasks
@@ -324,17 +325,12 @@ def test_a_film_is_written(falling, tmp_path, monkeypatch):
         film(falling, "A title", tmp_path / "one.mp4")
 
 
-def test_the_picture_of_the_readme_is_small_and_moves():
-    (name,) = re.findall(r"!\[[^]]+\]\(([^)]+\.svg)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
-    text = (ROOT / name).read_text(encoding="utf-8")
-    assert len(text.encode()) < 500_000
-    ElementTree.fromstring(text)
-    take = take_like(FreeFourBar(), (("pymunk default", pymunk.DEFAULT, 1),))
-    again = animation(shown(take, {motion: answered(motion) for motion in take.motions().values()}), "")
-    # The truth is the last of its motions: it stands there as it would be drawn today.
-    last = len(re.findall(r"@keyframes m\d+b0{", text)) - 1
-    assert np.abs(keys(text, f"m{last}b0") - keys(again, "m1b0")).max() < 1e-2
-    assert np.abs(keys(text, "m0b0") - keys(again, "m0b0")).max() < 1e-2
+def test_an_animation_has_light_colours_in_a_viewer_that_knows_no_variables(falling):
+    text = animation(falling, "A title")
+    used = re.findall(r"(fill|stroke):var\(--(\w+)\)", text)
+    assert used
+    for kind, name in used:
+        assert f"{kind}:{getattr(LIGHT, name)};{kind}:var(--{name})" in text
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,6 @@ from reports.pages.engines.experiments import (
     FEW,
     FREE,
     FREQUENCIES,
-    MILLISECOND,
     MOVES,
     OPEN,
     PINS,
@@ -48,7 +47,7 @@ from reports.pages.engines.experiments import (
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.plots.work_precision import work_precision
 from reports.write.provenance import told_versions
-from reports.write.tables import NOTHING, markdown, milliseconds, number
+from reports.write.tables import NOTHING, markdown, number
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
@@ -96,22 +95,6 @@ def sentences(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, st
         for what in ASKED
         if (told := str(answer.values[what])) not in (YES, CONTACT, CODE)
     ]
-
-
-def free_table(material: Material) -> str:
-    """Every variant on the free four-bar at a step of a millisecond; empty without rows."""
-    rows = [row for row in rows_of(material, [FREE.name]) if row.every == MILLISECOND]
-    body = [
-        [
-            row.method,
-            number(row.angle) if Outcome(row.outcome).comparable else f"**{row.outcome}**",
-            *(number(getattr(row, name)) for name in ("gap", "energy", "reaction")),
-            milliseconds(row.cpu) if row.cpu > 0 else NOTHING,
-        ]
-        for row in sorted(rows, key=lambda row: missed(row, "angle"), reverse=True)
-    ]
-    header = ["method", "angle error [rad]", "gap [m]", "energy [relative]", "reaction [relative]", "CPU [ms/s]"]
-    return markdown(header, body) if body else ""
 
 
 def share_table(material: Material) -> str:
@@ -296,7 +279,6 @@ def words(material: Material) -> Mapping[str, Any]:
     return {
         "matrix": matrix(answers),
         "refused": sentences(answers),
-        "free": free_table(material),
         "shares": share_table(material),
         "pins": experiment_table(material, PINS, "gap closed as shipped at", pins),
         "substeps": experiment_table(

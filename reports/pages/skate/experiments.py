@@ -235,7 +235,7 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "A row that is a little late makes the growth a little too slow, and the sleigh turns round a little too "
             "late. MuJoCo's tendon at the predicted pose (`mujoco tuned`) is a little early instead. The naive "
-            "zeroing, which is `pymunk default` too, does not turn round at all: the simulation hides the instability."
+            "zeroing, which is `pymunk naive` too, does not turn round at all: the simulation hides the instability."
         ),
     ),
     Failure(
@@ -306,7 +306,7 @@ FAILURES: tuple[Failure, ...] = (
             "MuJoCo scales the softness of the row across by the square of their ratio, 1e-12 "
             "([engine_core_constraint.c](https://github.com/google-deepmind/mujoco/blob/main/src/engine/"
             "engine_core_constraint.c)). With equal coefficients it creeps; `noslip_iterations` takes nearly all of "
-            "that away. The naive zeroing (`pymunk default`) is right here, where nothing turns."
+            "that away. The naive zeroing (`pymunk naive`) is right here, where nothing turns."
         ),
     ),
     Failure(

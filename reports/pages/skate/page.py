@@ -117,8 +117,10 @@ CHARTED = (
     "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
 )
-# Beside the variants: "pymunk default" is the centre's velocity zeroed, "tuned" the groove that is predicted.
-LISTED = {*CHARTED, "pymunk skate: point's velocity zeroed"} - {"pymunk skate: groove, predicted heading"}
+# Beside the variants: "pymunk naive" is the centre's velocity zeroed, "tuned" the groove that is predicted.
+LISTED = {*CHARTED, "pymunk naive", "pymunk skate: point's velocity zeroed"} - {
+    "pymunk skate: groove, predicted heading"
+}
 
 
 def compared(scene: Scene, engine: Engine) -> bool:

@@ -125,7 +125,7 @@ FAILURES: tuple[Failure, ...] = (
         observations=folding,
         words=lateness,
         remark=(
-            "Ideal wheels go on through the fold; real bodies would touch. The naive zeroing (`pymunk default`, "
+            "Ideal wheels go on through the fold; real bodies would touch. The naive zeroing (`pymunk naive`, "
             "a user's trick and no part of pymunk) computes another vehicle: its trailer folds late{% filter "
             "if_measured %}, by {{ late[0] | number }} s at the larger step and {{ late[1] | number }} s at the "
             "smaller{% endfilter %}."

@@ -24,6 +24,7 @@ from reports.pages.skate.page import counted
 from reports.pages.wheels.experiments import FAILURES
 from reports.plots.plane_panels import Blades, Panel, Path, paths
 from reports.plots.theme import svg
+from reports.write.holders import told_variant
 
 # The straight tow starts square; the circular ones too, with the hitch on a circle of these radii [drawbar lengths].
 LENGTH = 1.0
@@ -158,7 +159,11 @@ def figures(material: Material) -> dict[str, str]:
     for title, scene, cells in COASTING:
         made = material.motions(cells.values())
         truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
-        found = {name: (made[cell].pose, *OVERLAID[name]) for name, cell in cells.items() if cell in made}
+        found = {
+            f"{cell.engine.name} {told_variant(scene, cell.engine)}": (made[cell].pose, *OVERLAID[name])
+            for name, cell in cells.items()
+            if cell in made
+        }
         panels.append(coasting(truth, found, title))
     return {
         "coasting": svg(paths(panels, columns=2), "Paths of the centres of mass, in truth and in several methods"),

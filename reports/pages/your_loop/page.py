@@ -87,6 +87,12 @@ def table(material: Material, cases: tuple[Case, ...], heads: tuple[str, ...]) -
     return markdown(["at 1 ms", *heads, "CPU [ms/s]"], body, left=1) if known else ""
 
 
+def error_at(material: Material, case: Case, engine: Engine) -> Any:
+    """The error of a case that can be compared, else UNMEASURED."""
+    row = material.rows.get(cell(case, engine))
+    return getattr(row, case.quantity) if row is not None and Outcome(row.outcome).comparable else UNMEASURED
+
+
 def aimed(engine: str) -> str:
     """What our code does before each step of a skate, from the program that a test runs."""
     source = program(PAGES / "skate" / "programs", f"{engine} tuned")
@@ -106,7 +112,11 @@ def words(material: Material) -> Mapping[str, Any]:
         "lines": {path.stem: path.read_text(encoding="utf-8").rstrip() for path in sorted(LINES.iterdir())},
         "aimed": {engine: aimed(engine) for engine in ("mujoco", "pymunk")},
         "reactions": {engine: UNMEASURED if row is None else row.reaction for engine, row in rows.items()},
-        "before_term": old[0] if old else UNMEASURED,
+        "linkage": {
+            "mujoco": [error_at(material, MUJOCO[0], engine) for engine in (mujoco.DEFAULT, mujoco.TUNED)],
+            "pymunk": [error_at(material, PYMUNK[0], engine) for engine in (pymunk.DEFAULT, pymunk.LEAPFROG)],
+        },
+        "before_term": old[0] if old and rows["mujoco"] is not None else UNMEASURED,
     }
 
 
