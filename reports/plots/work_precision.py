@@ -111,8 +111,8 @@ def work_precision(
     The front is that of all rows, also of those that are not featured as series: those stand as small grey dots.
     """
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
-    scenes = _with_lines(rows)
     shown = [row for row in rows if featured(row)]
+    scenes = _with_lines(shown or rows)
     variants = _shown_variants(shown)
     with settings():
         figure, panels = _panels(scenes, theme, 3.6)
