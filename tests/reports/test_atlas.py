@@ -242,7 +242,7 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
     for words in (
         "Not run yet: A four-bar driven fast;",
         "was not measured with this run",
-        "Run were 2 of these 4 points",
+        "2 of 4 points were run",
     ):
         assert words in text()
 
