@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -72,6 +73,22 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]], theme: T
     }
 
 
+# Errors in maps and tables by their bounds, each darker than the last on light paper: no failure is friendlier.
+SHADES = ((1e-9, "exact"), (1e-6, "fine"), (1e-4, "good"), (1e-2, "fair"), (math.inf, "middling"))
+SHADE_NAMES = {
+    "exact": "error below 1e-9",
+    "fine": "below 1e-6",
+    "good": "below 1e-4",
+    "fair": "below 1e-2",
+    "middling": "1e-2 or more",
+}
+
+
+def shade(error: float) -> str:
+    """The role of an error's colour; an unknown one is told by no smaller bound than the largest."""
+    return next((role for bound, role in SHADES if error < bound), "middling")
+
+
 HATCHES = {
     Outcome.UNRESOLVED: "oo",
     Outcome.SATURATED: "..",
@@ -85,13 +102,11 @@ HATCHES = {
 
 
 def outcome_colour(outcome: Outcome, theme: Theme) -> str:
-    """The colour of a cell of a map that ended so."""
+    """The colour of a cell of a map that ended so, where its error is not told (`shade`)."""
     match outcome:
-        case Outcome.FINISHED | Outcome.CONVERGED:
-            return theme.good
-        case Outcome.PLATEAU | Outcome.UNRESOLVED | Outcome.SATURATED | Outcome.BRANCH_FLIP:
+        case Outcome.FINISHED | Outcome.CONVERGED | Outcome.PLATEAU | Outcome.UNRESOLVED:
             return theme.middling
-        case Outcome.TORN | Outcome.DIVERGED | Outcome.RESET:
+        case Outcome.SATURATED | Outcome.BRANCH_FLIP | Outcome.TORN | Outcome.DIVERGED | Outcome.RESET:
             return theme.bad
         case Outcome.UNSUPPORTED | Outcome.REFUSED:
             return theme.grid

@@ -33,7 +33,10 @@ class Theme:
     sixth: str
     seventh: str
     eighth: str
+    exact: str
+    fine: str
     good: str
+    fair: str
     middling: str
     bad: str
     worse: str
@@ -52,9 +55,12 @@ LIGHT = Theme(
     sixth="#94610a",
     seventh="#b8336a",
     eighth="#55606e",
-    good="#dcefe0",
-    middling="#f0cb62",
-    bad="#e8947b",
+    exact="#eaf6ee",
+    fine="#cfe9d7",
+    good="#b3dcc0",
+    fair="#c9cd66",
+    middling="#e0ab3a",
+    bad="#de8468",
     worse="#9f8ac6",
 )
 DARK = Theme(
@@ -70,8 +76,11 @@ DARK = Theme(
     sixth="#e6b84a",
     seventh="#f78bb6",
     eighth="#b9c3ce",
-    good="#1c4130",
-    middling="#6b5617",
+    exact="#12291c",
+    fine="#1a4630",
+    good="#226340",
+    fair="#55601a",
+    middling="#7a5a12",
     bad="#ac4831",
     worse="#55437f",
 )

@@ -122,8 +122,8 @@ def work_precision(
     A series never runs backwards: see `forwards`.
     """
     rows = [row for row in drawable(rows, field) if row.cpu > 0]
-    scenes = _with_lines(rows)
     shown = [row for row in rows if featured(row)]
+    scenes = _with_lines(shown or rows)
     variants = _shown_variants(shown)
     with settings():
         figure, panels = _panels(scenes, theme, 3.6)
@@ -161,10 +161,10 @@ def error_against_step(
         for panel, scene in zip(panels, scenes, strict=True):
             here = [row for row in rows if row.scene == scene]
             for (_, engine, variant), members in groups(here).items():
-                series = [(row.step, getattr(row, field)) for row in members]
+                series = [(1e3 * row.step, getattr(row, field)) for row in members]
                 panel.plot(*zip(*series, strict=True), zorder=3, **look(engine, variant, variants, theme))
             panel.axhspan(1e-16, quantity(field).rounding, color=theme.grid, alpha=0.45, linewidth=0, zorder=0)
-            panel.set_xlabel("step [s]")
+            panel.set_xlabel("step [ms]")
             if panels.index(panel) % COLUMNS == 0:
                 panel.set_ylabel(f"largest {quantity(field).label} error [{quantity(field).unit}]")
         for panel in panels:

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engines.registry import ENGINES, OTHERS
@@ -37,76 +36,37 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
 }  # fmt: skip
 RARE = 0.01  # of all cases: reasons that came up less often are counted together
 LEAST, MOST = 1e-17, 1e2  # what an error of exactly zero, and one without a number, is drawn at
-ACROSS = 3  # panels side by side
-LINE, BETWEEN = 0.19, 0.55  # inches: a line, and what a row of panels takes besides
-
-Errors = Mapping[str, Mapping[str, Sequence[float]]]  # by subject, by kind
+LINE = 0.24  # inches
 
 
 def distribution(told: Iterable[Asked], theme: Theme = LIGHT) -> Figure | None:
-    """Median to worst error; None where no law of an instant was asked."""
-    found, vocabulary = _errors(told)
+    """A line a subject, from the median to the worst error of its law of an instant; None where none was asked."""
+    found: dict[str, list[float]] = {}
+    for one in told:
+        for law in LAWS:
+            if law in one.told.errors:
+                found.setdefault(one.chunk.subject.name, []).append(one.told.errors[law][0])
     if not found:
         return None
-    rows: list[tuple[list[str], list[str]]] = []  # (subjects, kinds) of a row of panels: those of one vocabulary
-    for kinds in dict.fromkeys(vocabulary.values()):
-        own = [name for name in found if vocabulary[name] == kinds]
-        for first in range(0, len(own), ACROSS):
-            beside = own[first : first + ACROSS]
-            rows.append((beside, [kind for kind in kinds if any(kind in found[name] for name in beside)]))
-    heights = [BETWEEN + LINE * len(kinds) for _, kinds in rows]
     with settings():
-        figure = new_figure(0.5 + sum(heights), theme)
-        grid = figure.add_gridspec(len(rows), ACROSS, height_ratios=heights)
-        for row, (names, kinds) in enumerate(rows):
-            for column, name in enumerate(names):
-                axes = figure.add_subplot(grid[row, column])
-                _panel(axes, name, found[name], kinds, theme)
-                axes.tick_params(labelleft=column == 0)
-        figure.supxlabel(
-            "relative error; mark: median, bar: 99 %, dot: worst; dashed: $10^{-9}$; right: cases", size=8.5
-        )
+        figure = new_figure(0.9 + LINE * len(found), theme, 7.0)
+        axes = figure.subplots()
+        style_axes(axes, theme)
+        axes.grid(False, axis="y")
+        for place, errors in enumerate(found.values()):
+            ordered = np.sort(np.clip(np.nan_to_num(errors, posinf=MOST), LEAST, MOST))
+            median, most = ordered[len(ordered) // 2], ordered[math.ceil(0.99 * (len(ordered) - 1))]
+            axes.plot([median, ordered[-1]], [place, place], color=theme.first, linewidth=1.2)
+            for value, mark, size in ((median, "o", 5), (most, "|", 8), (ordered[-1], ".", 6)):
+                axes.plot([value], [place], mark, color=theme.first, markersize=size)
+        axes.axvline(1e-9, color=theme.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
+        axes.set_yticks(range(len(found)), [f"{name} ({len(errors)})" for name, errors in found.items()])
+        axes.set_ylim(len(found) - 0.4, -0.6)
+        axes.set_xscale("log")
+        axes.set_xlim(LEAST / 3, MOST)
+        axes.set_xlabel("relative error; circle: median, bar: 99 %, dot: worst; (cases)")
+        axes.minorticks_off()
     return figure
-
-
-def _errors(told: Iterable[Asked]) -> tuple[dict[str, dict[str, list[float]]], dict[str, tuple[str, ...]]]:
-    """Errors by subject and kind, and the kinds that each subject knows."""
-    found: dict[str, dict[str, list[float]]] = {}
-    vocabulary: dict[str, tuple[str, ...]] = {}
-    for one in told:
-        subject = one.chunk.subject
-        for check in LAWS:
-            if check in one.told.errors:
-                vocabulary[subject.name] = subject.kinds
-                for kind in one.kinds:
-                    found.setdefault(subject.name, {}).setdefault(kind, []).append(one.told.errors[check][0])
-    return found, vocabulary
-
-
-def _panel(axes: Axes, name: str, found: Mapping[str, Sequence[float]], kinds: Sequence[str], theme: Theme) -> None:
-    style_axes(axes, theme)
-    axes.grid(False, axis="y")
-    for place, kind in enumerate(kinds):
-        if kind not in found:
-            continue
-        errors = np.sort(np.clip(np.nan_to_num(found[kind], posinf=MOST), LEAST, MOST))
-        median, most = errors[len(errors) // 2], errors[math.ceil(0.99 * (len(errors) - 1))]
-        axes.plot([median, errors[-1]], [place, place], color=theme.first, linewidth=1.2)
-        axes.plot([median], [place], "o", color=theme.first, markersize=4)
-        axes.plot([most], [place], "|", color=theme.first, markersize=7)
-        axes.plot([errors[-1]], [place], ".", color=theme.first, markersize=4)
-        axes.text(
-            1.0, place, str(len(errors)), transform=axes.get_yaxis_transform(), ha="right", va="center",
-            size=6.5, color=theme.quiet,
-        )  # fmt: skip
-    axes.axvline(1e-9, color=theme.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
-    axes.set_title(name, color=theme.ink)
-    axes.set_yticks(range(len(kinds)), kinds)
-    axes.set_ylim(len(kinds) - 0.4, -0.6)
-    axes.set_xscale("log")
-    axes.set_xlim(LEAST / 3, MOST * 3e3)  # room for the number of cases
-    axes.set_xticks([1e-16, 1e-12, 1e-8, 1e-4, 1.0])
-    axes.minorticks_off()
 
 
 def known_subjects(words: Sequence[str]) -> list[Subject]:
@@ -143,7 +103,7 @@ def files(
     if not told:
         return {}
     picture = distribution(told)
-    out = {} if picture is None else {"search_errors.svg": svg(picture, "Errors by engine and kind of joint")}
+    out = {} if picture is None else {"search_errors.svg": svg(picture, "Errors by engine")}
     page = {
         "cases": len(told),
         "planned": max(planned, len(told)),

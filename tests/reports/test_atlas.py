@@ -38,7 +38,7 @@ from reports.pages.atlas.table import (
     read_costs,
 )
 from reports.pages.rendering import render_page
-from reports.plots.looks import HATCHES, outcome_colour
+from reports.plots.looks import HATCHES, SHADE_NAMES, SHADES, outcome_colour, shade
 from reports.plots.theme import LIGHT
 from reports.run.store import Store
 from tests import RESULTS
@@ -203,21 +203,21 @@ def test_regions_lie_where_the_cells_of_their_outcome_are():
     across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
     painted = [patch for patch in panel.patches if isinstance(patch, PathPatch) and patch.get_fill()]
     for column, own in enumerate(LINES[:2]):
-        for row, outcome in enumerate(own.told[::-1]):
+        for row, end in enumerate(page.ends(own)[::-1]):
             middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
             colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
-            assert colours[0] == outcome_colour(outcome, LIGHT)
+            assert colours[0] == (getattr(LIGHT, end) if end in SHADE_NAMES else outcome_colour(end, LIGHT))
     assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
 
 
 def test_the_largest_step_is_below_its_bound_at_every_value_and_smaller_step():
     inf = float("inf")
-    assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "0.013"
-    assert page.largest_step([line(1.0, "·S··")], inf) == "0.025"
+    assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "12 ms"
+    assert page.largest_step([line(1.0, "·S··")], inf) == "25 ms"
     assert page.largest_step([line(1.0, "···T")], inf) == "-"
     # 0.1 and 0.01 rad, one that was not run and counts as the one before, 0.001 rad.
     own = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
-    assert [page.largest_step([own], bound) for bound in (inf, 0.011, 0.01, 1e-4)] == ["0.1", "0.05", "0.013", "-"]
+    assert [page.largest_step([own], bound) for bound in (inf, 0.011, 0.01, 1e-4)] == ["100 ms", "50 ms", "12 ms", "-"]
     assert page.agreement(
         [line(1.0, "TT··", gives=0.1), line(2.0, "TT··", gives=0.3), line(3.0, "····", gives=0.1)]
     ) == (
@@ -242,7 +242,7 @@ def test_the_page_is_written_without_any_part_and_with_each(monkeypatch):
     for words in (
         "Not run yet: A four-bar driven fast;",
         "was not measured with this run",
-        "Run were 2 of these 4 points",
+        "2 of 4 points were run",
     ):
         assert words in text()
 
@@ -282,12 +282,22 @@ def test_unknown_maps_are_refused_in_a_line(words, monkeypatch, tmp_path, capsys
 def test_no_two_failures_look_and_read_alike():
     failed = [outcome for outcome in Outcome if not outcome.comparable]
     assert len({outcome.letter for outcome in failed}) == len(failed)
-    fine, *colours = (
-        {outcome_colour(outcome, LIGHT) for outcome in Outcome if outcome.comparable == good} for good in (True, False)
-    )
-    assert fine == {LIGHT.good, LIGHT.middling}
-    assert LIGHT.good not in colours[0]
     assert len(set(HATCHES.values())) == len(HATCHES)
+
+
+def test_an_error_has_the_shade_of_its_bound_and_no_failure_is_friendlier_than_a_large_error():
+    for bound, role in SHADES[:-1]:
+        assert [shade(0.99 * bound), shade(bound) == role] == [role, False]
+    assert shade(math.inf) == shade(math.nan) == "middling"
+
+    def brightness(colour: str) -> float:
+        return float(np.dot([0.2126, 0.7152, 0.0722], [int(colour[i : i + 2], 16) for i in (1, 3, 5)]))
+
+    # On light paper and in grey: the worse, the darker.
+    shades = [brightness(getattr(LIGHT, role)) for role in SHADE_NAMES]
+    assert shades == sorted(shades, reverse=True)
+    lost = (outcome for outcome in Outcome if outcome in HATCHES and outcome is not Outcome.UNRESOLVED)
+    assert all(brightness(outcome_colour(outcome, LIGHT)) < shades[-1] for outcome in lost)
 
 
 def test_sweeps_are_told_of_engines_that_sweep_by_a_number_alone():

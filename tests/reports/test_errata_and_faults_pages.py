@@ -29,7 +29,7 @@ from reports.model.tasks import answered
 from reports.pages.errata import experiments as referees
 from reports.pages.errata.experiments import CONFIRMED, REFEREES, TASKS, Ruling, Window, rulings
 from reports.pages.errata.page import PAGE as ERRATA_PAGE
-from reports.pages.errata.page import SNIPPETS, digits, table
+from reports.pages.errata.page import SNIPPETS, digits, verdict
 from reports.pages.faults import experiments, scripts
 from reports.pages.faults.experiments import CASES, KINDS, Equalities, Grooves
 from reports.pages.faults.page import FAULTS, PAGE, SCRIPTS
@@ -318,21 +318,16 @@ def test_the_acceleration_in_rolling_is_right_as_printed_and_not_with_the_other_
     assert values.miss > 1  # twice the rolling term, 2 w^2 a b / (a + b)
 
 
-def test_a_table_tells_by_how_much_each_formula_misses_what_decides_for_each_engine():
+def test_a_verdict_tells_by_how_much_each_formula_misses_what_decides_and_engines():
     erratum = ERRATA[0]
     computed = Values(np.array([3.0]), np.array([1.0]), np.array([1.25]))
-    measured = Values(np.array([3.0]), np.array([1.0]), np.array([1.5]))
-    lines = [
-        [cell.strip() for cell in line.split("|")[1:-1]]
-        for line in table(erratum, computed, [Ruling(erratum.number, "toy", "a wheel", measured)]).splitlines()
-    ]
-    assert lines[0][1:] == [f"value [{erratum.unit}]", "the printed one misses by", "the right one misses by"]
-    assert lines[2:] == [
-        ["as printed", "3", "1.8", ""],
-        ["as it must be", "1", "", "0.25"],
-        [f"**decides**: {erratum.deciding}", "1.25", "", ""],
-        ["toy: a wheel", "1.5", "1.5", "0.5"],
-    ]
+    measured = [Values(np.array([3.0]), np.array([1.0]), np.array([value])) for value in (1.5, 1.4)]
+    told = verdict(erratum, computed, [Ruling(erratum.number, "toy", "a wheel", values) for values in measured])
+    assert f": 1.25 {erratum.unit}. The printed formula misses it by 1.8, the right one by 0.25." in told
+    assert told.endswith(
+        "(toy; a wheel): the printed one misses their motion by 1.5 or more, the right one by 0.5 at most."
+    )
+    assert verdict(erratum, computed, []).endswith("by 0.25.")
 
 
 def test_the_command_prints_every_slip_once(capfd):

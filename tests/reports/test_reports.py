@@ -24,6 +24,7 @@ from reports.model.cells import QUICK, Cell, sweep_cells
 from reports.model.measure import measure
 from reports.model.page import Failure, Material, Observation, Page
 from reports.pages.rendering import render_all
+from reports.plots.looks import SHADE_NAMES
 from reports.plots.theme import DARK, LIGHT, SERIES
 from tests.committed_rows import stale
 from tests.reports import test_any_rows as rendering
@@ -122,7 +123,8 @@ def test_ink_can_be_read_on_every_paper_it_stands_on(theme):
         return (high + 0.05) / (low + 0.05)
 
     # Contrast as the web content guidelines define it: 4.5 for text, 3 for lines and marks.
-    for ground in (theme.paper, theme.good, theme.middling, theme.bad, theme.worse, theme.grid):
+    shades = (getattr(theme, role) for role in SHADE_NAMES)
+    for ground in (theme.paper, *shades, theme.bad, theme.worse, theme.grid):
         assert contrast(theme.ink, ground) >= 4.5
     for mark in (*(getattr(theme, name) for name in SERIES), theme.quiet):
         assert contrast(mark, theme.paper) >= 3

@@ -19,16 +19,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.subjects import SUBJECTS, Subject
 from reports.pages.atlas.table import CELLS, COSTS, Costs, Line, read, read_costs
-from reports.plots.looks import HATCHES, outcome_colour
+from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.cluster import CHUNK
-from reports.write.tables import markdown, number
+from reports.write.tables import markdown, number, step_words
 
 FOLDER = Path(__file__).parents[2] / "results"
 MANY = 1_000_000  # cells whose cost is told
@@ -71,7 +71,12 @@ def outcome_table(own: Sequence[Line]) -> str:
         shares = [f"{100 * told.count(outcome) / len(told):.0f} %" for outcome in met]
         lines_of = [line for line in own if line.method == name]
         body.append([name, *shares, *(largest_step(lines_of, bound) for bound in BOUNDS)])
-    header = ["method", *map(str, met), "step [s] at which all finish", *(f"all below {b:g} rad" for b in BOUNDS[1:])]
+    header = [
+        "method",
+        *map(str, met),
+        "step at which all finish",
+        *(f"all below {number(b, 1)} rad" for b in BOUNDS[1:]),
+    ]
     return markdown(header, body)
 
 
@@ -87,7 +92,7 @@ def largest_step(own: Sequence[Line], bound: float) -> str:
             line.told[place].comparable and errors[place] < bound for line, errors in zip(own, worst, strict=True)
         ):
             break
-        found = number(step)
+        found = step_words(step)
     return found or "-"
 
 
@@ -201,7 +206,7 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
     columns = min(2, len(methods)) or 1
     count = -(-len(methods) // columns) or 1
     drawn: set[str] = set()
-    met: set[Outcome] = set()
+    met: set[Outcome | str] = set()
     with settings():
         figure = new_figure(2.9 * count + 1.1, theme)
         axes = figure.subplots(count, columns, squeeze=False, sharex=True, sharey=True).ravel()
@@ -212,27 +217,32 @@ def atlas_map(subject: Subject, lines: Sequence[Line], theme: Theme = LIGHT) -> 
             style_axes(panel, theme, grid=False)
             panel.set_title(fill(method, 30), loc="left", fontweight="bold", color=theme.ink)
             panel.set_yscale("log")
-            if not subject.whole:
+            if subject.whole:
+                panel.xaxis.set_major_locator(MaxNLocator(integer=True))
+            else:
                 panel.set_xscale("log")
             # Of few decades, ticks between them too.
             decades = math.log10(own[0].steps[0] / own[0].steps[-1])
             panel.yaxis.set_major_locator(LogLocator(10, (1.0,) if decades > WIDE else (1.0, 2.0, 5.0)))
-            panel.yaxis.set_major_formatter(FuncFormatter(lambda step, _: number(step)))
+            panel.yaxis.set_major_formatter(FuncFormatter(lambda step, _: number(1e3 * step)))
             panel.yaxis.set_minor_formatter(NullFormatter())
             met |= _regions(panel, own, subject.whole, theme)
             drawn |= _explained(panel, own, subject, theme)
             panel.set_xlabel(subject.parameter if index + columns >= len(methods) else "")
-            panel.set_ylabel("step [s]" if index % columns == 0 else "")
+            panel.set_ylabel("step [ms]" if index % columns == 0 else "")
+        failures = [outcome for outcome in Outcome if outcome in met]
+        shades = [role for role in SHADE_NAMES if role in met]
         # A hatch apart from its ground: in one patch its colours would not follow the reader's scheme.
         handles: list[Any] = [
             (
                 Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), edgecolor=theme.quiet),
                 Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, hatch=HATCHES.get(outcome)),
             )
-            for outcome in Outcome
-            if outcome in met
+            for outcome in failures
         ]
-        names = [str(outcome) for outcome in Outcome if outcome in met]
+        faces = (getattr(theme, role) for role in shades)
+        handles = [*(Rectangle((0, 0), 1, 1, facecolor=face, edgecolor=theme.quiet) for face in faces), *handles]
+        names = [*(SHADE_NAMES[role] for role in shades), *map(str, failures)]
         words = {
             "fastest": f"2 / frequency of {subject.fastest}",
             "gives": "from here on the method's own softness tears a joint",
@@ -256,25 +266,33 @@ def edges(values: Sequence[float], whole: bool) -> np.ndarray:
     return borders if whole else np.exp(borders)
 
 
-def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> set[Outcome]:
-    """One shape an outcome: the cells of a column that follow one another are one rectangle of it."""
+def ends(line: Line) -> list[Outcome | str]:
+    """What became of each step: the shade of its error, or the outcome that is no answer."""
+    return [
+        shade(error) if outcome.comparable else outcome
+        for outcome, error in zip(line.told, _carried(line), strict=True)
+    ]
+
+
+def _regions(panel: Axes, lines: Sequence[Line], whole: bool, theme: Theme) -> set[Outcome | str]:
+    """One shape an end: the cells of a column that follow one another are one rectangle of it."""
     across = edges([line.value for line in lines], whole)
-    shapes: dict[Outcome, list[tuple[float, float, float, float]]] = {}
+    shapes: dict[Outcome | str, list[tuple[float, float, float, float]]] = {}
     for line, (left, right) in zip(lines, pairwise(across), strict=True):
-        up, told = edges(line.steps[::-1], False), line.told[::-1]
+        up, told = edges(line.steps[::-1], False), ends(line)[::-1]
         begin = 0
         for place in range(1, len(told) + 1):
             if place == len(told) or told[place] != told[begin]:
                 shapes.setdefault(told[begin], []).append((left, right, up[begin], up[place]))
                 begin = place
-    for outcome, boxes in shapes.items():
+    for end, boxes in shapes.items():
         corners = [[(a, c), (b, c), (b, d), (a, d), (a, c)] for a, b, c, d in boxes]
         codes = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY] * len(boxes)
         path = Outline(np.array(corners).reshape(-1, 2), codes)
-        face = outcome_colour(outcome, theme)
+        face = outcome_colour(end, theme) if isinstance(end, Outcome) else getattr(theme, end)
         # The thin line of the same colour closes the seams between columns.
         panel.add_patch(PathPatch(path, facecolor=face, edgecolor=face, linewidth=0.4))
-        if hatch := HATCHES.get(outcome):
+        if isinstance(end, Outcome) and (hatch := HATCHES.get(end)):
             panel.add_patch(PathPatch(path, facecolor="none", edgecolor=theme.quiet, linewidth=0, hatch=hatch))
     panel.set_xlim(across[0], across[-1])
     upwards = edges(lines[0].steps[::-1], False)

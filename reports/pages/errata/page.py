@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from reference.chapter.errata.catalogue import ERRATA, WORD_SLIPS, Erratum, Valu
 from reference.chapter.errata.rolling_and_skates import rolling_acceleration
 from reports.model.page import Material, Page
 from reports.pages.errata.experiments import CONFIRMED, QUESTIONS, TASKS, Ruling, rulings
-from reports.write.tables import markdown, number
+from reports.write.tables import number
 
 NAME = "errata"
 SNIPPETS = "errata/snippets"
@@ -29,24 +29,24 @@ class Told:
     """A slip ready for the template."""
 
     erratum: Erratum
-    table: str
-    snippet: str  # file beside the template
+    verdict: str
+    script: str  # its file
 
 
-def table(erratum: Erratum, values: Values, said: Iterable[Ruling]) -> str:
-    """The formulas against the derivative that decides, and against each engine's own motion."""
-    body = [
-        ["as printed", digits(values.printed), number(values.miss), ""],
-        ["as it must be", digits(values.right), "", number(values.agreement)],
-        [f"**decides**: {erratum.deciding}", digits(values.decides), "", ""],
-    ]
-    for ruling in said:
-        found = ruling.values
-        body.append(
-            [f"{ruling.method}: {ruling.about}", digits(found.decides), number(found.miss), number(found.agreement)]
-        )
-    header = ["", f"value [{erratum.unit}]", "the printed one misses by", "the right one misses by"]
-    return markdown(header, body)
+def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
+    """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
+    told = (
+        f"{erratum.deciding[0].upper()}{erratum.deciding[1:]}: {digits(values.decides)} {erratum.unit}. The printed "
+        f"formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
+    )
+    if not said:
+        return told
+    least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
+    methods = ", ".join(dict.fromkeys(ruling.method for ruling in said))
+    return (
+        f"{told} Engines ({methods}; {said[0].about}): the printed one misses their motion by {number(least)} or more, "
+        f"the right one by {number(most)} at most."
+    )
 
 
 def words(material: Material) -> Mapping[str, Any]:
@@ -56,8 +56,8 @@ def words(material: Material) -> Mapping[str, Any]:
     told = [
         Told(
             erratum,
-            table(erratum, erratum.values(), [ruling for ruling in said if ruling.number == erratum.number]),
-            f"{SNIPPETS}/slip_{erratum.number:02}.py",
+            verdict(erratum, erratum.values(), [ruling for ruling in said if ruling.number == erratum.number]),
+            f"reports/pages/{SNIPPETS}/slip_{erratum.number:02}.py",
         )
         for erratum in ERRATA
     ]
@@ -75,8 +75,9 @@ def words(material: Material) -> Mapping[str, Any]:
 
 PAGE = Page(
     name=NAME,
-    title="Errata",
-    lesson="The chapter's printed slips, each decided by a derivative, by engines, and by a few lines to run.",
+    title="Errata of the chapter",
+    lesson="Printed slips of section 18.5 of a textbook, *advanced kinematics of planar motion*: each decided by a "
+    "derivative, by engines, and by a few lines to run.",
     scenes=(),
     engines=(),
     companions=tuple(question.companion for question in QUESTIONS.values()),

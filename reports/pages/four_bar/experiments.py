@@ -166,8 +166,8 @@ FAILURES: tuple[Failure, ...] = (
         cells=cells(SpinningFourBar(), SWEEPS, (1, 10, 100)),
         remark=(
             "Where the whole gap is closed in every step, the speed of the correction is the gap over the step. So "
-            "what the sweeps leave grows as the step shrinks: two sweeps are enough at 1e-3 s, and tear the loop at "
-            "1e-4 s."
+            "what the sweeps leave grows as the step shrinks: two sweeps are enough at 1 ms, and tear the loop at "
+            "0.1 ms."
         ),
     ),
     Failure(
@@ -176,7 +176,7 @@ FAILURES: tuple[Failure, ...] = (
         cells=cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
         remark=(
             "MuJoCo as shipped has two errors here: Euler's, which falls with the step, and that of a soft loop, "
-            "which does not. At 1e-3 s they happen to cancel, so a user who takes a smaller step sees the answer "
+            "which does not. At 1 ms they happen to cancel, so a user who takes a smaller step sees the answer "
             'become worse{% filter if_measured %}: {{ at("mujoco default", 1e-3).angle | number }} rad there, '
             '{{ at("mujoco default", 1e-4).angle | number }} rad at a tenth of that step{% endfilter %}. The smaller '
             "error was luck; the plateau is the model."

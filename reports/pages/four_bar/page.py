@@ -20,6 +20,7 @@ from reports.pages.versions.page import table
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
 from reports.write.rows import lookups
+from reports.write.tables import step_words
 from reports.write.unmeasured import UNMEASURED
 
 NAME = "four_bar"
@@ -45,12 +46,12 @@ def figures(material: Material) -> dict[str, str]:
     found = material.motions(POSED.values())
     truth = scene.motion(np.arange(PARTS + 1) * scene.duration / PARTS)
     others = {
-        f"{name}, step {cell.step:.2g} s": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
+        f"{name}, step {step_words(cell.step)}": (found[cell].pose[::SAMPLES_A_PART], *OVERLAID[name])
         for name, cell in POSED.items()
         if cell in found
     }
     titles = [f"$t_{i}$ = {t:.3f} s" for i, t in enumerate(truth.t)]
-    figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others)
+    figure = drawings.configurations(scene.mechanism(), truth.pose, titles, others, columns=5)
     return {"configurations": svg(figure, "The nine configurations of Fig. 18.66, from the closed form")}
 
 

@@ -44,7 +44,7 @@ FAILURES: tuple[Failure, ...] = (
             "way. The error falls neither with the step nor with a better integrator. A user with an inaccurate closed "
             "loop was told that the defaults are fairly soft and to make the equality constraints stiffer "
             "([mujoco#2172](https://github.com/google-deepmind/mujoco/issues/2172)). Another reports a loop that "
-            "breaks at a step of 5e-4 s with a thousand iterations "
+            "breaks at a step of 0.5 ms with a thousand iterations "
             "([mujoco#2698](https://github.com/google-deepmind/mujoco/issues/2698)). Neither speaks of a singular "
             "position, and both are older than MuJoCo 3.7, whose loops have the velocity term that was missing before "
             "([changelog](https://mujoco.readthedocs.io/en/stable/changelog.html))."

@@ -181,13 +181,13 @@ FAILURES: tuple[Failure, ...] = (
         remark=(
             "The impulse of one joint moves the light link, and undoes what its neighbour's did. A sweep removes only "
             "about $1 / r$ of the error, where $r$ is the ratio of the masses, so even a thousand sweeps are too few. "
-            "Ten sweeps, the number as shipped, are worse if they close all of the gap. At 1e-3 s and below pymunk "
-            "finishes, as shipped and tuned. A thousand sweeps that close all of the gap fail at 1e-4 s. The extended "
+            "Ten sweeps, the number as shipped, are worse if they close all of the gap. At 1 ms and below pymunk "
+            "finishes, as shipped and tuned. A thousand sweeps that close all of the gap fail at 0.1 ms. The extended "
             "variant is run at the largest step alone, and says that its error is not resolved: at the others a run "
             "takes up to four minutes. MuJoCo's PGS is a sweep too. In free "
             "coordinates the extended variant tears or starts anew with it at each step: it divides the regularisation "
             "by 1e8, far beyond what `solimp` admits, and stops after 100 sweeps. With the documented stiffness and "
-            "10000 sweeps PGS finishes at 1e-3 s. MuJoCo's Newton solver factorises a matrix, and needs a step that "
+            "10000 sweeps PGS finishes at 1 ms. MuJoCo's Newton solver factorises a matrix, and needs a step that "
             "follows the oscillation. So does the tree, which has the ratio in its mass matrix and has no rows. A user "
             "with a weak chain was told to raise the iterations or to take reduced coordinates "
             "([PhysX#308](https://github.com/NVIDIAGameWorks/PhysX/issues/308))."
@@ -226,7 +226,7 @@ FAILURES: tuple[Failure, ...] = (
         observations=divergence,
         remark=(
             "The best that a method can reach is 1e-12 times the growth. At 12 s the methods of first order, pymunk "
-            "tuned among them, are lost at both steps. Those of higher order are still right at 1e-3 s{% filter "
+            "tuned among them, are lost at both steps. Those of higher order are still right at 1 ms{% filter "
             "if_measured %}, to {{ worst | number }} rad or better{% endfilter %}, since their smaller error needs "
             "more time to grow. One can ask only up to a certain time whether a simulation of a chaotic motion is "
             "right, and that time is part of the scene."

@@ -52,9 +52,9 @@ FAILURES: tuple[Failure, ...] = (
             "nobody sways for longer than that. If a simulated body without muscles stands, then because of the "
             "simulation's softness, friction or rounding. The errors grow with the same mode{% filter if_measured %}: "
             "pymunk as shipped, of first order, is off by "
-            '{{ at("pymunk default", 1e-2).angle | number }} rad at 1e-2 s, by '
-            '{{ at("pymunk default", 1e-3).angle | number }} rad at 1e-3 s and by '
-            '{{ at("pymunk default", 1e-4).angle | number }} rad at 1e-4 s{% endfilter %}.'
+            '{{ at("pymunk default", 1e-2).angle | number }} rad at 10 ms, by '
+            '{{ at("pymunk default", 1e-3).angle | number }} rad at 1 ms and by '
+            '{{ at("pymunk default", 1e-4).angle | number }} rad at 0.1 ms{% endfilter %}.'
         ),
     ),
     Failure(

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 
 from engines import Engine
 from engines.mujoco import methods as mujoco_methods
@@ -30,11 +29,10 @@ from reference.scenes.rolling.scenes import (
     RollingScene,
 )
 from reports.model.checks import Deviation
-from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.rolling import drawings as rolling_drawings
-from reports.pages.rolling.experiments import FAILURES, polygon_cells, softness_cells
+from reports.pages.rolling.experiments import FAILURES, polygon_cells
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.write.rows import Rows, lookups
 from reports.write.unmeasured import Known
@@ -123,47 +121,6 @@ def draw_friction(scenes: Sequence[RollingScene], theme: Theme = LIGHT) -> Figur
     return figure
 
 
-def draw_plateaus(
-    corners: Sequence[tuple[int, Measurement]], softness: Sequence[tuple[float, Measurement]], theme: Theme = LIGHT
-) -> Figure:
-    """Errors that stay whatever the step: of a polygon by its corners, of a contact by its time constant [s]."""
-    with settings():
-        figure = new_figure(3.6, theme)
-        left, right = figure.subplots(1, 2)
-        _by_step(left, corners, theme)
-        numbers = sorted({float(x) for line in left.lines for x in line.get_xdata()})
-        left.set_xticks(numbers, [f"{number:g}" for number in numbers])
-        left.xaxis.set_minor_locator(NullLocator())
-        _axes(left, theme, "an ellipse as a polygon (pymunk)", "corners", "largest angle error [rad]")
-        _by_step(right, softness, theme)
-        _axes(
-            right,
-            theme,
-            "an ellipse on a soft contact (MuJoCo)",
-            "contact's time constant [s]",
-            "largest angle error [rad]",
-        )
-    return figure
-
-
-def _by_step(panel: Axes, rows: Sequence[tuple[float, Measurement]], theme: Theme) -> None:
-    """One line a step, the value across; a failed run has no point. Raises ValueError for more steps than looks."""
-    looks = (("o", theme.first, "-"), ("s", theme.second, "--"), ("^", theme.third, ":"))
-    steps = sorted({row.step for _, row in rows}, reverse=True)
-    if len(steps) > len(looks):
-        raise ValueError(f"plateaus: there are {len(steps)} steps, and {len(looks)} looks to tell them apart")
-    for step, (marker, colour, line) in zip(steps, looks, strict=False):
-        usable = [(value, row) for value, row in rows if row.step == step and Outcome(row.outcome).comparable]
-        points = sorted((value, row.angle) for value, row in usable if math.isfinite(row.angle))
-        if points:
-            panel.plot(*zip(*points, strict=True), marker=marker, color=colour, linestyle=line, markersize=5.5,
-                       label=f"step {step:.0e} s".replace("e-0", "e-"))  # fmt: skip
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    if panel.lines:
-        panel.legend()
-
-
 def _axes(panel: Axes, theme: Theme, title: str, across: str, up: str) -> None:
     style_axes(panel, theme)
     panel.set_title(title, loc="left", fontsize=9.5, color=theme.ink)
@@ -198,8 +155,8 @@ def compared(scene: Scene, engine: Engine) -> bool:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Drawings from the reference, and the plateaus from the rows of two experiments."""
-    found = {
+    """Drawings from the reference."""
+    return {
         "roulettes": svg(
             rolling_drawings.draw_roulettes(rolling_drawings.roulettes()),
             "Six bodies that roll, and what a point draws",
@@ -209,11 +166,6 @@ def figures(material: Material) -> dict[str, str]:
         "friction": svg(draw_friction((RollingEllipse(), RollingOnCircle())), "Friction demanded and friction given"),
         "gears": svg(rolling_drawings.draw_gears(EllipticGears()), "Two elliptic gears and their rates"),
     }
-    corners = [(corners, material.rows[cell]) for corners, cell in polygon_cells() if cell in material.rows]
-    softness = [(constant, material.rows[cell]) for constant, cell in softness_cells() if cell in material.rows]
-    if corners and softness:
-        found["plateaus"] = svg(draw_plateaus(corners, softness), "Errors that no step removes")
-    return found
 
 
 def words(material: Material) -> Mapping[str, Any]:

@@ -192,11 +192,7 @@ def exponent(sizes: Iterable[float], values: Iterable[float], last: int = LAST) 
     return float(np.polyfit(n, v, 1)[0]), int(pairs[0][0]), int(pairs[-1][0])
 
 
-def cost_exponent(series: Series) -> tuple[float, int, int]:
-    """Of the CPU time of a step."""
-    return exponent([p.size for p in series.points], [p.step for p in series.points])
-
-
-def error_exponent(series: Series) -> tuple[float, int, int]:
-    """Of the angle error."""
-    return exponent([p.size for p in series.points], [p.error for p in series.points])
+def cost_exponent(series: Series, least: float = 0, most: float = math.inf) -> tuple[float, int, int]:
+    """Of the CPU time of a step, at sizes from `least` to `most`: those at which the method is one and the same."""
+    points = [point for point in series.points if least <= point.size <= most]
+    return exponent([p.size for p in points], [p.step for p in points])

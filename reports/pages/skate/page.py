@@ -138,7 +138,7 @@ def skate_path(scene: ChaplyginSleigh, trajectory: Trajectory) -> np.ndarray:
 PATHS = tuple(
     (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
     for title, scene in (
-        ("ahead for 3 s, steps of 1e-2 s", SLEIGH),
+        ("ahead for 3 s, steps of 10 ms", SLEIGH),
         ("backwards for 10 s: it turns round", SleighBackwards()),
     )
 )

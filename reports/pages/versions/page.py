@@ -15,15 +15,13 @@ from matplotlib.patches import Rectangle
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.plots.looks import HATCHES, outcome_colour
+from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import changes_between
 from reports.versions.comparison import Step, by_version, lines, size, steps
 from reports.versions.table import ACCELERATION, Entry, Table, catalogued, read
 from reports.write.tables import markdown, number
 
-# Shades of errors in the heat table: below each bound, from exact to useless; the numbers say which.
-SHADES = ((1e-6, "good"), (1e-2, "middling"), (math.inf, "bad"))
 MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
 MARKED = 6  # lines of a panel that are named: those with the largest steps
 
@@ -140,9 +138,8 @@ def _look(entry: Entry, theme: Theme) -> tuple[str, str | None, str]:
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
         return outcome_colour(outcome, theme), HATCHES.get(outcome), outcome.letter
-    role = next(role for bound, role in SHADES if entry.error < bound or math.isinf(bound))
     power = math.floor(math.log10(entry.error)) if entry.error > 0 and math.isfinite(entry.error) else None
-    return getattr(theme, role), None, "0" if power is None else f"{power}"
+    return getattr(theme, shade(entry.error)), None, "0" if power is None else f"{power}"
 
 
 def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
@@ -153,15 +150,16 @@ def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> Non
 
 
 def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
-    patches = [Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role)) for _, role in SHADES]
-    names = ["error below 1e-6 (the number: its power of ten)", "below 1e-2", "1e-2 and more"]
+    patches = [Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role)) for role in SHADE_NAMES]
+    names = [*SHADE_NAMES.values()]
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
             patches.append(
                 Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), hatch=HATCHES.get(outcome))
             )
-            names.append(f"{outcome.letter}  {outcome}")
-    figure.legend(patches, names, loc="outside lower center", ncols=3)
+            told = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
+            names.append(f"{outcome.letter}  {told}")
+    figure.legend(patches, names, loc="outside lower center", ncols=4)
 
 
 def cost(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:
@@ -319,12 +317,13 @@ def words(material: Material) -> Mapping[str, Any]:
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """A picture of lines, a heat table and the cost of each engine, in the order of the page."""
+    """Lines where one has a step, a heat table and the cost of each engine, in the order of the page."""
     own, out = table(), {}
     for engine in own.engines:
         entries, versions = [e for e in own.entries if e.engine == engine], own.versions(engine)
-        at = {after: after for (_, _, after) in by_version(steps(entries))}
-        out[f"{engine}_lines"] = svg(over_versions(entries, versions, at), f"{engine}: error over versions")
+        # Lines of which none has a step are no picture.
+        if at := {after: after for (_, _, after) in by_version(steps(entries))}:
+            out[f"{engine}_lines"] = svg(over_versions(entries, versions, at), f"{engine}: error over versions")
         out[f"{engine}_heat"] = svg(heat_table(entries, versions), f"{engine}: errors of scenes by version")
         out[f"{engine}_cost"] = svg(cost(entries, versions), f"{engine}: CPU time over versions")
     return out

@@ -147,7 +147,7 @@ OVERLAID: dict[str, tuple[str, Any]] = {
 COASTING = tuple(
     (title, scene, {name: Cell(scene, engine, 1) for name, engine in known(OVERLAID).items()})
     for title, scene in (
-        ("car and trailer, 5 s, steps of 1e-2 s", CarAndTrailer()),
+        ("car and trailer, 5 s, steps of 10 ms", CarAndTrailer()),
         ("cart with two casters, 3 s", Cart()),
     )
 )
