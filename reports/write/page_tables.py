@@ -170,4 +170,4 @@ def advice_lines(
         numbers = [step_words(row.step), number(getattr(row, name)), milliseconds(row.cpu), order]
         body.append([each.engine, below, f"**{row.variant}**", *holder, *numbers])
     header = ["engine", f"below [{unit}]", "method", *(["joints held by"] if held else [])]
-    return markdown([*header, "step", f"error [{unit}]", "CPU [ms/s]", "order"], body, left=len(header))
+    return [*header, "step", f"error [{unit}]", "CPU [ms/s]", "order"], body
