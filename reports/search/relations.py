@@ -166,7 +166,8 @@ def _apart(
             raise NotAsked("descriptions differ by less than what it says itself that it misses")
     if turned_in_a_step(mechanism, step, own.pose[-1], own.twist[-1]) > 1:
         raise NotAsked(TOO_LONG)
-    seen = [(one, pose) for one, told in ((mechanism, own), (changed, run)) for pose in told.pose[[0, -1]]]
+    both = ((mechanism, own), (changed, run))
+    seen = [(one, pose) for one, told in both for pose in told.pose[[0, -1]] if np.isfinite(pose).all()]
     if found <= ROUNDINGS * max(lost_in_products(*each) for each in seen):
         raise NotAsked("descriptions differ by no more than what rounding of J M^-1 J^T may make")
     if _closed(engine, mechanism, pose - own.pose[-1], twist - own.twist[-1], away):
