@@ -164,7 +164,7 @@ def _apart(
         faster = float(np.abs((twist - own.twist[-1]) / size).max()) * STEPS * step
         if max(apart, faster) <= (own.estimate / size).max():
             raise NotAsked("descriptions differ by less than what it says itself that it misses")
-    if turned_in_a_step(mechanism, step, own.pose[-1], own.twist[-1]) > 1:
+    if np.isfinite(own.pose[-1]).all() and turned_in_a_step(mechanism, step, own.pose[-1], own.twist[-1]) > 1:
         raise NotAsked(TOO_LONG)
     both = ((mechanism, own), (changed, run))
     seen = [(one, pose) for one, told in both for pose in told.pose[[0, -1]] if np.isfinite(pose).all()]
