@@ -222,7 +222,7 @@ class Mechanism(Valid):
     ) -> NDArray[np.float64]:
         size = np.where(self.turning, self.length_scale, 1.0)
         stacked = excess.reshape((*excess.shape[:-2], 3 * len(self.bodies)))
-        return reactions(self.rows(pose), inertias.reshape(-1), stacked, size)
+        return reactions(self.rows(pose), inertias.reshape(-1), stacked, size, self.length_scale)
 
     @validated
     def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:

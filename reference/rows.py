@@ -73,14 +73,16 @@ def solve_symmetric(matrix: Array, right: Array) -> Array:
     return scale * (np.linalg.pinv(scaled, rcond=RANK_TOLERANCE, hermitian=True) @ (scale * right))
 
 
-def reactions(rows: Array, inertias: Array, excess: Array, size: Array) -> Array:
+def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: float) -> Array:
     """Forces (..., rows) with M excess = rows^T forces, in the least squares of M^(-1/2).
 
     rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
     less that of free fall. Where rows are dependent the forces are not unique, and the smallest are given, counted in
     `size` (rows,) [N or N m], the force of each row that is as large as one of any other. NaN where a number is not
     finite. The columns of M^(-1/2) rows^T are made equally long first: a light body's rows then weigh as much as a
-    heavy one's, and what is lost is the square root of what the product J M^-1 J^T loses.
+    heavy one's, and what is lost is the square root of what the product J M^-1 J^T loses. Whether rows are dependent
+    does not depend on masses, which may be so far apart that a row is but its light body's: it is their `rank`, with
+    angles counted as arcs of `length` [m].
     """
     root = np.sqrt(inertias)
     matrix = np.swapaxes(rows / root, -1, -2)
@@ -90,6 +92,9 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array) -> Array
     matrix = np.where(finite[..., None, None], matrix * scale[..., None, :], 0.0)
     left, singular, right = np.linalg.svd(matrix, full_matrices=False)
     small = singular <= RANK_TOLERANCE * singular[..., :1]
+    if np.any(small) and singular.shape[-1] == rows.shape[-2]:
+        independent = ranks(np.where(finite[..., None, None], rows, 0.0), np.asarray(length)) == rows.shape[-2]
+        small &= ~independent[..., None] | (singular <= np.finfo(float).eps * singular[..., :1])
     inverse = np.where(small, 0.0, 1 / np.where(small, 1.0, singular))
     target = np.where(finite[..., None], excess, 0.0) * root
     solution = scale * _times(np.swapaxes(right, -1, -2), inverse * _times(np.swapaxes(left, -1, -2), target))

@@ -301,14 +301,27 @@ class _JudgeRun(OneShot):
         estimate = np.abs(found.pose - other.pose[:-1:2])
         rate = np.abs(found.twist - other.twist[:-1:2]) * self._mechanism.time_scale
         unit = np.array([self._mechanism.length_scale, self._mechanism.length_scale, 1.0])
+        # Both runs may leave the same joint open: masses may be so far apart that its row is lost beside others.
+        left = np.maximum(estimate, rate) / unit
+        left = np.concatenate([left.reshape(len(left), -1), self._left_open(found)], axis=1)
         # Not below, where one is no number.
-        above = ~(np.maximum(estimate, rate) < HELD * unit).all(axis=(1, 2))
+        above = ~(left < HELD).all(axis=1)
         unresolved_at, warnings = None, found.warnings
         if above.any():
             unresolved_at = float(found.t[int(np.argmax(above))])
-            warnings = (*warnings, f"lagrange: unresolved from {unresolved_at:.6g} s on, another tolerance changes it")
+            warnings = (*warnings, f"lagrange: unresolved from {unresolved_at:.6g} s on, {HELD:g} is not held")
         spent += other.stepping
         return replace(found, stepping=spent, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
+
+    def _left_open(self, found: Trajectory) -> Array:
+        """(times, 2 rows) gaps and slips, in the mechanism's own length and time, beyond the rounding of places."""
+        mechanism = self._mechanism
+        size = np.where(mechanism.turning, 1.0, mechanism.length_scale)
+        with np.errstate(all="ignore"):
+            gap = np.abs(np.nan_to_num(mechanism.gap(found.pose, found.t))) / size
+            slip = np.abs(mechanism.slip(found.pose, found.twist)) * mechanism.time_scale / size
+            far = np.abs(found.pose[..., :2]).max(axis=(1, 2)) / mechanism.length_scale
+        return np.concatenate([gap, slip], axis=1) - 100 * np.finfo(float).eps * far[:, None]
 
     def _looser(self, factor: float, parts: int) -> _LagrangeRun:
         """A run with so many times the tolerance, and steps [s] that are parts of those asked for."""

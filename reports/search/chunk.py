@@ -10,7 +10,7 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +21,7 @@ from reports.model.outcomes import Outcome
 from reports.model.tasks import Answer, Task, Values
 from reports.run.store import Store
 from reports.search.parts import TOGGLE
-from reports.search.subjects import Adapted, Subject, Told
+from reports.search.subjects import Adapted, Subject, Told, is_shaped
 
 SIZE = 10  # cases in a piece: a second or some
 
@@ -40,7 +40,13 @@ class Chunk(Task):
 
     @property
     def cost(self) -> float:
-        return 0.3 * self.count
+        return (3.0 if is_shaped(self.subject) else 0.1) * self.count
+
+    @property
+    def kin(self) -> Hashable:
+        """The same mechanisms, which are built and judged once for all engines; or shapes that are compiled once."""
+        subject = self.subject.name if is_shaped(self.subject) else ""
+        return subject, self.seed, self.decades, "" if subject else self.first
 
     @property
     def label(self) -> str:

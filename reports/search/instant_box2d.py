@@ -20,7 +20,7 @@ from engines.box2d import Box2D
 from reference.joints import Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search.law import Fault, NotAsked, difference
+from reports.search.law import Fault, NotAsked, carried, difference, lost_in_products, written
 
 Array = NDArray[np.float64]
 STEP = 0.1  # of the mechanism's own time scale: what forces change in it has to be seen beside rounded velocities
@@ -38,7 +38,11 @@ def errors(engine: Box2D, mechanism: Mechanism) -> dict[str, float]:
     Raises NotAsked where one sweep over the joints is no solution, and Unsupported.
     """
     told, law, others = first_step(engine, mechanism)
-    return {"velocity": difference(mechanism, told.twist[1], law, others)}
+    found = difference(mechanism, told.twist[1], law, others)
+    lost = lost_in_products(mechanism, mechanism.pose) * engine.precision / np.finfo(float).eps
+    if bound(engine) < found <= ROUNDINGS * lost:
+        raise NotAsked("what is missed is no more than what rounding of J M^-1 J^T may make in single precision")
+    return {"velocity": found}
 
 
 def first_step(engine: Box2D, mechanism: Mechanism) -> tuple[Trajectory, Array, tuple[Array, ...]]:
@@ -60,9 +64,11 @@ def first_step(engine: Box2D, mechanism: Mechanism) -> tuple[Trajectory, Array, 
     share, rate = _share(dt)
     soft = _swept(mechanism, before, before, free, share, mechanism.rate - rate * _gap(mechanism))
     law = _swept(mechanism, after, np.where(points[:, None], after, before), soft, 1.0, mechanism.rate)
-    # A place is rounded, and over a step that is a velocity.
-    far = max(mechanism.length_scale, float(np.abs(told.pose[..., :2]).max()))
-    return told, law, (free, mechanism.twist, np.array([[engine.precision * far / dt / bound(engine), 0.0, 0.0]]))
+    # Places and velocities are rounded; over a step a place is a velocity, and joints make motions of what they miss.
+    far = float(np.abs(told.pose[..., :2]).max())
+    numbers = written(mechanism, far) / dt + np.abs(free) + np.abs(told.twist[1])
+    rounded = engine.precision * carried(mechanism, start, numbers).motion
+    return told, law, (free, mechanism.twist, rounded / bound(engine))
 
 
 def _swept(mechanism: Mechanism, rows: Array, weighed: Array, twist: Array, share: float, wanted: Array) -> Array:

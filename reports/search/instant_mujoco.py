@@ -191,7 +191,8 @@ def errors(engine: MuJoCo, mechanism: Mechanism) -> dict[str, float]:
 
 def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softness: Softness | None, dt: float) -> None:
     """Raises NotAsked where accelerations, or what stiff rows make of rounded gaps, are above mjMAXVAL in m/s^2 or
-    rad/s^2: there MuJoCo resets a model, as its documentation says, whatever is in it."""
+    rad/s^2: there MuJoCo resets a model, as its documentation says, whatever is in it. Nor is a motion asked for that
+    turns by a radian in a step meanwhile."""
     with model.hooked():
         mujoco.mj_forward(model.compiled, start)
         rounding = Instant.of(mechanism, model, start, softness).floor.motion * LAW
@@ -199,6 +200,8 @@ def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softnes
     needed = [rounding]
     for pose, twist in zip(motion.pose, motion.twist, strict=True):
         if np.isfinite(pose).all():
+            if turned_in_a_step(mechanism, dt, pose, twist) > 1:
+                raise NotAsked("steps are too long for what turns soon after the start")
             law = constrained(
                 mechanism.rows(pose),
                 mechanism.bias(pose, twist),

@@ -89,7 +89,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         off = apart["motion"] * _size(mechanism, truth, promise) / mechanism.length_scale
         least["reactions"] = max(least["reactions"], off)
         for name, error in apart.items():
-            if name not in out or not out[name][0] <= out[name][1]:
+            if least[name] < LOST and (name not in out or not out[name][0] <= out[name][1]):
                 out[name] = (error, _may_be(promise, name, coarser[name], least[name]))
     if _misses(out):
         if finer.warnings:

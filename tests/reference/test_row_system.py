@@ -37,7 +37,7 @@ def test_forces_are_those_of_fifty_digits_however_different_the_masses_are(ratio
     inertias = np.array([1.0] * 3 + [ratio] * 3 + [1.0] * 3)
     forces = RNG.normal(size=8)
     excess = (rows.T @ forces) / inertias
-    found = reactions(rows, inertias, excess, np.ones(8))
+    found = reactions(rows, inertias, excess, np.ones(8), 1.0)
     exact = in_fifty_digits(rows, inertias, excess)
     # The square root of the ratio is what least squares lose; the product J M^-1 J^T would lose the ratio itself.
     assert np.abs(found - exact).max() < 1e-13 * max(ratio, 1 / ratio) ** 0.5 * np.abs(exact).max()
@@ -68,7 +68,7 @@ def test_what_is_not_finite_gives_forces_that_are_no_numbers_and_harms_no_other_
     rows = np.stack([RNG.normal(size=(2, 3))] * 3)
     excess = np.ones((3, 3))
     excess[1, 0] = np.nan
-    found = reactions(rows, np.ones(3), excess, np.ones(2))
+    found = reactions(rows, np.ones(3), excess, np.ones(2), 1.0)
     assert np.isnan(found[1]).all()
     assert np.isfinite(found[[0, 2]]).all()
     assert found[0] == pytest.approx(found[2])
