@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -77,7 +77,7 @@ def _say(panel: Axes, x: float, y: float, words: str, side: Literal["left", "rig
     panel.text(x, y, words, transform=panel.transAxes, fontsize=8, color=theme.quiet, ha=side, va="top")
 
 
-def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, object]:
+def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, Any]:
     """The colour and mark of the engine's family; plain code has a dashed grey line."""
     if engine == JUDGE:
         return {"color": theme.quiet, "linestyle": "--", "linewidth": 1.5, "marker": ".", "markersize": 5}
