@@ -14,6 +14,7 @@ from reports.plots.looks import colour, family_of, mark
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 HEIGHT = 6.2  # inches
+MAIN = ("pymunk", "mujoco")
 JUDGE = "lagrange"  # no engine to choose: what plain code with exact multipliers reaches
 NAMES = {
     "pymunk": "pymunk",
@@ -85,8 +86,8 @@ def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, Any]:
     return {
         "color": paint,
         "linestyle": "-",
-        "linewidth": 1.8,
+        "linewidth": 2.2 if engine in MAIN else 1.5,
         "marker": mark(family_of(engine), engines),
         "markersize": 5.5,
-        "markerfacecolor": theme.paper,
+        "markerfacecolor": paint if engine in MAIN else theme.paper,  # told apart without colours too
     }
