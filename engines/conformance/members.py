@@ -144,6 +144,14 @@ def tells_how_joints_give_way(subject: Subject, world: World) -> None:
         raise Fails(f"{len(soft.rows)} rows", f"{world.mechanism.row_count}", "it counts joints")
 
 
+def tells_the_steps_of_its_runs(subject: Subject, world: World) -> None:
+    """`steps_of_runs` gives the step of each run, in parts of dt: above zero, and finite."""
+    subject.build(world.mechanism)
+    steps = subject.engine.steps_of_runs(world.mechanism)
+    if not (isinstance(steps, tuple) and steps and all(math.isfinite(step) and step > 0 for step in steps)):
+        raise Fails(f"steps of runs {steps!r}", "a tuple of parts of dt", "it counts runs")
+
+
 CHECKS = (
     Check(has_a_name),
     Check(is_a_frozen_dataclass),
@@ -154,4 +162,5 @@ CHECKS = (
     Check(tells_what_a_step_costs, WORLDS),
     Check(tells_who_holds_a_joint, WORLDS),
     Check(tells_how_joints_give_way, WORLDS),
+    Check(tells_the_steps_of_its_runs, WORLDS),
 )

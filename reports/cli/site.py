@@ -52,7 +52,7 @@ def site(
     source = Source(
         pages=_texts(folder, "*.md"),
         pictures=_texts(folder, "*.svg"),
-        tables=_texts(folder, "*.csv"),
+        tables=_texts(folder, "*.csv") | _texts(folder, "programs/*.py"),
         answers=_answers(console, results),
         cache=results / CACHE,
         foot=_foot(),
@@ -71,7 +71,8 @@ def site(
 
 
 def _texts(folder: Path, pattern: str) -> dict[str, str]:
-    return {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob(pattern))}
+    found = sorted(folder.glob(pattern))
+    return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in found}
 
 
 def _contributing() -> str:

@@ -37,14 +37,14 @@ SYMPTOMS: tuple[Symptom, ...] = (
     Symptom(
         "My closed loop opens, or is off at every step (MuJoCo).",
         "As shipped its pin is a spring of 20 ms. Tie `solref` to the step and raise `solimp`, in MuJoCo 3.7 or later.",
-        "four_bar",
-        "Why the engine's pin is not the ideal one",
+        "your_loop",
+        "Your loop in MuJoCo",
     ),
     Symptom(
         "My joints drift apart, or give like rubber (pymunk).",
         "Set `error_bias = 0` on each constraint, and more iterations.",
-        "four_bar",
-        "Why the engine's pin is not the ideal one",
+        "your_loop",
+        "Your loop in pymunk",
     ),
     Symptom(
         "A smaller step makes it worse.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,6 +14,7 @@ from reports.plots.looks import colour, family_of, mark
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes
 
 HEIGHT = 6.2  # inches
+MAIN = ("pymunk", "mujoco")
 JUDGE = "lagrange"  # no engine to choose: what plain code with exact multipliers reaches
 NAMES = {
     "pymunk": "pymunk",
@@ -77,7 +78,7 @@ def _say(panel: Axes, x: float, y: float, words: str, side: Literal["left", "rig
     panel.text(x, y, words, transform=panel.transAxes, fontsize=8, color=theme.quiet, ha=side, va="top")
 
 
-def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, object]:
+def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, Any]:
     """The colour and mark of the engine's family; plain code has a dashed grey line."""
     if engine == JUDGE:
         return {"color": theme.quiet, "linestyle": "--", "linewidth": 1.5, "marker": ".", "markersize": 5}
@@ -85,8 +86,8 @@ def _look(engine: str, engines: Sequence[str], theme: Theme) -> dict[str, object
     return {
         "color": paint,
         "linestyle": "-",
-        "linewidth": 1.8,
+        "linewidth": 2.2 if engine in MAIN else 1.5,
         "marker": mark(family_of(engine), engines),
         "markersize": 5.5,
-        "markerfacecolor": theme.paper,
+        "markerfacecolor": paint if engine in MAIN else theme.paper,  # told apart without colours too
     }

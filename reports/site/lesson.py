@@ -103,7 +103,7 @@ class Source:
 
     pages: Mapping[str, str]
     pictures: Mapping[str, str]
-    tables: Mapping[str, str]  # CSV files by name
+    tables: Mapping[str, str]  # CSV files, and programs to copy, by name
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str

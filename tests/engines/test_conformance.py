@@ -36,6 +36,7 @@ FOUND_BY = {
     "a step's cost is measured": "tells_what_a_step_costs",
     "who holds a skate is told in another word": "tells_who_holds_a_joint",
     "softness counts joints": "tells_how_joints_give_way",
+    "runs are counted instead of their steps": "tells_the_steps_of_its_runs",
     "nothing is built": "builds_at_least_one",
     "the first joint is looked at": "refuses_odd_mechanisms",
     "forces are not looked at": "feels_forces_or_refuses_them",

@@ -26,6 +26,7 @@ from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import SYMPTOMS
 from reports.pages.rendering import render_page
 from reports.pages.versions.page import table
+from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.versions.table import ACCELERATION
 from reports.write.rows import Rows, lookups
 from reports.write.tables import number
@@ -267,7 +268,8 @@ def test_lines_differ_without_colours():
 
 # --- symptoms and links ---
 
-FILES = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
+PUBLISHED = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
+FILES = PUBLISHED | render_page(YOUR_LOOP, Material({}), "the command")
 
 
 @pytest.mark.parametrize("symptom", SYMPTOMS, ids=lambda symptom: symptom.seen[:30])

@@ -45,6 +45,7 @@ def files(request):
     given = (vars(item).get("callspec") for item in request.session.items)
     wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
+    texts[".csv"] |= {f"programs/{path.name}": path.read_text("utf-8") for path in RESULTS.glob("programs/*.py")}
     four_bar = LESSONS[0]
     answers = {
         motion: answered(motion) for name in ("driven", "large") for motion in four_bar.takes[name].motions().values()

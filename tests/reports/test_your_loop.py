@@ -1,5 +1,8 @@
 """The lines to paste, pasted into models as shipped: they err as the page says."""
 
+# pyright: reportAttributeAccessIssue=false
+# (MuJoCo's bindings are compiled and carry no types.)
+
 from __future__ import annotations
 
 import math
@@ -16,6 +19,7 @@ from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
 from reports.model.page import Material
 from reports.pages.your_loop.page import CHAIN, DISC, EVERY, LINES, LOOP, MUJOCO, PYMUNK, SLIDER, aimed, cell, words
+from reports.pages.your_model.experiments import MODELS
 from tests.committed_rows import committed_rows
 
 STEP = 1e-3
@@ -93,6 +97,13 @@ def test_the_lines_of_xml_give_the_same_on_joints_that_set_nothing_themselves():
     assert in_mujoco(LOOP, shipped) > 0.005
     pasted = shipped.replace("</mujoco>", f"{lines('options')}</mujoco>")
     assert in_mujoco(LOOP, pasted) == pytest.approx(row(case, case.after[0]), rel=0.02)
+
+
+def test_the_lines_of_xml_are_taken_at_the_end_of_a_model_that_has_options_and_defaults_of_its_own():
+    text = (MODELS / "four_bar.xml").read_text(encoding="utf-8").replace("</mujoco>", f"{lines('options')}</mujoco>")
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.eq_solref.tolist() == [[0.005, 1.0]]
+    assert (model.opt.timestep, model.opt.integrator) == (1e-3, mujoco.mjtIntegrator.mjINT_RK4)
 
 
 def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():

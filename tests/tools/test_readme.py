@@ -18,6 +18,9 @@ from typing import Any
 import matplotlib
 import pytest
 
+from reports.model.catalogue import PAGES
+from reports.pages.comparison import PICTURE
+from reports.pages.your_loop.page import LINES
 from tests import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -30,6 +33,24 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     assert re.fullmatch(r"largest angle error \d\.\de-\d\d rad after 1 s\n", said)
     # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6.
     assert float(said.split()[3]) < 1e-4
+
+
+def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_to_the_site():
+    told = README.splitlines()
+    assert len(told) <= 120
+    links = re.findall(r"\]\(([^)]+)\)", README)
+    assert links[0] == "reports/results/your_loop.md"
+    first = "\n".join(told[: len(told) // 3])
+    assert "](lecture.ipynb)" in first
+    assert "`crosscheck site" in first
+    pages = {f"reports/results/{name}" for name in ("index.md", PICTURE, *(f"{page.name}.md" for page in PAGES))}
+    own = {link.partition("#")[0] for link in links if "://" not in link} - pages
+    assert [link for link in own if not (ROOT / link).exists()] == []
+
+
+def test_the_lines_in_the_readme_are_those_that_a_test_pastes():
+    for name in ("options", "joints", "start"):
+        assert (LINES / f"{name}.txt").read_text(encoding="utf-8").strip() in README
 
 
 def git(folder, *words):

@@ -107,6 +107,12 @@ class Rowless(Wrong):
         return Softness(1.0, 1.0, 0.0, (True,) * len(mechanism.joints))
 
 
+@dataclass(frozen=True)
+class Counting(Wrong):
+    def steps_of_runs(self, mechanism: Mechanism) -> Any:
+        return 5
+
+
 TALKERS: dict[str, Any] = {
     "the family has two lines": TwoLines("nothing"),
     "it can be changed": Changeable(),
@@ -121,4 +127,5 @@ TALKERS: dict[str, Any] = {
     "a step's cost is measured": Measured("nothing"),
     "who holds a skate is told in another word": Modest("nothing"),
     "softness counts joints": Rowless("nothing"),
+    "runs are counted instead of their steps": Counting("nothing"),
 }
