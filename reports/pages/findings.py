@@ -21,7 +21,7 @@ from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task
 from reports.model.usual_steps import is_step
 from reports.pages.faults.page import OFFSETS
-from reports.pages.faults.scripts import MUJOCO, PYMUNK, recorded
+from reports.pages.faults.scripts import MUJOCO, PATCHED, PYMUNK, recorded
 from reports.pages.versions.page import ratios, table
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
@@ -428,7 +428,8 @@ FAULTS: Mapping[str, str] = {
 
 def faults(known: Known) -> Finding:
     """What the newest releases compute wrongly at one instant, by the scripts that were run with them."""
-    last = {row.script: row for row in recorded()}  # of each script the newest release
+    # Of each script the newest release, as it was released.
+    last = {row.script: row for row in recorded() if not row.version.endswith(PATCHED)}
     told = []
     for title, names in (("pymunk", PYMUNK), ("MuJoCo", MUJOCO)):
         own = [last[name] for name in names if name in FAULTS and name in last]
