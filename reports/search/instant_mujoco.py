@@ -197,6 +197,8 @@ def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softnes
         mujoco.mj_forward(model.compiled, start)
         rounding = Instant.of(mechanism, model, start, softness).floor.motion * LAW
     motion = TRUTH.build(mechanism, dt)(STEPS, 1)
+    if motion.unresolved_at is not None:
+        raise NotAsked("the judge itself does not hold what follows, as it says")
     needed = [rounding]
     for pose, twist in zip(motion.pose, motion.twist, strict=True):
         if np.isfinite(pose).all():
