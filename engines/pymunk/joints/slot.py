@@ -44,11 +44,14 @@ def slide(
     """Constraints and what to do before each step; points from the engine's origins, `length` [m] of the mechanism."""
     known = first.body_type != pymunk.Body.DYNAMIC
     if construction == "groove" or (known and groove_is_exact(second_point, turns=not isinf(second.moment))):
-        along = pymunk.Vec2d(cos(joint.line_angle), sin(joint.line_angle))
-        place = first.world_to_local(second.local_to_world(second_point)) - first_point
-        middle = first_point + place.dot(along) * along  # a slide may stand farther away than the mechanism is long
-        reach = REACH * length * along
-        return [GrooveJoint(first, second, middle - reach, middle + reach, second_point)], []
+        cosine, sine, reach = cos(joint.line_angle), sin(joint.line_angle), REACH * length
+        x, y = first.world_to_local(second.local_to_world(second_point))
+        # A slide may stand farther away than the mechanism is long.
+        along = cosine * (x - first_point[0]) + sine * (y - first_point[1])
+        back, front = (
+            (first_point[0] + place * cosine, first_point[1] + place * sine) for place in (along - reach, along + reach)
+        )
+        return [GrooveJoint(first, second, back, front, second_point)], []
     link = Link(joint, first, second, second_point, first_point, reach=length)
     return [link.constraint], [link]
 
