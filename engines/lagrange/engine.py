@@ -314,14 +314,17 @@ class _JudgeRun(OneShot):
         return replace(found, stepping=spent, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
 
     def _left_open(self, found: Trajectory) -> Array:
-        """(times, 2 rows) gaps and slips, in the mechanism's own length and time, beyond the rounding of places."""
-        mechanism = self._mechanism
+        """(times, 2 rows) gaps and slips, in the mechanism's own length and time, beyond the rounding of places; NaN
+        where the motion is lost."""
+        mechanism, out = self._mechanism, np.full((len(found.t), 2 * self._mechanism.row_count), np.nan)
+        alive = np.isfinite(found.pose).all(axis=(1, 2)) & np.isfinite(found.twist).all(axis=(1, 2))
+        t, pose, twist = found.t[alive], found.pose[alive], found.twist[alive]
         size = np.where(mechanism.turning, 1.0, mechanism.length_scale)
-        with np.errstate(all="ignore"):
-            gap = np.abs(np.nan_to_num(mechanism.gap(found.pose, found.t))) / size
-            slip = np.abs(mechanism.slip(found.pose, found.twist)) * mechanism.time_scale / size
-            far = np.abs(found.pose[..., :2]).max(axis=(1, 2)) / mechanism.length_scale
-        return np.concatenate([gap, slip], axis=1) - 100 * np.finfo(float).eps * far[:, None]
+        gap = np.abs(np.nan_to_num(mechanism.gap(pose, t))) / size
+        slip = np.abs(mechanism.slip(pose, twist)) * mechanism.time_scale / size
+        far = np.abs(pose[..., :2]).max(axis=(1, 2)) / mechanism.length_scale
+        out[alive] = np.concatenate([gap, slip], axis=1) - 100 * np.finfo(float).eps * far[:, None]
+        return out
 
     def _looser(self, factor: float, parts: int) -> _LagrangeRun:
         """A run with so many times the tolerance, and steps [s] that are parts of those asked for."""

@@ -59,6 +59,12 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     return Constrained(motion.reshape(-1, 3), force)
 
 
+def ideal(mechanism: Mechanism, pose: Array, twist: Array) -> Constrained:
+    """Accelerations and forces of a mechanism whose rows do not give way."""
+    free = mechanism.unconstrained(pose, twist)
+    return constrained(mechanism.rows(pose), mechanism.bias(pose, twist), mechanism.inertias, free)
+
+
 @dataclass(frozen=True, eq=False)
 class Response:
     """What joints make of rows that miss by so much: motions M^-1 J^T A^-1 (3 bodies, rows), and forces A^-1 (rows,
@@ -189,8 +195,7 @@ def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array)
     size = np.array([1.0, 1.0, mechanism.length_scale])
     parts = np.abs(rows.reshape(len(rows), *twist.shape) / size).max(axis=-1, initial=0.0)  # (rows, bodies)
     moving = parts.max(axis=1, initial=0.0) * ((parts > 0) @ np.abs(twist * size).max(axis=-1))
-    law = constrained(rows, bias, mechanism.inertias, mechanism.unconstrained(pose, twist))
-    spin = np.abs(twist[:, 2]).max() * dt + np.abs(law.motion[:, 2]).max() * dt**2
+    spin = np.abs(twist[:, 2]).max() * dt + np.abs(ideal(mechanism, pose, twist).motion[:, 2]).max() * dt**2
     return float(max(spin, dt * (np.abs(bias) / np.where(moving > 0, moving, np.inf)).max(initial=0.0)))
 
 

@@ -49,6 +49,7 @@ LEAST = {"motion": 1e-8, "reactions": 1e-5}
 # rounding that grows with shorter steps excuses no more than it does at the first.
 FINEST = 64
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
+OFF = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
 ASKED = 16  # mechanisms of which all engines are asked before others come: see `chunk.SIZE`
 HARD = 1e-10  # of the time scale squared: joints that give way by less are ideal here
 
@@ -75,24 +76,26 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
         raise NotAsked("steps are too long for what turns, so that no order is seen")
     out: dict[str, tuple[float, float]] = {}
-    parts, run, finer = 1, coarse, coarse
+    parts, run, warned, silent, longest = 1, coarse, False, 0, 0
     while parts < FINEST and (not out or _misses(out)):
         finer = _run(engine, mechanism, dt / (2 * parts), 2 * parts * COARSE)
         if not out and (coarse.warnings or finer.warnings):
             raise NotAsked("it says itself that something is wrong")
         parts *= 2
         if finer.warnings:
+            warned, silent = True, 0
             continue
+        silent += 1
+        longest = max(longest, silent)
         run, coarser = finer, _apart(mechanism, run, truth, promise)
         least, apart = _least(engine, mechanism, promise, truth, parts), _apart(mechanism, run, truth, promise)
-        # Forces are those of other poses: a radian, or a length of the mechanism, away they are other forces.
-        off = apart["motion"] * _size(mechanism, truth, promise) / mechanism.length_scale
-        least["reactions"] = max(least["reactions"], off)
+        if apart["motion"] * _size(mechanism, truth, promise) > OFF * mechanism.length_scale:
+            least["reactions"] = LOST
         for name, error in apart.items():
             if least[name] < LOST and (name not in out or not out[name][0] <= out[name][1]):
                 out[name] = (error, _may_be(promise, name, coarser[name], least[name]))
     if _misses(out):
-        if finer.warnings:
+        if warned and longest < 2:  # what two steps after each other say nothing of is silent
             raise NotAsked("it says itself, at shorter steps, that something is wrong")
         newton = _left_by_newton(engine, mechanism, truth, dt / parts)
         if all(error <= max(bound, newton.get(name, 0.0)) for name, (error, bound) in out.items()):
@@ -238,7 +241,7 @@ def _left_by_sweeps(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
     if not isinstance(engine, Pymunk) or not isinstance(engine.iterations, int):
         return 0.0
     left = max(contraction_at(mechanism, pose) for pose in truth.pose) ** engine.iterations
-    if isinstance(engine.error_bias, float) and 1 - engine.error_bias**dt > (1 - left) / left:
+    if isinstance(engine.error_bias, float) and (1 - engine.error_bias**dt) * left > 1 - left:
         raise NotAsked("its sweeps leave more of an impulse than it may close of a gap at these steps")
     return left
 

@@ -29,7 +29,7 @@ from reference.forces import Force, Torque
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reports.search import independent, instant_box2d, instant_mujoco, instant_pymunk, motions, raw, raw_law, relations
-from reports.search.law import NotAsked, constrained
+from reports.search.law import NotAsked, ideal
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 from reports.search.recorded import Recorder, recording, repeated
@@ -229,10 +229,7 @@ def _pinocchio_block(engine: Pinocchio, mechanism: Mechanism, dt: float) -> Bloc
     count, rates = tree.coordinates, tree.start_rates()
     where, rest = np.zeros((count + 1, count)), np.vstack([np.zeros((1, count)), np.eye(count)])
     _, _, moved = tree.motion(where, np.tile(rates, (count + 1, 1)), rest)
-    free = mechanism.unconstrained(mechanism.pose, mechanism.twist)
-    law = constrained(
-        mechanism.rows(mechanism.pose), mechanism.bias(mechanism.pose, mechanism.twist), mechanism.inertias, free
-    )
+    law = ideal(mechanism, mechanism.pose, mechanism.twist)
     directions = (moved[1:] - moved[0]).reshape(count, -1).T
     expected = np.empty(count)
     expected[model.address] = np.linalg.lstsq(directions, (law.motion - moved[0]).ravel(), rcond=None)[0]

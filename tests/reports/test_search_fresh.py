@@ -37,6 +37,8 @@ DOP853 = lagrange.VARIANTS[-1]
         (mujoco.DEFAULT, 195484576, 4, 25),  # forces that were read before the solver went on
         (mujoco.TUNED, 923428352, 4, 4),  # a light body that carries a heavy one, 1800 km away
         (pymunk.TUNED, 195484576, 4, 28),  # a groove whose ends are a thousand lengths away
+        (pymunk.TUNED, 796316743, 4, 1),  # a slide 100 m from the point of its slot, in a mechanism of 5 cm
+        (mujoco.TUNED, 689539221, 4, 22),  # a force on a body of 50 t that a weld of 0.1 g passes on
         (pymunk.DEFAULT, 1828094220, 4, 21),  # forces of poses that are a radian off
     ],
 )

@@ -258,7 +258,8 @@ def test_nobody_is_held_against_a_motion_that_the_judge_does_not_hold(monkeypatc
     engine = Boasting("euler", "projection")
     assert all(one.errors for one in told(engine, ("pin",), 3, "motions"))
     monkeypatch.setattr(motions, "TRUTH", Judge(tolerance=1e-2))
-    monkeypatch.setattr(motions, "judged", motions.judged.__wrapped__)  # what the judge said before is kept
+    judged = motions.judged.__wrapped__  # pyright: ignore[reportFunctionMemberAccess]
+    monkeypatch.setattr(motions, "judged", judged)  # what the judge said before is kept
     for one in told(engine, ("pin",), 3, "motions"):
         assert not one.errors
         assert "the judge itself does not hold 1e-10" in one.not_asked[0]

@@ -27,7 +27,8 @@ from reference.joints import Skate, Slot, Vector
 
 SlotConstruction = Literal["exact", "groove"]
 
-# A groove ends, a slot does not: this many lengths of the mechanism from the middle. Rounding grows in proportion.
+# A groove ends, a slot does not: this many lengths of the mechanism from where the slide stands at the start. Rounding
+# grows in proportion.
 REACH = 1e3
 
 
@@ -43,9 +44,13 @@ def slide(
     """Constraints and what to do before each step; points from the engine's origins, `length` [m] of the mechanism."""
     known = first.body_type != pymunk.Body.DYNAMIC
     if construction == "groove" or (known and groove_is_exact(second_point, turns=not isinf(second.moment))):
-        along_x, along_y = REACH * length * cos(joint.line_angle), REACH * length * sin(joint.line_angle)
-        back = (first_point[0] - along_x, first_point[1] - along_y)
-        front = (first_point[0] + along_x, first_point[1] + along_y)
+        cosine, sine, reach = cos(joint.line_angle), sin(joint.line_angle), REACH * length
+        x, y = first.world_to_local(second.local_to_world(second_point))
+        # A slide may stand farther away than the mechanism is long.
+        along = cosine * (x - first_point[0]) + sine * (y - first_point[1])
+        back, front = (
+            (first_point[0] + place * cosine, first_point[1] + place * sine) for place in (along - reach, along + reach)
+        )
         return [GrooveJoint(first, second, back, front, second_point)], []
     link = Link(joint, first, second, second_point, first_point, reach=length)
     return [link.constraint], [link]
