@@ -17,7 +17,9 @@ from typing import Any
 
 import matplotlib
 import pytest
+from typer.main import get_command
 
+from reports.cli.commands import app
 from tests import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -30,6 +32,15 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     assert re.fullmatch(r"largest angle error \d\.\de-\d\d rad after 1 s\n", said)
     # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6.
     assert float(said.split()[3]) < 1e-4
+
+
+@pytest.mark.parametrize("file", ["action.yml", "try.sh"])
+def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
+    text = (ROOT / "examples" / "compare_build" / file).read_text(encoding="utf-8")
+    (line,) = re.findall(r"^ *crosscheck compare (.*) > comparison\.md$", text, re.MULTILINE)
+    known = get_command(app).get_command(None, "compare")
+    given = known.make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
+    assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
 
 
 def git(folder, *words):
