@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reports.cli.options import Scenes, Workers
 from reports.cli.site import SITE
-from reports.cli.terminal import Terminal, print_table
 
+if TYPE_CHECKING:
+    from reports.cli.terminal import Terminal
+
+ANSWERS = "answers"  # instead of scenes
+COMPARED = ("mujoco==3.17.0", "mujoco==4.0.1")
 SUITE = "suite"  # instead of scenes, or before them
 JUDGE = "judge"  # instead of scenes
 
@@ -24,8 +28,12 @@ def bench(
     """Time `run` against bare loops, and the site; asserts nothing.
 
     `bench suite [SCENES]` runs the grid into an empty store and tells what the time of a run goes into. `bench judge`
-    times exact multipliers: an evaluation, steps, chains, and the truths.
+    times exact multipliers: an evaluation, steps, chains, and the truths. `bench answers` times whole commands, cold:
+    how long one waits for the first useful answer.
     """
+    if scene == [ANSWERS]:
+        _answers()
+        return
     if scene == [JUDGE]:
         from reports.cli.bench_judge import bench_judge
 
@@ -40,6 +48,7 @@ def bench(
     from reports.bench.suite import loop_costs
     from reports.cli.known import registered, with_words
     from reports.cli.selection import choose_scenes
+    from reports.cli.terminal import Terminal, print_table
     from reports.write.provenance import machine, versions
     from reports.write.tables import number
 
@@ -57,6 +66,28 @@ def bench(
             console.print()
     _site(console, site)
     console.print(f"{versions()}; {machine()}")
+
+
+def _answers() -> None:
+    from reports.bench.answers import TURNS, questions, waited
+    from reports.cli.terminal import Terminal, print_table
+    from reports.cli.versions import installed_once
+    from reports.write.provenance import machine
+
+    console = Terminal(140)
+    installed_once(COMPARED)
+    found = [waited(question) for question in questions(COMPARED)]
+    rows = [
+        (" ".join(("crosscheck", *map(_short, each.question.words))), each.wall, each.cpu, each.question.wanted)
+        for each in found
+    ]
+    title = f"Seconds to the first useful answer, the quickest of {TURNS}, each into an empty folder"
+    print_table(console, title, ["command", "clock [s]", "CPU [s]", "asked for [s]"], rows, 1)
+    console.print(machine())
+
+
+def _short(word: str) -> str:
+    return Path(word).name if "/" in word else word
 
 
 def _site(console: Terminal, folder: Path) -> None:

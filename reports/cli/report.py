@@ -51,6 +51,7 @@ def report(
     from reports.run.store import Store
     from reports.write import kept_numbers
     from reports.write.csv_files import DIGESTS, digests_csv
+    from reports.write.templates import without_links_to_nothing
 
     folder = published() if publish else results
     before = kept_numbers.read(published()) if publish else kept_numbers.Published()
@@ -66,8 +67,12 @@ def report(
         left = len(missing(whole, store))
         material = {page: material_of(page, store) for page in known.pages}
         names = {page.name for page in PAGES}
-        # A scene that is only remembered, and whose sources have changed since, has nothing to show.
-        material = {page: given for page, given in material.items() if given.rows or page.name in names}
+        # A page of which nothing is stored has nothing to show: not asked for, or its sources have changed since.
+        material = {
+            page: given
+            for page, given in material.items()
+            if given.rows or (page.name in names if publish else given.answers)
+        }
         grid = f"{left} of {len(whole)} cells of the full grid are not stored: "
         grid += with_folder("crosscheck run --full", results)
         if not any(given.rows for given in material.values()):
@@ -86,6 +91,13 @@ def report(
     if publish and timings.is_file() and "timings.csv" in files:
         old = timings.read_text(encoding="utf-8")
         files["timings.csv"] = old if same_but_for_the_date(old, files["timings.csv"]) else files["timings.csv"]
+    if not publish:
+        files = {
+            name: without_links_to_nothing(text, lambda page: page in files or (folder / page).is_file())
+            if name.endswith(".md")
+            else text
+            for name, text in files.items()
+        }
     files[DIGESTS] = digests_csv(files)
     texts = {folder / name: text for name, text in files.items()}
     if publish:

@@ -61,9 +61,12 @@ def run(
     known, names, given = with_words(registered(), scene or (), engine, settings or ())
     scenes = choose_scenes(names, known.scenes, known.pages)
     engines = choose_engines(None if given else engine, variant, given or known.engines)
-    cells = choose_cells(scenes, engines, known.pages, full, every or (), step or (), named=engine is not None)
-    # Steps that are named are asked of the grid alone.
-    items = cells if every or step else (*cells, *choose_tasks(scenes, engines, known.pages, full))
+    alone = bool(scene) and not full
+    cells = choose_cells(
+        scenes, engines, known.pages, full, every or (), step or (), named=engine is not None, alone=alone
+    )
+    # Steps that are named are asked of the grid alone; a quick run of scenes that are named, of nothing but these.
+    items = cells if every or step or alone else (*cells, *choose_tasks(scenes, engines, known.pages, full))
     if not items:
         compared = (each for scene in scenes for each in grid_engines(scene, known.engines, known.pages))
         methods = ", ".join(dict.fromkeys(f"{each.name} {each.variant}" for each in compared))

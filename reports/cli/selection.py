@@ -103,12 +103,13 @@ def choose_cells(
     every: Sequence[int] = (),
     steps: Sequence[float] = (),
     named: bool = False,
+    alone: bool = False,
 ) -> tuple[Cell, ...]:
     """The cells of a run: the grid, with the failures of the pages that teach these scenes; the steps that people
     use too if full.
 
     A quick run leaves out what would take long (`_quick`), but for the shortest cell of an engine that was `named` in a
-    scene. `every` or `steps` replace the grid by these steps
+    scene; with `alone`, experiments in other scenes too. `every` or `steps` replace the grid by these steps
     alone. Raises BadInput for steps that can't be.
     """
     if every or steps:
@@ -129,7 +130,8 @@ def choose_cells(
             cells += [
                 cell
                 for cell in page.extra_cells()
-                if any(cell.engine == engine for engine in engines) and (full or cell.purpose != "large")
+                if any(cell.engine == engine for engine in engines)
+                and (full or (cell.purpose != "large" and not (alone and cell.scene not in scenes)))
             ]
     chosen_once = dict.fromkeys(cells)
     return tuple(chosen_once) if full else _quick(tuple(chosen_once), math.inf if named else QUICK_CELL)

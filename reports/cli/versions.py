@@ -14,7 +14,7 @@ from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from engines import Engine
     from reference.scene import Scene
@@ -85,6 +85,16 @@ def versions(
             console.say(f"{published() / DATA} is renewed")
     if wrong:
         raise BadInput(f"{len(wrong)} of the versions could not be run, the others are stored; the first: {wrong[0]}")
+
+
+def installed_once(words: Iterable[str]) -> None:
+    """Install releases, NAME==VERSION, unless they are there. Raises BadInput."""
+    from engines.registry import VARIANTS
+    from reports.run.installed import installed
+    from reports.versions.catalogue import distributions
+
+    for name, _, number in (word.partition("==") for word in words):
+        installed(distributions(VARIANTS, name), number)
 
 
 def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:

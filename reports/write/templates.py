@@ -14,6 +14,7 @@ from reports.model.page import Page
 from reports.write import unmeasured
 
 HEADING = re.compile(r"^#{1,6} (.+)$", re.MULTILINE)
+OWN_LINK = re.compile(r"(?<!!)\[([^\]\n]*(?:\n[^\]\n]*)?)\]\((\w+\.md)(?:#[^)]*)?\)")
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -33,6 +34,11 @@ def link(page: str, heading: str, files: Mapping[str, str]) -> str:
         if name.startswith(page) and name.endswith(".md") and heading in headings(files[name]):
             return f"{name}#{anchor(heading)}"
     return f"{page}.md"
+
+
+def without_links_to_nothing(text: str, there: Callable[[str], bool]) -> str:
+    """A page whose links to our other pages are words where such a page is not `there`."""
+    return OWN_LINK.sub(lambda found: found[0] if there(found[2]) else found[1], text)
 
 
 def marks(name: str) -> tuple[str, str]:

@@ -17,7 +17,9 @@ from typing import Any
 
 import matplotlib
 import pytest
+from typer.main import get_command
 
+from reports.cli.commands import app
 from reports.model.catalogue import PAGES
 from reports.pages.comparison import PICTURE
 from reports.pages.your_loop.page import LINES
@@ -51,6 +53,15 @@ def test_the_readme_is_short_and_leads_to_the_lines_to_paste_to_the_lecture_and_
 def test_the_lines_in_the_readme_are_those_that_a_test_pastes():
     for name in ("options", "joints", "start"):
         assert (LINES / f"{name}.txt").read_text(encoding="utf-8").strip() in README
+
+
+@pytest.mark.parametrize("file", ["action.yml", "try.sh"])
+def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
+    text = (ROOT / "examples" / "compare_build" / file).read_text(encoding="utf-8")
+    (line,) = re.findall(r"^ *crosscheck compare (.*) > comparison\.md$", text, re.MULTILINE)
+    known = get_command(app).get_command(None, "compare")
+    given = known.make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
+    assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
 
 
 def git(folder, *words):

@@ -1,0 +1,93 @@
+"""What commands print in their three forms, what they leave out and say so, and the pages that a small store gives."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from engines.lagrange.engine import Lagrange
+from reports.cli.commands import invoke
+from reports.cli.selection import choose_cells, left_out
+from reports.cli.terminal import print_table, telling
+from reports.model.catalogue import PAGES
+from reports.model.cells import QUICK
+from reports.model.ending import BadInput, Broken
+from reports.write.templates import without_links_to_nothing
+from tests.toys import Disc
+
+HEADER, ROWS = ("scene", "angle [rad]", "steps"), [("disc | a", 1.2e-4, 10), ("disc b", float("nan"), 3)]
+
+
+def printed(capsys, **form) -> str:
+    with telling(140, form.get("json", False), form.get("markdown", False)) as console:
+        console.say("on the way")
+        print_table(console, "Errors", HEADER, ROWS, 1)
+        console.tell("Two of them.")
+    return capsys.readouterr().out
+
+
+def test_one_table_is_text_or_markdown_or_a_document_and_progress_goes_elsewhere(capsys):
+    text = printed(capsys)
+    assert "on the way" in text
+    assert re.search(r"^disc \| a +│ +1\.2e-4 +│ +10$", text, re.MULTILINE)
+    markdown = printed(capsys, markdown=True)
+    assert "on the way" not in markdown
+    assert r"| disc \| a | 1.2e-4 | 10 |" in markdown
+    document = json.loads(printed(capsys, json=True))
+    assert document["tables"][0]["rows"] == [
+        {"scene": "disc | a", "angle [rad]": 1.2e-4, "steps": 10},
+        {"scene": "disc b", "angle [rad]": None, "steps": 3},
+    ]
+    assert (document["sentences"], document["status"], document["message"]) == (["Two of them."], 0, "")
+
+
+def test_a_document_tells_what_is_broken_and_two_forms_at_once_are_refused(capsys):
+    with pytest.raises(Broken), telling(140, True, False):
+        raise Broken("the second is worse")
+    document = json.loads(capsys.readouterr().out)
+    assert (document["status"], document["message"]) == (1, "the second is worse")
+    with pytest.raises(BadInput, match="give one of them"), telling(140, True, True):
+        pass
+
+
+class Slow(Lagrange):
+    """By its own formula a step takes a second."""
+
+    name = "slow"
+
+    def step_cost(self, mechanism) -> float:
+        return 1.0
+
+
+def test_a_slow_engine_that_is_named_runs_its_shortest_step_and_the_others_are_told_with_the_reason():
+    scene, slow = Disc(), Slow("rk4", "projection")
+    quick = choose_cells([scene], [slow], PAGES, full=False, steps=(), named=False)
+    named = choose_cells([scene], [slow], PAGES, full=False, named=True)
+    assert [cell.every for cell in quick] == []
+    assert [cell.every for cell in named if cell.engine is slow] in ([], [QUICK[0]])
+    for cell, why in left_out([scene], [slow], PAGES, False, named):
+        assert re.fullmatch(r"step_cost says \d+ s, and a run may take 0\.8 s", why), (cell.every, why)
+
+
+def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_nowhere(tmp_path, capfd):
+    words = ["--results", str(tmp_path)]
+    assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *words]) == 0
+    assert invoke(["report", *words]) == 0
+    pages = {path.name for path in tmp_path.glob("*.md")}
+    assert {"index.md", "four_bar.md", "four_bar_data.md"} <= pages
+    assert not {"pendulum.md", "skate.md", "wheels.md", "faults.md"} & pages
+    for page in pages:
+        text = (tmp_path / page).read_text(encoding="utf-8")
+        assert set(re.findall(r"\]\((\w+\.md)", text)) <= pages, page
+    assert invoke(["show", "free_four_bar", *words, "--json"]) == 0
+    out = capfd.readouterr().out
+    (row,) = json.loads(out[out.index("\n{") :])["rows"]
+    assert (row["method"] if "method" in row else row["engine"], row["every"]) == ("pymunk", 1)
+
+
+def test_a_link_to_a_page_that_is_not_there_becomes_its_words():
+    text = "see [the\npage](skate.md#a), [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
+    told = without_links_to_nothing(text, lambda name: name == "wheels.md")
+    assert told == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
