@@ -158,7 +158,7 @@ def same_step(found: list[Tried], own: Tried) -> list[Tried]:
 
 Array = NDArray[np.float64]
 FALLS = 0.75  # of the error before: a smaller step is taken to help
-QUICK = 1e-7  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
+QUICK = 1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
 
 
 @dataclass(frozen=True)

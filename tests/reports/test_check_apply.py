@@ -92,6 +92,14 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
         assert places[1] != places[0]
 
 
+def test_a_script_without_a_named_space_is_run_as_the_program_to_its_first_step(tmp_path):
+    (tmp_path / "x.py").write_text(f'{INSIDE}\nif __name__ == "__main__":\n    main()\n')
+    found = checked(tmp_path, "x.py", tolerance=1e-2, apply="y.py")
+    assert found.data["step"] == 0.01
+    assert "    world.step = in_parts" in (tmp_path / "y.py").read_text()
+    assert found.data["applied"]["error"] <= 1e-2
+
+
 def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
     push = PENDULUM.replace("    return space", "    bob.force = (0, 4)\n    return space")
     (tmp_path / "x.py").write_text(push)
