@@ -49,8 +49,12 @@ class Plan:
     quick: bool = False
 
     @classmethod
-    def usual(cls) -> Plan:
-        return cls(PATIENCE)
+    def usual(cls, quick: bool = False) -> Plan:
+        return cls(PATIENCE, quick=quick)
+
+    @classmethod
+    def search(cls, goal: float) -> Plan:
+        return cls(SEARCH, goal)
 
 
 MEMBERS = ("words", "reads", "read")

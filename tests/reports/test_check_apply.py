@@ -25,7 +25,7 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
     """Few settings are tried where none are looked for."""
-    monkeypatch.setattr("reports.check.request.PATIENCE", 0.4)
+    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
 
 
 def checked(folder, word, **terms) -> CheckReport:
@@ -144,7 +144,7 @@ def test_quick_tries_four_settings_and_tells_the_same_causes(tmp_path):
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
-    monkeypatch.setattr("reports.check.request.SEARCH", 2.0)
+    monkeypatch.setattr("reports.check.checked.SEARCH", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
     for goal, found in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
