@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from reference.checks import InvalidMechanism
+from reference.checks import InvalidMechanism, shown
 from reference.joints import Pin, Vector
 from reference.mechanism import Body, Mechanism
 
@@ -44,5 +44,9 @@ def linkage(
 def _place(points: Mapping[str, tuple[float, float]], name: str) -> Vector:
     if name not in points:
         raise InvalidMechanism(f"no point is called {name!r}; there are {', '.join(points)}")
-    x, y = points[name]
-    return float(x), float(y)
+    try:
+        x, y = map(float, points[name])
+    except (TypeError, ValueError):
+        words = f"point {name!r} is {shown(points[name])}; it must be two numbers, x and y [m]"
+        raise InvalidMechanism(words) from None
+    return x, y

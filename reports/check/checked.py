@@ -49,8 +49,12 @@ class Plan:
     quick: bool = False
 
     @classmethod
-    def usual(cls) -> Plan:
-        return cls(PATIENCE)
+    def usual(cls, quick: bool = False) -> Plan:
+        return cls(PATIENCE, quick=quick)
+
+    @classmethod
+    def search(cls, goal: float) -> Plan:
+        return cls(SEARCH, goal)
 
 
 MEMBERS = ("words", "reads", "read")
@@ -158,7 +162,7 @@ def same_step(found: list[Tried], own: Tried) -> list[Tried]:
 
 Array = NDArray[np.float64]
 FALLS = 0.75  # of the error before: a smaller step is taken to help
-QUICK = 1e-7  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
+QUICK = 1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
 
 
 @dataclass(frozen=True)

@@ -50,8 +50,8 @@ def rows(answers: Answers) -> list[tuple[str, ...]]:
 
 def _cause(parts: dict[str, float | None]) -> str:
     """Which part of the error is the largest."""
-    if parts["step"] is None:
-        return "gave up"
+    if not parts["step"]:
+        return "gave up" if parts["step"] is None else "-"
     softness = parts["softness"] or 0.0
     if not parts["falling"] and parts["divided"] and (parts["rest"] or 0.0) > max(softness, 0.5 * parts["step"]):
         return "neither softness nor step"

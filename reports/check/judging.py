@@ -26,6 +26,7 @@ from reference.rows import solve_symmetric, undetermined
 from reference.trajectory import Trajectory, energy
 
 Array = NDArray[np.float64]
+FAR = 1e12  # m, rad, and those in a second: nothing in a motion that is worth a number
 TOLERANCE = 1e-10  # far below what an engine's own step leaves, far above rounding
 
 
@@ -52,19 +53,24 @@ def accelerations(mechanism: Mechanism, pose: Array, twist: Array, t: float, giv
 def soft_motion(
     mechanism: Mechanism, give: Callable[[Array], Give], t: Array, tolerance: float = TOLERANCE
 ) -> tuple[Array, Array]:
-    """Poses and twists (times, bodies, 3) of joints that give way; NaN from where the equations are not solved."""
+    """Poses and twists (times, bodies, 3) of joints that give way; NaN from where the equations are not solved.
+
+    By LSODA: dampers of light bodies, and stiff joints, are much faster than the motion.
+    """
     count = mechanism.pose.size
     lengths = np.tile([mechanism.length_scale, mechanism.length_scale, 1.0], len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
+        if not np.abs(state).max() < FAR:  # a step that was far too long: it is taken again, shorter
+            return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
         change = accelerations(mechanism, pose, twist, at, give(gap))
         return np.concatenate([state[count:], change.reshape(-1)])
 
     start = np.concatenate([mechanism.pose.reshape(-1), mechanism.twist.reshape(-1)])
-    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "DOP853", t_eval=t, rtol=tolerance, atol=allowed)
+    found: Any = solve_ivp(rates, (0.0, float(t[-1])), start, "LSODA", t_eval=t, rtol=tolerance, atol=allowed)
     out = np.full((len(t), 2, *mechanism.pose.shape), np.nan)
     done = found.y.shape[1]
     out[:done] = found.y.T.reshape(done, 2, -1, 3)

@@ -13,7 +13,7 @@ from engines import Unsupported
 from engines.importers import read_object
 from reference.checks import InvalidMechanism
 from reports.check.applying import Applied, applied
-from reports.check.checked import PATIENCE, SEARCH, Checked, Plan, check, read
+from reports.check.checked import Checked, Plan, check, read
 from reports.check.telling import Section, answer, data, sections, verdict
 
 USUAL_TOLERANCE = 1e-4  # of settings that are advised where nobody has asked for one
@@ -47,8 +47,8 @@ class CheckRequest:
     @property
     def plan(self) -> Plan:
         if not self.search:
-            return Plan(PATIENCE, quick=self.quick)
-        return Plan(SEARCH, USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
+            return Plan.usual(self.quick)
+        return Plan.search(USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
 
 
 @dataclass(frozen=True)

@@ -132,6 +132,20 @@ def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tm
     assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)  # type: ignore[union-attr]
 
 
+def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion(tmp_path):
+    """A rate of d / I, 1e6 / s here: an explicit method once overflowed in a step of the motion's own length."""
+    damped = FOUR_BAR.replace('axis="0 1 0"', 'axis="0 1 0" damping="5"').replace('size="0.02"', 'size="0.002"')
+    found = found_in(tmp_path, damped)
+    assert 0 < found.parts.softness < 1e-3
+    assert found.parts.step < 1e-2
+
+
+def test_a_loop_that_is_open_at_the_start_says_what_to_give(tmp_path):
+    start = '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'
+    with pytest.raises(InvalidMechanism, match=r"row 'C y' is open by .* give a keyframe in which it is closed"):
+        found_in(tmp_path, FOUR_BAR.replace("</mujoco>", start))
+
+
 def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reach_it(tmp_path):
     own = FOUR_BAR.replace('<connect name="C"', '<connect name="C" solref="0.04 1"')
     lines = answer(found_in(tmp_path, own)).code

@@ -25,7 +25,7 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
     """Few settings are tried where none are looked for."""
-    monkeypatch.setattr("reports.check.request.PATIENCE", 0.4)
+    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
 
 
 def checked(folder, word, **terms) -> CheckReport:
@@ -92,6 +92,14 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
         assert places[1] != places[0]
 
 
+def test_a_script_without_a_named_space_is_run_as_the_program_to_its_first_step(tmp_path):
+    (tmp_path / "x.py").write_text(f'{INSIDE}\nif __name__ == "__main__":\n    main()\n')
+    found = checked(tmp_path, "x.py", tolerance=1e-2, apply="y.py")
+    assert found.data["step"] == 0.01
+    assert "    world.step = in_parts" in (tmp_path / "y.py").read_text()
+    assert found.data["applied"]["error"] <= 1e-2
+
+
 def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
     push = PENDULUM.replace("    return space", "    bob.force = (0, 4)\n    return space")
     (tmp_path / "x.py").write_text(push)
@@ -136,7 +144,7 @@ def test_quick_tries_four_settings_and_tells_the_same_causes(tmp_path):
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
-    monkeypatch.setattr("reports.check.request.SEARCH", 2.0)
+    monkeypatch.setattr("reports.check.checked.SEARCH", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
     for goal, found in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)

@@ -22,6 +22,7 @@ from engines.mujoco.reading.own_model import OwnMuJoCo, heard
 from engines.mujoco.reading.rewriting import rewritten
 from engines.mujoco.reading.settings import switch_off
 from engines.reading import Note, Reading, Source, refuse, refuse_at_start
+from reference.checks import InvalidMechanism
 from reference.forces import Force
 from reference.mechanism import Mechanism
 
@@ -64,7 +65,13 @@ def read(model: Any, data: Any = None, without: Sequence[str] = ()) -> Reading:
     _note_what_may_act(scene)
     for element in without:
         scene.note(element, "left out at your word, in your model too")
-    mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
+    try:
+        mechanism = Mechanism(bodies, tuple(joints), gravity, (*acting, *weights))
+    except InvalidMechanism as reason:
+        if "is open by" not in str(reason):
+            raise
+        words = "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed"
+        raise InvalidMechanism(f"{reason}: {words}") from None
     own = OwnMuJoCo(scene, mechanism)
     refuse_at_start(own, mechanism)
     title = model.names[: model.names.find(b"\x00")].decode() if isinstance(model.names, bytes) else ""

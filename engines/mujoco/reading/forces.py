@@ -155,7 +155,7 @@ def _of_actuators(scene: Scene) -> list[ForceElement]:
         if kind in (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)):
             out += _on_joint(scene, element, name, target, gear, push, affine)
         elif np.any(affine[1:]):
-            raise refuse(element, "a servo is read where it acts on a joint")
+            raise refuse(element, "a servo is read only where it acts on a joint")
         elif kind == int(mujoco.mjtTrn.mjTRN_TENDON) and (parts := wrapped_joints(model, target)) is not None:
             first, second, factor = _between(scene, element, parts)
             label, ends = scene.names.new(name), (scene.name(first), scene.name(second))

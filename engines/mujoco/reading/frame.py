@@ -198,7 +198,7 @@ def _turn(model: Any, frame: Frame, place: int, qpos: Array) -> tuple[Array, Arr
     now, begin = qpos[:, place : place + 4], model.qpos0[place : place + 4]
     vector = now[:, 1:] * begin[0] - now[:, :1] * begin[1:] - np.cross(now[:, 1:], begin[1:])
     if np.abs(vector @ frame.both.T).max() > PLANAR:
-        raise refuse("a free joint", "its quaternion is turned out of the plane")
+        raise refuse("a free joint", "its body is turned out of the plane in what MuJoCo makes of the motion")
     return vector @ frame.normal, now @ begin
 
 

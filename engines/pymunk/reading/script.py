@@ -66,13 +66,18 @@ def made(path: Path, file: str, name: str) -> Made:
     module = types.ModuleType(MODULE)
     module.__file__ = str(path)
     with _at_home(path, module), _stopping(lambda space: _is_wanted(space, module, name)):
-        try:
-            exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
-        except _Stepped as stepped:
-            return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped)))
-        except (Exception, SystemExit, KeyboardInterrupt) as reason:
-            raise _raised(file, reason) from None
-        value, word = _named(module, file, name)  # may be anything
+        # Without a name, a script that makes its space only where it is the program is taken as the program.
+        for called in (MODULE,) if name else (MODULE, "__main__"):
+            module.__dict__["__name__"] = called
+            try:
+                exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
+            except _Stepped as stepped:
+                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped)))
+            except (Exception, SystemExit, KeyboardInterrupt) as reason:
+                raise _raised(file, reason) from None
+            if name or _spaces(module) or _guard(path) is None:
+                break
+        value, word = _named(module, file, name)
         if not callable(value):
             return _checked(file, Made(value, None, word, _guard(path)))
         with _stopping(lambda space: True):
@@ -110,7 +115,7 @@ def _named(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
         if name not in values:
             raise ValueError(f"{file}: it has no {name!r}")
         return values[name], name
-    spaces = {word: value for word, value in values.items() if isinstance(value, pymunk.Space)}
+    spaces = _spaces(module)
     if len({id(space) for space in spaces.values()}) == 1:
         return next(iter(spaces.values())), next(iter(spaces))
     found = f"its spaces are {', '.join(spaces)}" if spaces else "it has no space"
@@ -118,6 +123,10 @@ def _named(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
         f"{file}: {found}; give the name of the space, or of a function without arguments that returns one, as in "
         f"{file}:{next(iter(spaces), 'space')}"
     )
+
+
+def _spaces(module: types.ModuleType) -> dict[str, pymunk.Space]:
+    return {word: value for word, value in vars(module).items() if isinstance(value, pymunk.Space)}
 
 
 @contextlib.contextmanager
