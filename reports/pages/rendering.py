@@ -23,6 +23,7 @@ from reports.pages.index import engines_of, foot, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
 from reports.write import page_tables, tables, unmeasured
+from reports.write.columns import runs_of
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders, told_rows
@@ -47,6 +48,8 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
     unsupported = [row for row in rows if row.outcome == Outcome.UNSUPPORTED]
     coarsest = min((row.every for row in unsupported), default=0)
     featured = [row for row in rows if page.featured(row)]
+    step = page_tables.compared_step(rows)
+    runs = {method: told for method, engine in engines.items() if (told := runs_of(engine, scene, step))}
     advice = page_tables.advice(rows, page.quantity, tuple(engines))
     return {
         "name": scene.name,
@@ -55,8 +58,8 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
         "missing": not rows,
         "held": held,
         "declares": any(task in material.answers for task in soft_tasks(scene, tuple(engines.values()))),
-        "step": page_tables.compared_step(rows),
-        "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
+        "step": step,
+        "table": page_tables.scene_table(featured, page.quantity, held, declared, runs) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
         "programs": advised_programs(page, scene, advice, engines) if scene is page.advised_scene else [],
         "beside": page_tables.beside_table(material.beside([scene]), page.quantity),
