@@ -22,6 +22,7 @@ from reports.pages.index import engines_of, render_index
 from reports.plots import work_precision as charts
 from reports.plots.theme import svg
 from reports.write import page_tables, unmeasured
+from reports.write.columns import runs_of
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import told_experiment
 from reports.write.holders import holders, told_rows
@@ -42,12 +43,14 @@ def told_scene(scene: Scene, rows: list[Measurement], page: Page, material: Mate
     held = holders(Cell(scene, engine, 1) for engine in engines.values())
     held = held if set(held.values()) != {"engine"} else {}
     featured = [row for row in rows if page.featured(row)]
+    step = page_tables.compared_step(rows)
+    runs = {method: told for method, engine in engines.items() if (told := runs_of(engine, scene, step))}
     advice = page_tables.advice(rows, page.quantity, tuple(engines))
     return {
         "name": scene.name,
         "missing": not rows,
-        "step": page_tables.compared_step(rows),
-        "table": page_tables.scene_table(featured, page.quantity, held, declared) if featured else "",
+        "step": step,
+        "table": page_tables.scene_table(featured, page.quantity, held, declared, runs) if featured else "",
         "advice": page_tables.advice_table(advice, page.quantity, held) if rows else "",
         "programs": advised_programs(page, scene, advice, engines) if scene is page.advised_scene else [],
     }

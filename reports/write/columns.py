@@ -23,7 +23,7 @@ from reports.model.quantities import quantity
 from reports.model.usual_steps import USUAL_STEPS, is_run_at, is_step, usual_variants
 from reports.write.holders import VARIANTS, Column, column_of
 from reports.write.page_tables import SAME_COST, TARGETS, reliable
-from reports.write.tables import NOTHING, markdown, milliseconds, number
+from reports.write.tables import NOTHING, markdown, milliseconds, number, step_words
 
 # CPU seconds per simulated second at which methods stand side by side: a hundredth of real time.
 BUDGET = 1e-2
@@ -258,7 +258,7 @@ def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]
     """What a smaller step brings: an order only where the error falls to the finest step."""
     finest = min((row for row in members if row.purpose == "sweep"), key=lambda row: row.step)
     if not Outcome(finest.outcome).comparable:
-        return f"**{finest.outcome}** at {_step(finest.step)}"
+        return f"**{finest.outcome}** at {step_words(finest.step)}"
     match sweep.verdict:
         case Verdict.PLATEAU:
             luck = " (less is luck)" if any(error < sweep.plateau / 2 for error in told) else ""
@@ -270,10 +270,6 @@ def _brought(sweep: Sweep, members: Iterable[Measurement], told: Sequence[float]
         case Verdict.LEVELS:
             return "**levels off**"
         case Verdict.GROWS | Verdict.ERRATIC:
-            return f"**least at {_step(sweep.best_step)}**, then worse"
+            return f"**least at {step_words(sweep.best_step)}**, then worse"
         case _:
             return ""
-
-
-def _step(step: float) -> str:
-    return f"{number(1e3 * step)} ms"

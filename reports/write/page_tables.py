@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from reports.model.convergence import ENOUGH, ROOM_SOFT, Sweep, Verdict, by_method, groups, sweeps
 from reports.model.measure import Measurement
@@ -36,15 +37,22 @@ def compared_step(rows: Iterable[Measurement]) -> float:
 
 
 def scene_table(
-    rows: Sequence[Measurement], name: str, held: Mapping[str, str] | None = None, declared: Declared = undeclared
+    rows: Sequence[Measurement],
+    name: str,
+    held: Mapping[str, str] | None = None,
+    declared: Declared = undeclared,
+    runs: Mapping[str, str] = MappingProxyType({}),
 ) -> str:
     """A line a method of one scene: its errors and cost at the compared step, and what a smaller step brings.
+
+    `held`: who holds the joints, by method; `runs`: how many runs its answer takes, where that is more than one.
 
     Where it is known for a method, what its declared softness costs stands beside its error, and a plateau that is
     larger is marked: it is neither the step's nor declared.
     """
     step, told = compared_step(rows), quantity(name)
     verdicts = by_method(sweeps(rows), name)
+    held = held and {**held, **{f"{each} ({told})": held[each] for each, told in runs.items() if each in held}}
     known = [
         q
         for q in map(quantity, dict.fromkeys((name, "gap", "slip", "reaction")))
@@ -66,7 +74,8 @@ def scene_table(
         finest = min(row.step for row in members)
         if verdicts[key].plateau > ROOM_SOFT * declared(members[0].method, finest) + told.rounding:
             smaller += ", **not declared**"
-        body.append([members[0].method, *errors, cost, smaller])
+        method = members[0].method
+        body.append([f"{method} ({runs[method]})" if method in runs else method, *errors, cost, smaller])
     heads = [f"{q.label} error [{q.unit}]" if q.name not in ("gap", "slip") else f"{q.label} [{q.unit}]" for q in known]
     if soft:
         heads.insert(1, f"declared [{told.unit}]")

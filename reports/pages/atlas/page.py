@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -28,6 +29,7 @@ from reports.pages.atlas.table import CELLS, COSTS, Costs, Line, read, read_cost
 from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 from reports.run.cluster import CHUNK
+from reports.write.holders import told_variant
 from reports.write.tables import markdown, number, step_words
 
 FOLDER = Path(__file__).parents[2] / "results"
@@ -53,12 +55,15 @@ def costs(path: Path = FOLDER / COSTS) -> Costs | None:
 
 
 def of(subject: Subject) -> list[Line]:
-    """Methods in the order of the engines' registration, as far as they are registered."""
+    """Methods in the order of the engines' registration, as far as they are registered, by the names of pages."""
     from engines.registry import VARIANTS, method
 
     order = {method(engine): place for place, engine in enumerate(VARIANTS)}
     own = [line for line in lines() if line.subject == subject.name]
-    return sorted(own, key=lambda line: (order.get(line.method, len(order)), line.method, line.value))
+    own.sort(key=lambda line: (order.get(line.method, len(order)), line.method, line.value))
+    scene = subject.make(subject.values[1])
+    told = {method(engine): told_variant(scene, engine) for engine in VARIANTS}
+    return [replace(line, variant=told.get(line.method, line.variant)) for line in own]
 
 
 def outcome_table(own: Sequence[Line]) -> str:

@@ -209,7 +209,7 @@ SUBJECTS: tuple[Subject, ...] = (
         "the turning at the start",
         page="skate",
         remark=(
-            "For a method that holds the row the offset matters little. The naive zeroing (`pymunk default`) "
+            "For a method that holds the row the offset matters little. The naive zeroing (`pymunk naive`) "
             "is right only where the centre of mass is nearly on the skate."
         ),
     ),
