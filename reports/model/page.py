@@ -87,10 +87,6 @@ class Material:
         """The rows of some scenes at steps between those of the sweep that people use."""
         return self._of(scenes, "usual")
 
-    def beside(self, scenes: Iterable[Scene]) -> list[Measurement]:
-        """The rows of some scenes in engines that are extras."""
-        return self._of(scenes, "beside")
-
     def _of(self, scenes: Iterable[Scene], purpose: Purpose) -> list[Measurement]:
         names = {scene.name for scene in scenes}
         return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]

@@ -23,6 +23,7 @@ from reports.search.recipe import LEAST_RANK, NEAREST
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, line_of, worst_of
 from reports.search.subjects import Adapted, Alone, Subject, Told, is_shaped
+from reports.write.tables import number
 from reports.write.templates import environment
 
 LAWS = ("acceleration", "velocity")
@@ -109,8 +110,8 @@ def files(
         "planned": max(planned, len(told)),
         "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
         "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
-        "rank": f"{LEAST_RANK:g}",
-        "near": f"{NEAREST:g}",
+        "rank": number(LEAST_RANK, 1),
+        "near": number(NEAREST, 1),
         "rule": plan.origin(),
         "seeds": ", ".join(map(str, plan.seeds())),
         "by_rule": {one.chunk.seed for one in told} <= {*plan.seeds()},
@@ -202,4 +203,4 @@ def _how_soon(answer: Answer | None) -> str:
     size = answer.number("size")
     if math.isnan(size):
         return f"not found in {answer.number('asked'):.0f}"
-    return f"{answer.number('case') + 1:.0f}{'' if size == SIZES[0] else f' of {size:.0e}'}"
+    return f"{answer.number('case') + 1:.0f}{'' if size == SIZES[0] else f' of {number(size, 1)}'}"

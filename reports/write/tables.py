@@ -17,15 +17,15 @@ Held = Mapping[str, str] | None
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number as it is printed everywhere: 1.3e-4, 0.25, 12; a dash for an unknown one."""
+    """A number as it is printed everywhere: 1.3e-4, 1e-3, 0.25, 12; a dash for an unknown one."""
     if not math.isfinite(value):
         return NOTHING if math.isnan(value) else "∞"
     if value == 0:
         return "0"
-    if 1e-2 <= abs(value) < 1e4:
+    if abs(value) < 1e4 and abs(float(f"{value:.{digits - 1}e}")) >= 1e-2:
         return f"{value:.{digits}g}" if abs(value) < 10**digits - 0.5 else f"{value:.0f}"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
+    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
 def words_of(cell: str | float) -> str:

@@ -116,5 +116,5 @@ def test_crosscheck_bench_judge_prints_what_was_measured_beside_what_is_asked_fo
     told = [re.split(r" *│ *| {2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
     assert ["the dearest truths, of 0.25 s for the 1 of the full grid"] in told
     assert [repr(Disc()), "0.25"] in told
-    assert ["one evaluation", "3.0e-6", "5.0e-6", "s"] in told
-    assert ["1.0e-6", "2", "9", "pymunk extended", "4.5"] in told  # milliseconds
+    assert ["one evaluation", "3e-6", "5e-6", "s"] in told
+    assert ["1e-6", "2", "9", "pymunk extended", "4.5"] in told  # milliseconds

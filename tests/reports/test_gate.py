@@ -320,7 +320,7 @@ def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> 
 
 def test_the_report_tells_every_case_its_bound_and_what_failed():
     good = verdict(Check("error", "angle", 2e-5, 1e-4), Check("gap", "gap", 0.9, 1.0))
-    assert lines([good]) == [["disc", "toy default", "1.0e-3", "2.0e-5", "1.0e-4", "gap", "0.9", "passed"]]
+    assert lines([good]) == [["disc", "toy default", "1e-3", "2e-5", "1e-4", "gap", "0.9", "passed"]]
     bad = verdict(Check("error", "angle", 2e-4, 1e-4))
     assert lines([bad])[0][-1] == "FAILED: theory"
     changed = verdict(Check("error", "angle", 1.0, 2.0), moved=(Check("change", "angle", 1.0, 0.5),))

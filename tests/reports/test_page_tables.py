@@ -41,7 +41,7 @@ def test_the_cheapest_method_below_each_error_is_advised_for_each_engine():
     }
     head, *body = table(advice_table(advice(rows, "angle"), "angle", {"a fast": "ours"}))
     assert head[1:5] == ["below [rad]", "method", "joints held by", "step"]
-    assert body[0] == ["a", "0.01, 1e-4", "**fast**", "ours", "100 ms", "1.0e-5", "3", "2.5"]
+    assert body[0] == ["a", "0.01, 1e-4", "**fast**", "ours", "100 ms", "1e-5", "3", "2.5"]
     assert body[-1][:3] == ["b", "1e-4, 1e-6, 1e-9", "not reached"]
     assert len(body[-1]) == len(head)
 
@@ -76,9 +76,9 @@ def test_a_scenes_table_has_each_method_at_the_same_step_and_says_what_a_smaller
     ]
     head, *body = table(scene_table(rows, "angle"))
     assert head == ["method", "angle error [rad]", "gap [m]", "CPU [ms/s]", "as the step shrinks, plateau in rad"]
-    assert body[0] == ["a x", "1.0e-6", "1.7e-3", "100", "order 2.0 (3 points)"]
-    assert body[1][:2] == ["b y", "3.0e-5"]
-    assert body[1][-1].endswith("plateau **3.0e-5**")
+    assert body[0] == ["a x", "1e-6", "1.7e-3", "100", "order 2.0 (3 points)"]
+    assert body[1][:2] == ["b y", "3e-5"]
+    assert body[1][-1].endswith("plateau **3e-5**")
     assert body[2][:3] == ["c z", "**torn**", "0.5"]
     held = table(scene_table(rows, "angle", {"a x": "engine", "b y": "ours"}))
     assert [line[1] for line in held] == ["joints held by", "engine", "ours", "-"]
@@ -88,7 +88,7 @@ def test_a_plateau_above_what_is_declared_is_marked():
     rows = [*falling("a soft", (1e-2, 3e-5, 3e-5, 3e-5)), *falling("b wrong", (1e-2, 3e-5, 3e-5, 3e-5))]
     head, *body = table(scene_table(rows, "angle", declared=lambda method, step: 2e-5 if method == "a soft" else 1e-6))
     assert head[2] == "declared [rad]"
-    assert [line[2] for line in body] == ["2.0e-5", "1.0e-6"]
+    assert [line[2] for line in body] == ["2e-5", "1e-6"]
     assert ["not declared" in line[-1] for line in body] == [False, True]
     assert "declared" not in scene_table(rows, "angle")
 

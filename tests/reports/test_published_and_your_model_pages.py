@@ -88,8 +88,8 @@ def test_the_bounds_tell_the_default_from_the_tuned(answers):
 def test_the_page_has_a_line_for_each_method_and_leaves_out_what_was_not_run(answers):
     plain = replace(PAGE, figures=lambda material: {})  # what is drawn is drawn once
     text = render_page(PAGE, Material({}, answers), "the command")["published.md"]
-    assert "| published | 3.55e-03 | 4.19e-06 | 1.52e-08 |" in text
-    assert "| RK4 in the two angles | 3.55e-03 | 3.91e-06 | 1.28e-09 |" in text
+    assert "| published | 3.55e-3 | 4.19e-6 | 1.52e-8 |" in text
+    assert "| RK4 in the two angles | 3.55e-3 | 3.91e-6 | 1.28e-9 |" in text
     assert len(drifts(Material({}, answers))) == 5
     others = {task: answer for task, answer in answers.items() if task != Acrobot()}
     lost = {Acrobot(PYMUNK): replace(answers[Acrobot(PYMUNK)], values={"drift": np.full(3, np.inf)})}

@@ -165,7 +165,7 @@ def test_the_page_reads_its_rows_and_names_their_steps(monkeypatch):
     assert "4.0.1" not in told[0]["steps"]
     assert told[1]["steps"] == ""
     drawn = {f"{name}_{kind}" for name in ("mujoco", "pymunk") for kind in ("heat", "cost")}
-    assert set(page.figures(Material({}))) == drawn | {"mujoco_lines"}  # no line of pymunk has a step
+    assert set(page.figures(Material({}))) == drawn
     monkeypatch.setattr(page, "table", lambda: Table((), {}))
     assert page.words(Material({})) == {"engines": []}
 

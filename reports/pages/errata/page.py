@@ -36,15 +36,15 @@ class Told:
 def verdict(erratum: Erratum, values: Values, said: Sequence[Ruling]) -> str:
     """By how much the printed and the right formula miss the derivative that decides, and each engine's own motion."""
     told = (
-        f"{erratum.deciding[0].upper()}{erratum.deciding[1:]}: {digits(values.decides)} {erratum.unit}. The printed "
-        f"formula misses it by {number(values.miss)}, the right one by {number(values.agreement)}."
+        f"Decides ({erratum.deciding}): {digits(values.decides)} {erratum.unit}. The printed formula misses it by "
+        f"{number(values.miss)}, the right one by {number(values.agreement)}."
     )
     if not said:
         return told
     least, most = min(ruling.values.miss for ruling in said), max(ruling.values.agreement for ruling in said)
-    methods = ", ".join(dict.fromkeys(ruling.method for ruling in said))
+    methods, motions = (", ".join(dict.fromkeys(getattr(each, name) for each in said)) for name in ("method", "about"))
     return (
-        f"{told} Engines ({methods}; {said[0].about}): the printed one misses their motion by {number(least)} or more, "
+        f"{told} Engines ({methods}; {motions}): the printed one misses their motion by {number(least)} or more, "
         f"the right one by {number(most)} at most."
     )
 

@@ -40,9 +40,8 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """Rows by method, and how often the point pendulum swings to and fro."""
-    point = PointPendulum()
-    return {**lookups(material, SCENES), "periods": round(point.duration / point.pendulum.period)}
+    """Rows by method."""
+    return lookups(material, SCENES)
 
 
 # Where a method is known to fall short on the pendulums, each with its reason.

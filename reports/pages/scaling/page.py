@@ -29,7 +29,6 @@ from reports.write.unmeasured import UNMEASURED
 
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 FURTHER = ("X", "v")
-CROWDED = 0.085  # of the panel's height: labels nearer than this are pushed apart
 
 
 def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
@@ -42,7 +41,7 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
         figure = new_figure(5.6, theme)
         cost, error = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.25, 1]})
         for panel, title, what in (
-            (cost, "Cost of a step, with the slope of its last sizes", "CPU time of a step [µs]"),
+            (cost, "Cost of a step", "CPU time of a step [µs]"),
             (error, "Error at a fixed step", "largest angle error [rad]"),
         ):
             panel.set_title(title, loc="left", fontweight="bold", color=theme.ink)
@@ -56,7 +55,6 @@ def scaling_chart(found: Sequence[Series], theme: Theme = LIGHT) -> Figure:
             _draw(error, [(p.size, p.error) for p in series.points], looks[series.method])
         for panel in (cost, error):
             _ticks(panel)
-        _slopes(cost, found, looks, theme)
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in found]
         figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
     return figure
@@ -87,55 +85,6 @@ def _ticks(panel: Axes) -> None:
 def fitted(series: Series) -> tuple[float, int, int]:
     """The exponent of its cost, where it is one method, with the first and last size of the fit."""
     return cost_exponent(series, *ALIKE.get(series.method, (0, math.inf)))
-
-
-def _slopes(panel: Axes, found: Sequence[Series], looks: dict[str, dict[str, Any]], theme: Theme) -> None:
-    """The exponent of each series beside its last point; labels that would overlap are moved apart up and down."""
-    labels = []
-    for series in found:
-        slope, _, last = fitted(series)
-        known = [p for p in series.points if math.isfinite(p.step) and p.size <= last]
-        if math.isfinite(slope) and known:
-            labels.append((known[-1].size, math.log10(1e6 * known[-1].step), f"{slope:.1f}", looks[series.method]))
-    if not labels:
-        return
-    low, high = (math.log10(value) for value in panel.get_ylim())
-    apart = CROWDED / 2 * (high - low)
-    right = panel.get_xlim()[1]
-    panel.set_xlim(right=right * 1.6)
-    for size in {label[0] for label in labels}:
-        column = sorted((label for label in labels if label[0] == size), key=lambda label: label[1])
-        heights = _spread([label[1] for label in column], apart)
-        for (_, _, text, how), height in zip(column, heights, strict=True):
-            panel.annotate(
-                text,
-                (size, 10**height),
-                xytext=(7, 0),
-                textcoords="offset points",
-                color=how["color"],
-                va="center",
-                fontsize=8,
-                fontweight="bold",
-            )
-
-
-def _spread(heights: Sequence[float], apart: float) -> list[float]:
-    """Rising heights moved so that neighbours are at least `apart`, each group about its own middle."""
-    groups: list[list[float]] = []
-    for height in heights:
-        groups.append([height])
-        while len(groups) > 1 and _low(groups[-1], apart) - _high(groups[-2], apart) < apart:
-            last = groups.pop()
-            groups[-1] += last
-    return [_low(group, apart) + i * apart for group in groups for i in range(len(group))]
-
-
-def _low(group: Sequence[float], apart: float) -> float:
-    return sum(group) / len(group) - apart * (len(group) - 1) / 2
-
-
-def _high(group: Sequence[float], apart: float) -> float:
-    return sum(group) / len(group) + apart * (len(group) - 1) / 2
 
 
 NAME = "scaling"

@@ -28,7 +28,6 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, usual_series
 from reports.model.tasks import Motion
 from reports.pages.skate.experiments import CONSTRUCTIONS, FAILURES, known
-from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Note, Panel, Path, paths
 from reports.plots.theme import svg
 from reports.write import tables
@@ -111,15 +110,12 @@ OVERLAID: dict[str, tuple[str, Any]] = {
     "mujoco default": ("second", "--"),
     "mujoco tuned": ("second", ":"),
 }
-# One of each kind: five looks an engine are what a chart can tell apart.
-CHARTED = (
-    "pymunk skate: groove, predicted heading",
+# Beside the variants: "pymunk naive" is the centre's velocity zeroed, "tuned" the groove that is predicted.
+LISTED = {
+    "pymunk naive",
     "pymunk skate: groove, extrapolated",
     "mujoco friction blade",
-)
-# Beside the variants: "pymunk naive" is the centre's velocity zeroed, "tuned" the groove that is predicted.
-LISTED = {*CHARTED, "pymunk naive", "pymunk skate: point's velocity zeroed"} - {
-    "pymunk skate: groove, predicted heading"
+    "pymunk skate: point's velocity zeroed",
 }
 
 
@@ -162,17 +158,12 @@ def path_picture(material: Material) -> Figure:
 
 
 def figures(material: Material) -> dict[str, str]:
-    """Paths, parking, the slope, and every construction's error against the step."""
-    rows = [row for row in material.sweep((SLEIGH,)) if row.method in CHARTED]
-    found = {
+    """Paths, parking, and the slope."""
+    return {
         "paths": svg(path_picture(material), "The skate's path, ahead and backwards, in truth and in several methods"),
         "parking": svg(parking(), "Parallel parking by turns and slides, and the commutator"),
         "slope": svg(slope(), "An ideal skate that turns on a slope"),
     }
-    if any(Outcome(row.outcome).comparable for row in rows):
-        chart = charts.error_against_step(rows, lambda row: True, "position")
-        found["constructions"] = svg(chart, "Constructions of a skate: position error against step")
-    return found
 
 
 def constructions(rows: Sequence[Measurement], held: Mapping[str, str] | None = None) -> str:
@@ -225,7 +216,7 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
 
 
 def words(material: Material) -> Mapping[str, Any]:
-    """`constructions` (one of each kind), `all_constructions` and `counted` as tables.
+    """`constructions` (one of each kind) and `counted` as tables.
 
     Of the sleigh, UNMEASURED where there is none: `at(method, step)`, the
     row at about that step; `least(engine, variant)`, the row with the least position error; `finest(method)`, the row
@@ -246,7 +237,6 @@ def words(material: Material) -> Mapping[str, Any]:
     held = holders(cell for cell in material.rows if cell.scene == SLEIGH and cell.purpose == "sweep")
     return {
         "constructions": constructions([row for row in rows if usual_series(row) or row.method in LISTED], held),
-        "all_constructions": constructions(rows, held),
         "counted": counted(SCENES),
         "at": at,
         "least": least,

@@ -18,12 +18,11 @@ from reports.model.page import Material, Page
 from reports.plots.looks import HATCHES, SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, SERIES, Theme, new_figure, settings, style_axes, svg
 from reports.versions.catalogue import changes_between
-from reports.versions.comparison import Step, by_version, lines, size, steps
+from reports.versions.comparison import Step, by_version, steps
 from reports.versions.table import ACCELERATION, Entry, Table, catalogued, read
 from reports.write.tables import markdown, number
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
-MARKED = 6  # lines of a panel that are named: those with the largest steps
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
@@ -31,76 +30,6 @@ def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
     found = dict.fromkeys(entry.variant for entry in entries)
     usual = ("default", "tuned", "extended")
     return (*(each for each in usual if each in found), *sorted(each for each in found if each not in usual))
-
-
-def over_versions(
-    entries: Sequence[Entry], versions: Sequence[str], steps: Mapping[str, str], theme: Theme = LIGHT
-) -> Figure:
-    """Error over versions, a panel a method, a line a scene; lines with a step are coloured and named.
-
-    steps: version -> the short label of a step that stands there.
-    """
-    methods = variants(entries)
-    with settings():
-        figure = new_figure(2.9 * len(methods) + 0.6, theme)
-        panels = figure.subplots(len(methods), 1, squeeze=False, sharex=True).ravel()
-        for panel, method in zip(panels, methods, strict=True):
-            style_axes(panel, theme)
-            panel.set_yscale("log")
-            panel.set_title(method, loc="left", fontweight="bold", color=theme.ink)
-            panel.set_ylabel("largest error\n[rad, m, or relative]")
-            _draw_lines(panel, [entry for entry in entries if entry.variant == method], versions, theme)
-            for version, label in steps.items():
-                place = versions.index(version) - 0.5
-                panel.axvline(place, color=theme.quiet, linewidth=0.9, linestyle=(0, (4, 3)))
-                if panel is panels[0]:
-                    panel.annotate(
-                        label,
-                        (place, 1.0),
-                        xycoords=("data", "axes fraction"),
-                        xytext=(3, 3),
-                        textcoords="offset points",
-                        fontsize=8,
-                        color=theme.ink,
-                    )
-            panel.set_xlim(-0.6, len(versions) - 0.4)
-        panels[-1].set_xticks(range(len(versions)), versions, rotation=45, ha="right")
-        panels[-1].set_xlabel("version")
-    return figure
-
-
-def _draw_lines(panel: Axes, entries: Sequence[Entry], versions: Sequence[str], theme: Theme) -> None:
-    found = {scene: members for (_, scene, _), members in lines(entries).items()}
-    stepped = sorted((scene for scene in found if _change(found[scene]) > 1), key=lambda scene: -_change(found[scene]))
-    # Beside coloured lines the others are a background; where there are no coloured ones, they are the picture.
-    others = {"color": theme.grid if stepped else theme.quiet, "linewidth": 1.2, "zorder": 2}
-    for scene, members in found.items():
-        if scene not in stepped[:MARKED]:
-            _line(panel, members, versions, others)
-    for index, scene in enumerate(stepped[:MARKED]):
-        look = {
-            "color": getattr(theme, SERIES[index % len(SERIES)]),
-            "linewidth": 1.5,
-            "marker": MARKS[index % len(MARKS)],
-            "markersize": 4,
-            "zorder": 3,
-            "label": scene.replace("_", " "),
-        }
-        _line(panel, found[scene], versions, look)
-    if stepped:
-        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
-
-
-def _change(members: Sequence[Entry]) -> float:
-    """Decades between the least and the largest of a line's errors."""
-    sizes = [size(entry) for entry in members if entry.comparable]
-    return math.log10(max(sizes) / min(sizes)) if sizes else 0.0
-
-
-def _line(panel: Axes, members: Sequence[Entry], versions: Sequence[str], look: Mapping[str, object]) -> None:
-    shown = {entry.version: entry.error for entry in members if entry.comparable and entry.error > 0}
-    values = [shown.get(version, math.nan) for version in versions]
-    panel.plot(range(len(versions)), values, **look)  # type: ignore[arg-type]
 
 
 def heat_table(entries: Sequence[Entry], versions: Sequence[str], theme: Theme = LIGHT) -> Figure:
@@ -310,20 +239,16 @@ def words(material: Material) -> Mapping[str, Any]:
                 "marks": [(version, mark) for (name, version), mark in own.marks.items() if name == engine],
                 "scenes": len({entry.scene for entry in entries}),
                 "lines": len({(entry.scene, entry.variant) for entry in entries}),
-                "milliseconds": sorted({1e3 * entry.step for entry in entries if entry.step > 0}),
             }
         )
     return {"engines": told}
 
 
 def figures(material: Material) -> Mapping[str, str]:
-    """Lines where one has a step, a heat table and the cost of each engine, in the order of the page."""
+    """A heat table and the cost of each engine, in the order of the page."""
     own, out = table(), {}
     for engine in own.engines:
         entries, versions = [e for e in own.entries if e.engine == engine], own.versions(engine)
-        # Lines of which none has a step are no picture.
-        if at := {after: after for (_, _, after) in by_version(steps(entries))}:
-            out[f"{engine}_lines"] = svg(over_versions(entries, versions, at), f"{engine}: error over versions")
         out[f"{engine}_heat"] = svg(heat_table(entries, versions), f"{engine}: errors of scenes by version")
         out[f"{engine}_cost"] = svg(cost(entries, versions), f"{engine}: CPU time over versions")
     return out
