@@ -7,23 +7,26 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
+from html import escape
 from importlib.util import find_spec
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup
 
-from reports.model.tasks import Motion
+from reports.model.tasks import Motion, trajectory_of
 from reports.plots.theme import DARK, LIGHT, Theme
 from reports.run.files import temporary_folder
 from reports.site import markdown
-from reports.site.embed import data, picture, shown
+from reports.site.animated import animation
+from reports.site.embed import shown
 from reports.site.lesson import Lesson, Source
-from reports.site.lessons import LESSONS
-from reports.site.live.data import engine_files, running_in
+from reports.site.lessons import LESSONS, take_like
+from reports.site.live.data import ENGINE_FILES, engine_files, first_picture
+from reports.site.live.sliders import ENGINES, SHIPPED
 from reports.site.markdown import Formulas, rendered
-from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package, fetched
+from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package
 from reports.site.rows import explored
 
 MODULES = ("reference", "engines")
@@ -103,69 +106,74 @@ OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
 Elsewhere = Callable[[str], str]
 
 
+DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
+
+
 def lesson_page(
     lesson: Lesson, source: Source, formulas: Formulas, names: Mapping[str, str], elsewhere: Elsewhere
 ) -> dict[str, object]:
     """For lesson.html; `names`: pages by the Markdown file's name, `elsewhere`: where other files stand."""
-    takes = {name: shown(take, source.answers) for name, take in lesson.takes.items()}
-
-    def words(text: str) -> str:
-        return markdown.html(text, formulas)
 
     def quoted(text: str) -> Markup:
         """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", words(text)), names, elsewhere)
+        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text, formulas)), names, elsewhere)
         return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
 
-    steps = []
-    for index, ((heading, text), step) in enumerate(zip(lesson.words, lesson.steps, strict=True)):
+    parts = []
+    for words, each in zip(lesson.parts, lesson.experiments, strict=True):
+        live = lesson.scene(each.scene)
+        before = live.located(each.before)
+        told = {name: texts[before.get(name, place)] for name, (texts, place) in live.texts().items()}
         more = None
-        if step.section is not None and f"{step.section[0]}.md" in source.pages:
-            page, part = step.section
-            text_there = markdown.section(source.pages[f"{page}.md"], part)
-            if text_there is not None:  # a page made of few rows lacks some parts
-                href = f"../results/{page}.html#{markdown.slug(part)}"
-                more = {"heading": part, "href": href, "body": quoted(text_there)}
-        steps.append(
+        page, heading = each.section or ("", "")
+        there = markdown.section(source.pages.get(f"{page}.md", ""), heading) if page else None
+        if there is not None:  # a page made of few rows lacks some parts
+            href = f"../results/{page}.html#{markdown.slug(heading)}"
+            more = {"heading": heading, "href": href, "body": quoted(there)}
+
+        def dragged(text: str, told: Mapping[str, str] = told) -> Markup:
+            html = markdown.html(text, formulas)
+            number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
+            return Markup(DRAGGED.sub(lambda found: number.format(found[1], escape(told[found[1]])), html))
+
+        parts.append(
             {
-                "number": index + 1,
-                "heading": heading,
-                "words": Markup(words(text)),
-                "take": step.take,
-                "shown": takes[step.take],
-                "picture": Markup(picture(takes[step.take], f"{lesson.title}: {heading}")),
-                "on": sorted(step.switched_on),
-                "broken": step.broken,
-                "pictures": {
-                    name: Markup(picture(takes[name], f"{lesson.title}: {word}")) for word, name, _ in step.broken
-                },
+                "heading": words.heading,
+                "text": dragged(words.text),
+                "question": Markup(markdown.html(words.question, formulas).removeprefix("<p>").removesuffix("</p>\n")),
+                "answers": words.answers,
+                "after_words": dragged(words.after),
+                "scene": lesson.scenes.index(live),
+                "before": before,
+                "after": live.located(each.after),
+                "shown": " ".join(sorted(each.shown)),
                 "more": more,
             }
         )
     return {
         "title": lesson.title,
         "lesson": lesson,
-        "steps": steps,
-        "takes": {name: _json(data(take)) for name, take in takes.items()},
+        "parts": parts,
+        "scenes": [{"key": live.key, "fields": [slider.field for slider in live.sliders]} for live in lesson.scenes],
+        "picture": Markup(first_picture(lesson.scene(lesson.experiments[0].scene))),
+        "settings": ENGINES,
+        "told_steps": lambda live: live.texts()["steps"][0],
     }
 
 
-def front_page(lesson: Lesson, source: Source) -> dict[str, object]:
-    """For index.html, with a motion of this lesson."""
-    take = shown(lesson.takes["free"] if "free" in lesson.takes else next(iter(lesson.takes.values())), source.answers)
-    return {
-        "figure": Markup(picture(take, "A four-bar linkage falls: the truth, and two engines over it")),
-        "take": _json(data(take)),
-        "shown": take,
-        "results": [
-            (name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")
-        ],
+def front_picture(source: Source) -> str:
+    """A motion of the first lesson that moves without a script."""
+    live = next(live for live in LESSONS[0].scenes if live.word == "let go")
+    methods = tuple(
+        (f"{names} {SHIPPED}", live.stored()[name, 0]) for name, names in (("munk", "pymunk"), ("mujoco", "MuJoCo"))
+    )
+    take = replace(take_like(live.scene, ()), samples=live.frames)
+    motions = {
+        words: trajectory_of(answer).pose
+        for words, task in methods
+        if (answer := source.answers.get(task)) and answer.finished
     }
-
-
-def _json(value: object) -> Markup:
-    """JSON that can stand in a script element."""
-    return Markup(json.dumps(value, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"))
+    return animation(replace(shown(take, {}), motions=motions), "A four-bar linkage falls")
 
 
 HERE = Path(__file__).parent
@@ -213,7 +221,8 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
             f"lessons/{lesson.name}.html",
             "lesson.html",
             **lesson_page(lesson, source, formulas, names, _elsewhere),
-            **running_in(lesson, running, missing),
+            engines=[word for path, word in ENGINE_FILES.items() if path in running],
+            missing=missing,
         )
     api = _reference(source)
     files |= api
@@ -226,8 +235,10 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     titles = [(name, markdown.title(text)) for name, text in guides]
     write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
     write("results/rows.html", "explorer.html", title="All stored rows")
-    write("index.html", "index.html", title="How far from ideal?", **front_page(lessons[0], source))
-    listed, why = rendered(formulas, source.cache)
+    shown_pages = [(name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")]
+    write("index.html", "index.html", title="How far from ideal?", results=shown_pages, lecture="")
+    files["front.svg"] = front_picture(source).encode()
+    listed, why = rendered(formulas, source.registry)
     if why:
         source.troubles.append(f"Formulas are shown as TeX, since {why}.")
     write(
@@ -255,7 +266,7 @@ def _packages(packages: Iterable[Package], source: Source) -> Files:
     found: Files = {}
     for package in packages:
         try:
-            content = fetched(package, source.cache)
+            content = source.registry.fetched(package)
         except NotFetched as reason:
             source.troubles.append(f"Built without {package.name} ({package.use}): {reason}.")
             continue

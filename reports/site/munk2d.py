@@ -16,12 +16,12 @@ from importlib.metadata import version
 from pathlib import Path
 
 from reports.run.files import temporary_folder
-from reports.site.packages import NotFetched
+from reports.site.packages import ANSWERING, NotFetched
 
 SHIM = Path(__file__).with_suffix(".c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (
-    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web"),
+    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
     *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
 )
 THREADED = "cpHastySpace.c"  # steps with threads, which pages have not
@@ -47,6 +47,7 @@ def compiled(cache: Path) -> bytes:
 def _sources(release: str, folder: Path) -> Path:
     """The folder of Munk2D in pymunk's source package of this release, which pip fetches."""
     words = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    words += ["--retries", "0", "--timeout", str(ANSWERING // 2)]  # s without an answer, of which there may be two
     words += ["--no-binary", "pymunk", f"pymunk=={release}", "--dest", str(folder)]
     ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
     found = list(folder.glob("pymunk-*.tar.gz"))
