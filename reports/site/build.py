@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from html import escape
-from importlib.util import find_spec
 from pathlib import Path
 
 import jinja2
@@ -17,74 +14,18 @@ from markupsafe import Markup
 
 from reports.model.tasks import Motion, trajectory_of
 from reports.plots.theme import DARK, LIGHT, Theme
-from reports.run.files import temporary_folder
 from reports.site import markdown
 from reports.site.animated import animation
 from reports.site.embed import shown
+from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Lesson, Source
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import ENGINE_FILES, engine_files, first_picture
-from reports.site.live.sliders import ENGINES, SHIPPED
+from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import Formulas, rendered
 from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package
+from reports.site.reference import reference_pages
 from reports.site.rows import explored
-
-MODULES = ("reference", "engines")
-PATIENCE = 300  # s
-STYLE = re.compile(rb"<style>(.*?)</style>", re.DOTALL)
-# pdoc's names of colours, by ours.
-ROLES = {
-    **{"text": "ink", "muted": "quiet", "link": "second", "link-hover": "first", "code": "grid", "active": "middling"},
-    **{"accent": "grid", "accent2": "quiet", "nav-hover": "grid", "name": "second", "def": "third"},
-    "annotation": "third",
-}
-
-
-def reference_pages() -> dict[str, bytes]:
-    """Files below reference/ of the site. Raises NotFetched where pdoc is not installed or fails."""
-    if find_spec("pdoc") is None:
-        raise NotFetched("pdoc is not installed: pip install '.[site]'")
-    with temporary_folder() as folder:
-        theme, output = folder / "theme", folder / "pages"
-        theme.mkdir()
-        (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
-        words = [sys.executable, "-m", "pdoc", "--no-show-source", "--no-search", "--template-directory", str(theme)]
-        words += ["--footer-text", "crosscheck", "--output-directory", str(output), *MODULES]
-        ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
-        if ended.returncode:
-            raise NotFetched(f"pdoc failed: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
-        found = {path.relative_to(output).as_posix(): path for path in sorted(output.rglob("*")) if path.is_file()}
-        # A browser asks for an icon unless the page has one.
-        icon = (b"</head>", b'<link rel="icon" href="data:,"></head>')
-        pages = {f"reference/{name}": path.read_bytes().replace(*icon, 1) for name, path in found.items()}
-    return shared_styles(pages)
-
-
-def shared_styles(pages: dict[str, bytes]) -> dict[str, bytes]:
-    """The pages with the styles that stand in each of them, most of a small page, as files of their own."""
-    names: dict[bytes, str] = {}
-    out: dict[str, bytes] = {}
-    for page, text in pages.items():
-        up = "../" * (page.count("/") - 1)
-
-        def linked(found: re.Match[bytes], up: str = up) -> bytes:
-            name = names.setdefault(found[1], f"style-{len(names)}.css")
-            return f'<link rel="stylesheet" href="{up}{name}">'.encode()
-
-        out[page] = STYLE.sub(linked, text) if page.endswith(".html") else text
-    return out | {f"reference/{name}": text for text, name in names.items()}
-
-
-def _sheet() -> str:
-    light, dark = _colours(LIGHT), _colours(DARK)
-    # What pdoc colours by itself is too dark on dark paper.
-    dark += " .pdoc-code .nb, .pdoc-code .kt { color: var(--def) } .pdoc-code .o { color: var(--muted) }"
-    return f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} :root {{ color-scheme: dark }} }}\n"
-
-
-def _colours(theme: Theme) -> str:
-    named = " ".join(f"--{name}: {getattr(theme, role)};" for name, role in ROLES.items())
-    return f":root {{ --pdoc-background: {theme.paper}; }} .pdoc {{ {named} }}"
 
 
 def colours() -> str:
@@ -164,9 +105,7 @@ def lesson_page(
 def front_picture(source: Source) -> str:
     """A motion of the first lesson that moves without a script."""
     live = next(live for live in LESSONS[0].scenes if live.word == "let go")
-    methods = tuple(
-        (f"{names} {SHIPPED}", live.stored()[name, 0]) for name, names in (("munk", "pymunk"), ("mujoco", "MuJoCo"))
-    )
+    methods = tuple((f"{names} {SHIPPED}", live.stored()[name, 0]) for name, names in NAMES.items())
     take = replace(take_like(live.scene, ()), samples=live.frames)
     motions = {
         words: trajectory_of(answer).pose
@@ -226,6 +165,11 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
         )
     api = _reference(source)
     files |= api
+    if api:
+        modules = sorted(name.removesuffix(".html").partition("/")[2] for name in api if name.endswith(".html"))
+        links = "".join(f'<li><a href="{name}.html">{name.replace("/", ".")}</a></li>' for name in modules)
+        body = Markup(f"<h1>Reference</h1><ul class='modules'>{links}</ul>")
+        write("reference/index.html", "article.html", title="Reference", body=body)
     guides = [(path.stem, path.read_text(encoding="utf-8")) for path in sorted((HERE / "howto").glob("*.md"))]
     below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
     for name, text in guides:
@@ -235,8 +179,15 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     titles = [(name, markdown.title(text)) for name, text in guides]
     write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
     write("results/rows.html", "explorer.html", title="All stored rows")
+    lecture = ""
+    if source.lecture:
+        try:
+            lecture = lecture_html(source.lecture, formulas)
+            write("lecture.html", "article.html", title="A lecture of 45 minutes", body=Markup(lecture))
+        except NotFetched as reason:
+            source.troubles.append(f"Built without the lecture: {reason}.")
     shown_pages = [(name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")]
-    write("index.html", "index.html", title="How far from ideal?", results=shown_pages, lecture="")
+    write("index.html", "index.html", title="How far from ideal?", results=shown_pages, lecture=bool(lecture))
     files["front.svg"] = front_picture(source).encode()
     listed, why = rendered(formulas, source.registry)
     if why:

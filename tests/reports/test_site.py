@@ -267,12 +267,12 @@ def test_a_method_that_gave_up_stays_where_it_was(falling):
 
 
 def test_a_film_is_written(falling, tmp_path, monkeypatch):
-    monkeypatch.setattr("reports.site.animated.FRAMES", 4)
+    monkeypatch.setattr("reports.site.animated.SECONDS", 0.16)
     film(falling, "A title", tmp_path / "one.gif")
     from PIL import Image
 
     with Image.open(tmp_path / "one.gif") as image:
-        assert getattr(image, "n_frames", 1) == 4
+        assert (getattr(image, "n_frames", 1), image.size, image.info["duration"]) == (4, (1280, 560), 40)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)  # as if it were not installed
     with pytest.raises(BadInput, match="needs the program ffmpeg"):

@@ -30,7 +30,7 @@ from reports.site.drawn import index_of, joints_of, loose, measure_of
 from reports.site.embed import forces, picture, shown
 from reports.site.lesson import Lesson, Source, Take
 from reports.site.live.models import plan_of, text_of
-from reports.site.live.sliders import ENGINES, Live, Point
+from reports.site.live.sliders import ENGINES, Live, Name, Point
 from reports.site.munk2d import compiled
 from reports.site.packages import MUJOCO, NotFetched
 
@@ -69,7 +69,7 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     motions = [scene.motion(times) if not pinned or scene == live.scene else None for scene in places]
     truth = live.scene.motion(times)
     stored = live.stored()
-    ways = {
+    ways: dict[Name, list[dict[str, Any]]] = {
         "mujoco": [_or_why(lambda own=own: _texts(own, live, mechanisms, pool), own) for _, own in live.mujoco],
         "munk": [_or_why(lambda own=own: _plans(own, live, mechanisms, pool), own) for _, own in live.munk],
     }

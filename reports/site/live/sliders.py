@@ -14,6 +14,7 @@ from reports.model.tasks import Motion
 
 Name = Literal["munk", "mujoco"]
 Point = tuple[float, float]
+NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
 MOST = 125  # places of a scene's sliders: each has a model of each engine and a drawing in the page
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
 # Settings of the engines: values in the page, and what is written beside them. None: as the method has it.
