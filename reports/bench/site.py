@@ -16,20 +16,13 @@ TURNS = 25
 LESSON, SCENE = "lessons/four_bar.html", 1  # the linkage that is let go, which moves for a second
 # The first drawing of a page that has something in it, as the browser tells it [ms].
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
-STEPPED = """([scene, step, turns]) => {
-  const { engines, form, runMujoco, runMunk } = window.crosscheckLive;
-  form.choice.value = String(scene);
-  const now = form.setting();
-  now.steps = Math.round(now.scene.duration / step);
-  now.every = now.steps / now.scene.frames;
+STEPPED = """async ([scene, step, turns]) => {
+  const { ask, form } = window.crosscheck;
+  form.move(scene, {});
+  const setting = { ...form.setting(null), steps: Math.round(1 / step) };
   const spent = { munk: [], mujoco: [] };
   for (let turn = 0; turn < turns; turn++) {
-    let before = performance.now();
-    runMunk(engines.munk, now);
-    spent.munk.push(performance.now() - before);
-    before = performance.now();
-    runMujoco(engines.mujoco, now);
-    spent.mujoco.push(performance.now() - before);
+    for (const { name, milliseconds } of (await ask({ setting })).motions) spent[name].push(milliseconds);
   }
   return spent;
 }"""
@@ -91,7 +84,7 @@ def _times(browser: Any, address: str) -> Times:
         painted = page.evaluate(PAINTED) / 1000
         lesson = browser.new_page()
         lesson.goto(address + LESSON)
-        lesson.wait_for_selector("#live.ready")
+        lesson.wait_for_selector("#lesson.ready")
         ready = lesson.evaluate("performance.now()") / 1000
         spent = lesson.evaluate(STEPPED, [SCENE, STEP, TURNS])
         return Times(painted, ready, {name: min(values) for name, values in spent.items()})

@@ -53,11 +53,15 @@ def site(
         pages=_texts(folder, "*.md"),
         pictures=_texts(folder, "*.svg"),
         tables=_texts(folder, "*.csv") | _texts(folder, "programs/*.py"),
-        answers=_answers(console, results),
+        answers={},
         cache=results / CACHE,
         foot=_foot(),
-        contributing=_contributing(),
+        contributing=_of_checkout("CONTRIBUTING.md"),
+        lecture=_of_checkout("lecture.ipynb"),
     )
+    if source.registry.trouble:  # at once, for the rest takes a while
+        print(f"crosscheck: parts of the site will be missing: {source.registry.trouble}", file=sys.stderr)
+    source.answers = _answers(console, results)
     files = build(source)
     with kept() as check:
         size = write_site(output, files)
@@ -75,8 +79,8 @@ def _texts(folder: Path, pattern: str) -> dict[str, str]:
     return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in found}
 
 
-def _contributing() -> str:
-    path = CHECKOUT / "CONTRIBUTING.md"
+def _of_checkout(name: str) -> str:
+    path = CHECKOUT / name
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 

@@ -87,10 +87,13 @@ def built(path: Path) -> Path:
     return _used(folder)
 
 
-def sources(name: str, version: str, folder: Path) -> Path:
-    """The unpacked source package of a version, below `folder`, which pip fetches. Raises BadInput, in one line."""
+def sources(name: str, version: str, folder: Path, *options: str) -> Path:
+    """The unpacked source package of a version, below `folder`, which pip fetches with these options of its own.
+
+    Raises BadInput, in one line.
+    """
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
-    command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder)]
+    command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder), *options]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
     found = list(folder.glob(f"{name}-*.tar.gz"))
     if ended.returncode or not found:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Sequence
+import subprocess
+from collections.abc import Iterator, Sequence
 from html import escape
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
+from PIL import Image
 
 from reference.plane import rotated
 from reports.model.ending import BadInput
@@ -175,38 +177,61 @@ def _sheet() -> str:
     )
 
 
-FRAMES = 60
-INCHES = (7.0, 3.2)
-DOTS = 90  # an inch
+RATE = 25  # frames a second, of a film; a GIF's frames last whole hundredths of a second, as these do
+INCHES = (12.8, 5.6)
+DOTS = 100  # an inch: 1280 points wide
 
 
 def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
     """Write the film to a path that ends in .gif or .mp4. Raises BadInput where ffmpeg is needed and not there."""
     program = ffmpeg() if path.suffix == ".mp4" else None
-    frames = np.unique(np.linspace(0, len(shown.t) - 1, FRAMES).round().astype(int))
-    rate = max(1, round(len(frames) / SECONDS))  # a whole number of frames a second, as films have
+    frames = np.linspace(0, len(shown.t) - 1, int(RATE * SECONDS))
     with settings():
-        figure = Figure(figsize=INCHES, facecolor=theme.paper, layout="constrained")
+        figure = Figure(figsize=INCHES, dpi=DOTS, facecolor=theme.paper, layout="constrained")
+        canvas = FigureCanvasAgg(figure)
         stage, chart = figure.subplots(1, 2, width_ratios=(1.2, 1))
-        figure.suptitle(title, fontsize=11, color=theme.ink, x=0.02, ha="left")
+        figure.suptitle(title, fontsize=15, color=theme.ink, x=0.02, ha="left")
         moving = _film_stage(stage, shown, theme)
         growing = _film_chart(chart, shown, theme)
-        figure.draw_without_rendering()
+        canvas.draw()
         figure.set_layout_engine("none")  # once is enough: the panels stay where they are
+        still = canvas.copy_from_bbox(figure.bbox)
 
-        def draw(frame: int) -> list[Line2D]:
+        def picture(frame: float) -> Image.Image:
+            """What stands still is drawn once; a pose between two samples is between theirs."""
+            canvas.restore_region(still)
+            before, share = int(frame), frame % 1
+            after = min(before + 1, len(shown.t) - 1)
             for line, points, pose in moving:
-                line.set_data(*(rotated(pose[frame, 2], points) + pose[frame, :2]).T)
+                now = pose[before] + share * (pose[after] - pose[before])
+                line.set_data(*(rotated(now[2], points) + now[:2]).T)
+                stage.draw_artist(line)
             for line, error in growing:
-                line.set_data(shown.t[: frame + 1], error[: frame + 1])
-            return [line for line, *_ in (*moving, *growing)]
+                line.set_data(shown.t[: after + 1], error[: after + 1])
+                chart.draw_artist(line)
+            return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
 
-        made = FuncAnimation(figure, lambda index: draw(int(frames[index])), frames=len(frames), blit=False)
+        pictures = map(picture, frames.tolist())
         if program is None:
-            made.save(str(path), writer=PillowWriter(fps=rate), dpi=DOTS)
+            _gif(pictures, path)
         else:
-            with rc_context({"animation.ffmpeg_path": program}):
-                made.save(str(path), writer=FFMpegWriter(fps=rate), dpi=DOTS)
+            _mp4(pictures, program, path, canvas.get_width_height())
+
+
+def _gif(pictures: Iterator[Image.Image], path: Path) -> None:
+    """All frames share the colours of the first one that has everything in it, the last."""
+    held = list(pictures)
+    colours = held[-1].quantize(64, dither=Image.Dither.NONE)
+    first, *rest = (each.quantize(palette=colours, dither=Image.Dither.NONE) for each in held)
+    first.save(path, save_all=True, append_images=rest, duration=1000 // RATE, loop=0, optimize=False)
+
+
+def _mp4(pictures: Iterator[Image.Image], program: str, path: Path, size: tuple[int, int]) -> None:
+    words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "{}x{}".format(*size)]
+    words += ["-r", str(RATE), "-i", "-", "-pix_fmt", "yuv420p", "-preset", "veryfast", str(path)]
+    ended = subprocess.run(words, input=b"".join(each.tobytes() for each in pictures), capture_output=True)
+    if ended.returncode:
+        raise OSError(f"ffmpeg: {(ended.stderr.decode(errors='replace').strip().splitlines() or ['no reason'])[-1]}")
 
 
 def ffmpeg() -> str:
@@ -239,7 +264,7 @@ def _film_stage(panel: Axes, shown: Shown, theme: Theme) -> list[tuple[Line2D, A
         for index, body in enumerate(shown.mechanism.bodies):
             for each in drawn.body_lines(shown.mechanism, shown.take, body.name):
                 points = np.vstack([each.points, each.points[:1]]) if each.closed else each.points
-                (line,) = panel.plot([], [], color=colour, linewidth=0.6 * thick, solid_capstyle="round")
+                (line,) = panel.plot([], [], color=colour, linewidth=0.8 * thick, solid_capstyle="round", animated=True)
                 out.append((line, points, pose[:, index]))
     return out
 
@@ -249,17 +274,21 @@ def _film_chart(panel: Axes, shown: Shown, theme: Theme) -> list[tuple[Line2D, A
     style_axes(panel, theme)
     panel.set_yscale("log")
     panel.set_xlim(shown.t[0], shown.t[-1])
-    panel.set_xlabel("time [s]")
-    panel.set_title("largest error of an angle [rad]", fontsize=9, color=theme.ink, loc="left")
+    panel.set_xlabel("time [s]", fontsize=12)
+    panel.tick_params(labelsize=11)
+    panel.set_title("largest error of an angle [rad]", fontsize=12, color=theme.ink, loc="left")
     out: list[tuple[Line2D, Array]] = []
     for (role, _, dash), (name, pose) in zip(LOOKS, shown.motions.items(), strict=False):
         error = np.abs(pose - shown.truth.pose)[..., 2].max(axis=1)
         error = np.where(error > 0, error, np.nan)
         style = (0, tuple(float(part) / 2 for part in dash.split())) if dash else "-"
-        (line,) = panel.plot([], [], color=getattr(theme, role), linewidth=1.6, linestyle=style, label=name)
+        look: dict[str, Any] = {"color": getattr(theme, role), "linestyle": style}
+        (line,) = panel.plot([], [], linewidth=2.0, animated=True, **look)
+        panel.plot([], [], linewidth=3.0, label=name, **look)  # for the legend, which stands still
         out.append((line, error))
     low, high = decades([error for _, error in out])
     panel.set_ylim(10.0**low, 10.0**high)
-    if out:
-        panel.legend(fontsize=7.5, labelcolor=theme.ink, facecolor=theme.paper, edgecolor=theme.grid)
+    panel.plot([], [], color=theme.ink, linewidth=2.0, label="the exact motion")
+    style_legend = {"labelcolor": theme.ink, "facecolor": theme.paper, "edgecolor": theme.grid}
+    panel.legend(fontsize=11, loc="lower right", **style_legend)
     return out

@@ -4,84 +4,28 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import fields
-from importlib.util import find_spec
+from dataclasses import fields, replace
+from html import escape
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup
 
-from reports.model.tasks import Motion
+from reports.model.tasks import Motion, trajectory_of
 from reports.plots.theme import DARK, LIGHT, Theme
-from reports.run.files import temporary_folder
 from reports.site import markdown
-from reports.site.embed import data, picture, shown
+from reports.site.animated import animation
+from reports.site.embed import shown
+from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Lesson, Source
-from reports.site.lessons import LESSONS
-from reports.site.live.data import engine_files, running_in
+from reports.site.lessons import LESSONS, take_like
+from reports.site.live.data import ENGINE_FILES, engine_files, first_picture
+from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import Formulas, rendered
-from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package, fetched
+from reports.site.packages import D3, KATEX, MUJOCO, PLOT, NotFetched, Package
+from reports.site.reference import reference_pages
 from reports.site.rows import explored
-
-MODULES = ("reference", "engines")
-PATIENCE = 300  # s
-STYLE = re.compile(rb"<style>(.*?)</style>", re.DOTALL)
-# pdoc's names of colours, by ours.
-ROLES = {
-    **{"text": "ink", "muted": "quiet", "link": "second", "link-hover": "first", "code": "grid", "active": "middling"},
-    **{"accent": "grid", "accent2": "quiet", "nav-hover": "grid", "name": "second", "def": "third"},
-    "annotation": "third",
-}
-
-
-def reference_pages() -> dict[str, bytes]:
-    """Files below reference/ of the site. Raises NotFetched where pdoc is not installed or fails."""
-    if find_spec("pdoc") is None:
-        raise NotFetched("pdoc is not installed: pip install '.[site]'")
-    with temporary_folder() as folder:
-        theme, output = folder / "theme", folder / "pages"
-        theme.mkdir()
-        (theme / "theme.css").write_text(_sheet(), encoding="utf-8")
-        words = [sys.executable, "-m", "pdoc", "--no-show-source", "--no-search", "--template-directory", str(theme)]
-        words += ["--footer-text", "crosscheck", "--output-directory", str(output), *MODULES]
-        ended = subprocess.run(words, capture_output=True, text=True, encoding="utf-8", timeout=PATIENCE)
-        if ended.returncode:
-            raise NotFetched(f"pdoc failed: {(ended.stderr.strip().splitlines() or ['no reason'])[-1]}")
-        found = {path.relative_to(output).as_posix(): path for path in sorted(output.rglob("*")) if path.is_file()}
-        # A browser asks for an icon unless the page has one.
-        icon = (b"</head>", b'<link rel="icon" href="data:,"></head>')
-        pages = {f"reference/{name}": path.read_bytes().replace(*icon, 1) for name, path in found.items()}
-    return shared_styles(pages)
-
-
-def shared_styles(pages: dict[str, bytes]) -> dict[str, bytes]:
-    """The pages with the styles that stand in each of them, most of a small page, as files of their own."""
-    names: dict[bytes, str] = {}
-    out: dict[str, bytes] = {}
-    for page, text in pages.items():
-        up = "../" * (page.count("/") - 1)
-
-        def linked(found: re.Match[bytes], up: str = up) -> bytes:
-            name = names.setdefault(found[1], f"style-{len(names)}.css")
-            return f'<link rel="stylesheet" href="{up}{name}">'.encode()
-
-        out[page] = STYLE.sub(linked, text) if page.endswith(".html") else text
-    return out | {f"reference/{name}": text for text, name in names.items()}
-
-
-def _sheet() -> str:
-    light, dark = _colours(LIGHT), _colours(DARK)
-    # What pdoc colours by itself is too dark on dark paper.
-    dark += " .pdoc-code .nb, .pdoc-code .kt { color: var(--def) } .pdoc-code .o { color: var(--muted) }"
-    return f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} :root {{ color-scheme: dark }} }}\n"
-
-
-def _colours(theme: Theme) -> str:
-    named = " ".join(f"--{name}: {getattr(theme, role)};" for name, role in ROLES.items())
-    return f":root {{ --pdoc-background: {theme.paper}; }} .pdoc {{ {named} }}"
 
 
 def colours() -> str:
@@ -103,67 +47,72 @@ OWN_FILE = re.compile(r'(href|src)="(?!https?:|#|mailto:|\.\./)([^"]+)"')
 Elsewhere = Callable[[str], str]
 
 
+DRAGGED = re.compile(r"\{(\w+)\}")  # a number in a lesson's words that moves a control
+
+
 def lesson_page(
     lesson: Lesson, source: Source, formulas: Formulas, names: Mapping[str, str], elsewhere: Elsewhere
 ) -> dict[str, object]:
     """For lesson.html; `names`: pages by the Markdown file's name, `elsewhere`: where other files stand."""
-    takes = {name: shown(take, source.answers) for name, take in lesson.takes.items()}
-
-    def words(text: str) -> str:
-        return markdown.html(text, formulas)
 
     def quoted(text: str) -> Markup:
         """A part of a page of results, without the anchors that it has there; its files stand in another folder."""
-        told = markdown.linked(re.sub(r' id="[^"]*"', "", words(text)), names, elsewhere)
+        told = markdown.linked(re.sub(r' id="[^"]*"', "", markdown.html(text, formulas)), names, elsewhere)
         return Markup(OWN_FILE.sub(r'\1="../results/\2"', told))
 
-    steps = []
-    for index, ((heading, text), step) in enumerate(zip(lesson.words, lesson.steps, strict=True)):
+    parts = []
+    for words, each in zip(lesson.parts, lesson.experiments, strict=True):
+        live = lesson.scene(each.scene)
+        before = live.located(each.before)
+        told = {name: texts[before.get(name, place)] for name, (texts, place) in live.texts().items()}
         more = None
-        if step.section is not None and f"{step.section[0]}.md" in source.pages:
-            page, part = step.section
-            text_there = markdown.section(source.pages[f"{page}.md"], part)
-            if text_there is not None:  # a page made of few rows lacks some parts
-                href = f"../results/{page}.html#{markdown.slug(part)}"
-                more = {"heading": part, "href": href, "body": quoted(text_there)}
-        steps.append(
+        page, heading = each.section or ("", "")
+        there = markdown.section(source.pages.get(f"{page}.md", ""), heading) if page else None
+        if there is not None:  # a page made of few rows lacks some parts
+            href = f"../results/{page}.html#{markdown.slug(heading)}"
+            more = {"heading": heading, "href": href, "body": quoted(there)}
+
+        def dragged(text: str, told: Mapping[str, str] = told) -> Markup:
+            html = markdown.html(text, formulas)
+            number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
+            return Markup(DRAGGED.sub(lambda found: number.format(found[1], escape(told[found[1]])), html))
+
+        parts.append(
             {
-                "number": index + 1,
-                "heading": heading,
-                "words": Markup(words(text)),
-                "take": step.take,
-                "shown": takes[step.take],
-                "picture": Markup(picture(takes[step.take], f"{lesson.title}: {heading}")),
-                "on": sorted(step.switched_on),
-                "broken": step.broken,
-                "pictures": {
-                    name: Markup(picture(takes[name], f"{lesson.title}: {word}")) for word, name, _ in step.broken
-                },
+                "heading": words.heading,
+                "text": dragged(words.text),
+                "question": Markup(markdown.html(words.question, formulas).removeprefix("<p>").removesuffix("</p>\n")),
+                "answers": words.answers,
+                "after_words": dragged(words.after),
+                "scene": lesson.scenes.index(live),
+                "before": before,
+                "after": live.located(each.after),
+                "shown": " ".join(sorted(each.shown)),
                 "more": more,
             }
         )
     return {
         "title": lesson.title,
         "lesson": lesson,
-        "steps": steps,
-        "takes": {name: _json(data(take)) for name, take in takes.items()},
+        "parts": parts,
+        "scenes": [{"key": live.key, "fields": [slider.field for slider in live.sliders]} for live in lesson.scenes],
+        "picture": Markup(first_picture(lesson.scene(lesson.experiments[0].scene))),
+        "settings": ENGINES,
+        "told_steps": lambda live: live.texts()["steps"][0],
     }
 
 
-def front_page(lesson: Lesson, source: Source) -> dict[str, object]:
-    """For index.html, with a motion of this lesson."""
-    take = shown(lesson.takes["free"] if "free" in lesson.takes else next(iter(lesson.takes.values())), source.answers)
-    return {
-        "figure": Markup(picture(take, "A four-bar linkage falls: the truth, and two engines over it")),
-        "take": _json(data(take)),
-        "shown": take,
-        "results": [(name, markdown.title(text)) for name, text in source.pages.items()],
+def front_picture(source: Source) -> str:
+    """A motion of the first lesson that moves without a script."""
+    live = next(live for live in LESSONS[0].scenes if live.word == "let go")
+    methods = tuple((f"{names} {SHIPPED}", live.stored()[name, 0]) for name, names in NAMES.items())
+    take = replace(take_like(live.scene, ()), samples=live.frames)
+    motions = {
+        words: trajectory_of(answer).pose
+        for words, task in methods
+        if (answer := source.answers.get(task)) and answer.finished
     }
-
-
-def _json(value: object) -> Markup:
-    """JSON that can stand in a script element."""
-    return Markup(json.dumps(value, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"))
+    return animation(replace(shown(take, {}), motions=motions), "A four-bar linkage falls")
 
 
 HERE = Path(__file__).parent
@@ -211,10 +160,16 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
             f"lessons/{lesson.name}.html",
             "lesson.html",
             **lesson_page(lesson, source, formulas, names, _elsewhere),
-            **running_in(lesson, running, missing),
+            engines=[word for path, word in ENGINE_FILES.items() if path in running],
+            missing=missing,
         )
     api = _reference(source)
     files |= api
+    if api:
+        modules = sorted(name.removesuffix(".html").partition("/")[2] for name in api if name.endswith(".html"))
+        links = "".join(f'<li><a href="{name}.html">{name.replace("/", ".")}</a></li>' for name in modules)
+        body = Markup(f"<h1>Reference</h1><ul class='modules'>{links}</ul>")
+        write("reference/index.html", "article.html", title="Reference", body=body)
     guides = [(path.stem, path.read_text(encoding="utf-8")) for path in sorted((HERE / "howto").glob("*.md"))]
     below = {f"../results/{name}": f"../results/{page}" for name, page in names.items()}
     for name, text in guides:
@@ -224,8 +179,17 @@ def build(source: Source, lessons: Iterable[Lesson] = LESSONS) -> Files:
     titles = [(name, markdown.title(text)) for name, text in guides]
     write("howto/index.html", "howto.html", title="How to", guides=titles, api=bool(api))
     write("results/rows.html", "explorer.html", title="All stored rows")
-    write("index.html", "index.html", title="How far from ideal?", **front_page(lessons[0], source))
-    listed, why = rendered(formulas, source.cache)
+    lecture = ""
+    if source.lecture:
+        try:
+            lecture = lecture_html(source.lecture, formulas)
+            write("lecture.html", "article.html", title="A lecture of 45 minutes", body=Markup(lecture))
+        except NotFetched as reason:
+            source.troubles.append(f"Built without the lecture: {reason}.")
+    shown_pages = [(name, markdown.title(text)) for name, text in source.pages.items() if not name.endswith("_data.md")]
+    write("index.html", "index.html", title="How far from ideal?", results=shown_pages, lecture=bool(lecture))
+    files["front.svg"] = front_picture(source).encode()
+    listed, why = rendered(formulas, source.registry)
     if why:
         source.troubles.append(f"Formulas are shown as TeX, since {why}.")
     write(
@@ -253,7 +217,7 @@ def _packages(packages: Iterable[Package], source: Source) -> Files:
     found: Files = {}
     for package in packages:
         try:
-            content = fetched(package, source.cache)
+            content = source.registry.fetched(package)
         except NotFetched as reason:
             source.troubles.append(f"Built without {package.name} ({package.use}): {reason}.")
             continue

@@ -13,7 +13,8 @@ from reference.joints import Joint, Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.rolling.roll import Roll
-from reports.site.lesson import Point, Take
+from reports.site.lesson import Take
+from reports.site.live.sliders import Point
 
 Array = NDArray[np.float64]
 
@@ -68,8 +69,14 @@ def body_lines(mechanism: Mechanism, take: Take, name: str) -> list[Stroke]:
                 points.append(point)
         if isinstance(joint, Skate) and joint.second == name:
             half = BLADE * size / 2 * np.array([np.cos(joint.angle), np.sin(joint.angle)])
+            across = take.axle * np.array([-half[1], half[0]]) / np.hypot(*half)
             centre = np.array(joint.second_point)
-            lines.append(Stroke("blade", np.array([centre - half, centre + half])))
+            lines += [
+                Stroke("blade", np.array([wheel - half, wheel + half]))
+                for wheel in {(*(centre + across),): 0, (*(centre - across),): 0}
+            ]
+            if take.axle:
+                lines.append(Stroke("outline", np.array([centre - across, centre + across])))
             points.append((0.0, 0.0))
         if isinstance(joint, Roll):
             for owner, curve in ((joint.first, joint.rolling.ground), (joint.second, joint.rolling.body)):
@@ -218,21 +225,6 @@ def place_of(joint: Joint, first: Array, second: Array) -> Array:
     if isinstance(joint, Roll):
         return first[:, :2] + rotated(first[:, 2], joint.rolling.contact(second[:, 2] - first[:, 2]).point)
     return point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
-
-
-def opened(mechanism: Mechanism, joint: Skate | Roll, pose: Array, twist: Array) -> Array:
-    """How a skate slips [m/s], or how far a Roll is from where it belongs [m], as vectors (times, 2) in the world."""
-    first, second = between(mechanism, joint, pose)
-    rows = joint.rows(first, second)
-    if isinstance(joint, Roll):
-        value = joint.gap(first, second, 0.0)
-    else:
-        speeds = [
-            np.zeros((len(pose), 3)) if name is None else twist[:, mechanism.body_index(name)]
-            for name in (joint.first, joint.second)
-        ]
-        value = np.einsum("tij,tj->ti", rows, np.concatenate(speeds, axis=-1))
-    return np.einsum("ti,tij->tj", value, rows[..., 3:5])
 
 
 def loose(mechanism: Mechanism) -> list[Skate | Roll]:

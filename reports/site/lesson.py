@@ -1,23 +1,23 @@
-"""What a lesson is made of, motions that were kept, five steps of words and pictures; and what a site is built from."""
+"""What a lesson is made of: scenes, experiments on them and their words; and what a site is built from."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from engines import Engine
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.tasks import Answer, Motion
-from reports.site.live.sliders import Live
-
-Point = tuple[float, float]
+from reports.site.live.sliders import Live, Name, Point
+from reports.site.packages import Registry
 
 FRAMES = 100  # of a moving picture, at most: what an eye can tell in six seconds
 FOLDER = Path(__file__).parent / "lessons"
-STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,7 @@ class Take:
     traces: tuple[tuple[str, Point], ...] = ()
     centre: str | None = None
     curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
-    start: int = 0  # the first sample that is shown
-    end: int | None = None  # the sample after the last one
+    axle: float = 0.0  # m: half of it, where a skate is drawn as an axle with two wheels
 
     @property
     def sample_count(self) -> int:
@@ -54,47 +53,92 @@ class Take:
     @property
     def shown(self) -> slice:
         """The samples that the picture shows: at most about FRAMES."""
-        last = self.sample_count + 1 if self.end is None else self.end
-        return slice(self.start, last, max(1, -(-(last - self.start) // (FRAMES + 1))))
+        return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
 
 
 @dataclass(frozen=True)
-class Step:
-    """One step of a lesson: which take it shows, and what is switched on: paths, reactions, centre, gaps.
+class Claim:
+    """What a change of settings does to an engine's error: it becomes `least` to `most` times as large."""
 
-    section: (page, heading) of the Markdown page that says more, quoted below the picture.
+    engine: Name
+    least: float = 0.0
+    most: float = math.inf
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A setting to start from, and what is changed after the reader has guessed what will happen.
+
+    `before`, `after`: values of the controls of the scene called `scene`, the others as they come; `after` is a change
+    of `before`. claims: of the errors after, in those before. causes: further changes with what they do to the error
+    after, so that a sentence that names a cause can be checked by switching it off. shown: overlays.
     """
 
-    take: str
-    switched_on: frozenset[str] = frozenset()
-    section: tuple[str, str] | None = None
-    broken: tuple[tuple[str, str, str], ...] = ()  # (words of the button, take, what the reference says)
+    scene: str
+    before: Mapping[str, Any] = field(default_factory=dict)
+    after: Mapping[str, Any] = field(default_factory=dict)
+    claims: tuple[Claim, ...] = ()
+    causes: tuple[tuple[Mapping[str, Any], Claim], ...] = ()
+    shown: frozenset[str] = frozenset({"paths"})
+    section: tuple[str, str] | None = None  # (page, heading) of the Markdown page that says more
+
+
+@dataclass(frozen=True)
+class Part:
+    """The words of an experiment: a heading, what to see, a question with answers of which one is right, and why."""
+
+    heading: str
+    text: str
+    question: str
+    answers: tuple[tuple[str, bool], ...]  # (words, whether it is right)
+    after: str
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """A mechanism's page: its words stand in lessons/`name`.md, one part a step."""
+    """A mechanism's page: scenes that engines run in it, experiments on these, and their words in lessons/`name`.md."""
 
     name: str
     title: str
     page: str  # the Markdown page of the same mechanism
-    takes: Mapping[str, Take]
-    steps: tuple[Step, ...]
-    live: tuple[Live, ...] = ()  # scenes that the engines can run in the page
+    scenes: tuple[Live, ...]
+    experiments: tuple[Experiment, ...]
+
+    def scene(self, word: str) -> Live:
+        """The scene of this name. Raises StopIteration if there is none."""
+        return next(live for live in self.scenes if live.word == word)
 
     @cached_property
-    def words(self) -> list[tuple[str, str]]:
-        """(heading, text) of each step. Raises ValueError unless there are as many as steps."""
+    def parts(self) -> tuple[Part, ...]:
+        """The words of each experiment. Raises ValueError unless there are as many as experiments."""
         text = (FOLDER / f"{self.name}.md").read_text(encoding="utf-8")
-        parts = [part.partition("\n") for part in text.split("\n## ")[1:]]
-        if len(parts) != len(self.steps) or len(parts) != STEPS:
-            raise ValueError(f"lesson {self.name!r}: {len(parts)} parts of words for {len(self.steps)} steps")
-        return [(heading.strip(), body.strip()) for heading, _, body in parts]
+        parts = tuple(part_of(part) for part in text.split("\n## ")[1:])
+        if len(parts) != len(self.experiments):
+            raise ValueError(f"lesson {self.name!r}: words for {len(parts)} of {len(self.experiments)} experiments")
+        return parts
 
     def tasks(self) -> tuple[Motion, ...]:
-        """All motions that have to be run."""
-        own = [motion for take in self.takes.values() for motion in take.motions().values()]
-        return (*own, *(motion for live in self.live for motion in live.shipped().values()))
+        """All motions that Python has to run for it."""
+        return tuple(motion for live in self.scenes for motion in live.stored().values())
+
+
+def part_of(text: str) -> Part:
+    """Read one: a heading, words, and perhaps a quotation: a question, a list of answers, the right one in bold."""
+    heading, _, body = text.partition("\n")
+    lines = body.strip().splitlines()
+    quoted = [index for index, line in enumerate(lines) if line.startswith(">")] or [len(lines)]
+    before, after = lines[: quoted[0]], lines[quoted[-1] + 1 :]
+    told = [line.removeprefix(">").strip() for line in lines[quoted[0] : quoted[-1] + 1]]
+    answers = [line.removeprefix("- ") for line in told if line.startswith("- ")]
+    if answers and (len(answers) != 3 or sum(answer.startswith("**") for answer in answers) != 1):
+        raise ValueError(f"{heading!r}: a question has three answers, one of them right")
+    return Part(
+        heading.strip(),
+        "\n".join(before).strip(),
+        " ".join(line for line in told if line and not line.startswith("- ")),
+        tuple((answer.strip("*"), answer.startswith("**")) for answer in answers),
+        "\n".join(after).strip(),
+    )
 
 
 @dataclass
@@ -109,4 +153,10 @@ class Source:
     foot: str
     contributing: str = ""  # CONTRIBUTING.md, of which how-to pages quote parts; empty outside of a checkout
     api: bool = True  # whether pdoc makes the reference, which takes some ten seconds
+    lecture: str = ""  # the notebook, as JSON
     troubles: list[str] = field(default_factory=list)  # what could not be built, and why, a sentence each
+
+    @cached_property
+    def registry(self) -> Registry:
+        """Where packages of others come from."""
+        return Registry(self.cache)

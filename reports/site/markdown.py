@@ -14,7 +14,7 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from reports.run.files import temporary_folder
-from reports.site.packages import KATEX, NotFetched, fetched
+from reports.site.packages import KATEX, NotFetched, Registry
 from reports.write.templates import CODE, inert
 
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
@@ -109,7 +109,7 @@ SCRIPT = Path(__file__).with_name("formulas.mjs")
 PATIENCE = 120  # s for all formulas
 
 
-def rendered(formulas: Formulas, cache: Path) -> tuple[list[str], str]:
+def rendered(formulas: Formulas, registry: Registry) -> tuple[list[str], str]:
     """The formulas in their order, and why they are TeX as written; empty if they are not.
 
     Raises ValueError for a formula that KaTeX does not understand: it would be wrong on the Markdown page too.
@@ -119,7 +119,7 @@ def rendered(formulas: Formulas, cache: Path) -> tuple[list[str], str]:
     if node is None:
         return _as_written(asked), "node is not installed"
     try:
-        module = fetched(KATEX, cache)["dist/katex.mjs"]
+        module = registry.fetched(KATEX)["dist/katex.mjs"]
     except NotFetched as reason:
         return _as_written(asked), str(reason)
     with temporary_folder() as folder:

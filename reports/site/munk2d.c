@@ -1,13 +1,14 @@
-// One call that builds a space from numbers, steps it and records poses: all that the page asks of Munk2D.
-// The numbers are those of reports/site/live/munk_plan.py: gravity (2), collision slop and bias, the number of bodies,
-// the bodies, and records of joints, shapes and of what is done by hand around each step.
+// One call that builds a space from numbers, steps it and records poses and twists: all that the page asks of Munk2D.
+// The numbers are those of reports/site/live/models.py: gravity (2), collision slop and bias, the number of bodies,
+// how it is swept, the bodies, and records of joints, shapes and of what is done by hand around each step. Velocities are per second;
+// the space counts time in `unit` seconds, as the adapter's model does.
 
-#include "chipmunk/chipmunk.h"
+#include "chipmunk/chipmunk_private.h"
 #include <emscripten.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { HEAD = 5, BODY = 11 };
+enum { HEAD = 8, BODY = 11 };
 enum { PIVOT = 1, GROOVE, MOTOR, PIN, GEAR, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED };
 
 typedef struct {
@@ -16,6 +17,7 @@ typedef struct {
     cpConstraint **joints;
     cpShape **shapes;
     int body_count, joint_count, shape_count;
+    double unit;
 } World;
 
 static cpBody *body_of(World *world, double index)
@@ -56,7 +58,7 @@ static void add_record(World *world, int part, const double *own, int numbers, d
     switch (part) {
     case PIVOT: add_joint(world, cpPivotJointNew2(first, second, one, two), error_bias); break;
     case GROOVE: add_joint(world, cpGrooveJointNew(first, second, one, two, cpv(own[6], own[7])), error_bias); break;
-    case MOTOR: add_joint(world, cpSimpleMotorNew(first, second, own[2]), error_bias); break;
+    case MOTOR: add_joint(world, cpSimpleMotorNew(first, second, own[2] * world->unit), error_bias); break;
     case PIN:
         joint = cpPinJointNew(first, second, one, two);
         cpPinJointSetDist(joint, own[6]);
@@ -66,6 +68,7 @@ static void add_record(World *world, int part, const double *own, int numbers, d
     case CIRCLE: add_shape(world, cpCircleShapeNew(first, own[3], two), own); break;
     case SEGMENT: add_shape(world, cpSegmentShapeNew(first, two, cpv(own[6], own[7]), own[3]), own); break;
     case POLYGON: add_polygon(world, own, numbers); break;
+    case AIMED: cpConstraintSetErrorBias(world->joints[(int)own[1]], 1.0); break;
     }
 }
 
@@ -109,8 +112,8 @@ static void add_bodies(World *world, const double *own)
         cpBody *body = own[0] ? cpBodyNewKinematic() : cpBodyNew(own[1], own[2]);
         cpBodySetPosition(body, cpv(own[3], own[4]));
         cpBodySetAngle(body, own[5]);
-        cpBodySetVelocity(body, cpv(own[6], own[7]));
-        cpBodySetAngularVelocity(body, own[8]);
+        cpBodySetVelocity(body, cpv(own[6] * world->unit, own[7] * world->unit));
+        cpBodySetAngularVelocity(body, own[8] * world->unit);
         world->bodies[i] = cpSpaceAddBody(world->space, body);
     }
 }
@@ -135,12 +138,26 @@ static void release(World *world)
     free(world->bodies);
 }
 
-EMSCRIPTEN_KEEPALIVE
-void munk_run(const double *plan, int length, double dt, int iterations, double error_bias, int samples, int every,
-              double *out)
+static double *record(World *world, double *out)
 {
-    World world = {.space = cpSpaceNew(), .body_count = (int)plan[4]};
-    cpSpaceSetGravity(world.space, cpv(plan[0], plan[1]));
+    for (int i = 0; i < world->body_count; i++) {
+        cpBody *body = world->bodies[i];
+        cpVect place = cpBodyGetPosition(body), velocity = cpBodyGetVelocity(body);
+        double own[] = {place.x, place.y, cpBodyGetAngle(body), velocity.x / world->unit, velocity.y / world->unit,
+                        cpBodyGetAngularVelocity(body) / world->unit};
+        for (int j = 0; j < 6; j++) *out++ = own[j];
+    }
+    return out;
+}
+
+// Runs samples * every steps of dt units and records each sample; then, if `last` is not 0, takes one step more, of so
+// many iterations, and records the bodies and what each joint's impulse has grown to: two numbers a joint [N s].
+EMSCRIPTEN_KEEPALIVE
+void munk_run(const double *plan, int length, double dt, double unit, int iterations, double error_bias, int samples,
+              int every, int last, double *out)
+{
+    World world = {.space = cpSpaceNew(), .body_count = (int)plan[4], .unit = unit};
+    cpSpaceSetGravity(world.space, cpv(plan[0] * unit * unit, plan[1] * unit * unit));
     cpSpaceSetCollisionSlop(world.space, plan[2]);
     cpSpaceSetCollisionBias(world.space, plan[3]);
     cpSpaceSetIterations(world.space, iterations);
@@ -151,13 +168,20 @@ void munk_run(const double *plan, int length, double dt, int iterations, double 
     const double *records = plan + HEAD + BODY * world.body_count, *end = plan + length;
     for (const double *at = records; at < end; at += 2 + (int)at[1])
         add_record(&world, (int)at[0], at + 2, (int)at[1], error_bias);
-    for (int sample = 0; sample <= samples; sample++) {
-        for (int count = 0; sample && count < every; count++) step(&world, records, end, dt);
-        for (int i = 0; i < world.body_count; i++) {
-            cpVect place = cpBodyGetPosition(world.bodies[i]);
-            *out++ = place.x;
-            *out++ = place.y;
-            *out++ = cpBodyGetAngle(world.bodies[i]);
+    out = record(&world, out);
+    for (int sample = 0; sample < samples; sample++) {
+        for (int count = 0; count < every; count++) step(&world, records, end, dt);
+        out = record(&world, out);
+    }
+    if (last) {
+        cpSpaceSetIterations(world.space, last);
+        step(&world, records, end, dt);
+        out = record(&world, out);
+        for (int i = 0; i < world.joint_count; i++) {
+            cpVect impulse = cpConstraintIsPivotJoint(world.joints[i])
+                ? ((cpPivotJoint *)world.joints[i])->jAcc : cpv(cpConstraintGetImpulse(world.joints[i]), 0);
+            *out++ = impulse.x / unit;
+            *out++ = impulse.y / unit;
         }
     }
     release(&world);

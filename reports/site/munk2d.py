@@ -17,12 +17,12 @@ from pathlib import Path
 from reports.model.ending import BadInput
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
-from reports.site.packages import NotFetched
+from reports.site.packages import ANSWERING, NotFetched
 
 SHIM = Path(__file__).with_suffix(".c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (
-    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web"),
+    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
     *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
 )
 THREADED = "cpHastySpace.c"  # steps with threads, which pages have not
@@ -48,7 +48,8 @@ def compiled(cache: Path) -> bytes:
 def _sources(release: str, folder: Path) -> Path:
     """The folder of Munk2D in pymunk's source package of this release."""
     try:
-        return sources("pymunk", release, folder) / "Munk2D"
+        # Seconds without an answer, of which there may be two.
+        return sources("pymunk", release, folder, "--retries", "0", "--timeout", str(ANSWERING // 2)) / "Munk2D"
     except BadInput as reason:
         raise NotFetched(str(reason)) from None
 

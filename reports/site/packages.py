@@ -11,12 +11,14 @@ import shutil
 import subprocess
 import tarfile
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from reports.run.files import temporary_folder
 
 PATIENCE = 180  # s for one package
+ANSWERING = 8  # s in which a registry answers a short question: without one, a build says so soon
 
 
 @dataclass(frozen=True)
@@ -38,17 +40,47 @@ class NotFetched(Exception):
     """Why a package is not there, in a sentence."""
 
 
-def fetched(package: Package, cache: Path) -> dict[str, bytes]:
-    """The package's files by their path in the archive, fetched once into `cache`. Raises NotFetched."""
-    path = cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
-    if not path.is_file():
-        _fetch(package, path)
-    digest = base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode()
-    if digest != package.sha512:
-        path.unlink()
-        raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
-    with tarfile.open(path, encoding="utf-8") as archive:
-        return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
+@dataclass(frozen=True)
+class Registry:
+    """Where packages come from, and the folder `cache` in which they are kept."""
+
+    cache: Path
+
+    @cached_property
+    def trouble(self) -> str:
+        """Why nothing can be fetched, asked once; empty where all packages are there or npm's registry answers."""
+        if all(self._path(package).is_file() for package in PACKAGES):
+            return ""
+        npm = shutil.which("npm")
+        if npm is None:
+            return "npm is not installed"
+        words = [npm, "view", "d3", "version", "--fetch-retries=0", f"--fetch-timeout={1000 * ANSWERING}"]
+        try:
+            ended = subprocess.run(words, capture_output=True, encoding="utf-8", timeout=ANSWERING)
+        except subprocess.TimeoutExpired:
+            return f"npm's registry did not answer within {ANSWERING} s"
+        return f"npm's registry does not answer ({_last(ended.stderr)})" if ended.returncode else ""
+
+    def fetched(self, package: Package) -> dict[str, bytes]:
+        """The package's files by their path in the archive, fetched once into `cache`. Raises NotFetched."""
+        path = self._path(package)
+        if not path.is_file():
+            if self.trouble:
+                raise NotFetched(self.trouble)
+            _fetch(package, path)
+        digest = base64.b64encode(hashlib.sha512(path.read_bytes()).digest()).decode()
+        if digest != package.sha512:
+            path.unlink()
+            raise NotFetched(f"{package.name} {package.version} has another digest than the one that is known")
+        with tarfile.open(path, encoding="utf-8") as archive:
+            return {name: archive.extractfile(f"package/{name}").read() for name, _ in package.files}  # type: ignore[union-attr]
+
+    def _path(self, package: Package) -> Path:
+        return self.cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
+
+
+def _last(told: str) -> str:
+    return (told.strip().splitlines() or ["no reason was given"])[-1]
 
 
 def _fetch(package: Package, path: Path) -> None:
@@ -65,8 +97,7 @@ def _fetch(package: Package, path: Path) -> None:
             raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
         found = list(folder.glob("*.tgz"))
         if ended.returncode or not found:
-            told = (ended.stderr.strip().splitlines() or ["no reason was given"])[-1]
-            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({told})")
+            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({_last(ended.stderr)})")
         found[0].replace(path)
 
 
@@ -102,3 +133,4 @@ MUJOCO = Package(
     "the engine MuJoCo, compiled to WebAssembly by its maintainers",
     (("mujoco.js", "packages/mujoco.js"), ("mujoco.wasm", "packages/mujoco.wasm")),
 )
+PACKAGES = (D3, PLOT, KATEX, MUJOCO)

@@ -1,35 +1,13 @@
-"""Stored rows as the page's charts want them: series of points, from errors.csv and timings.csv."""
+"""Stored rows as the page of charts wants them, from errors.csv and timings.csv."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
+from engines.lagrange import Lagrange
+from reports.plots.looks import family_of, role
 from reports.write.csv_files import read_lines
-
-MEASURES = ("angle", "position")
-SERIES = (("pymunk", "default", 1), ("pymunk", "tuned", 3), ("mujoco", "default", 2), ("mujoco", "tuned", 4))
-
-
-def stored_rows(errors: str, scenes: Iterable[str]) -> list[dict[str, Any]]:
-    """Errors against steps of these scenes: one series a scene and method; `mark` is its colour.
-
-    `points`: (step [s], largest error) by what is measured, "angle" [rad] and "position" [m].
-    """
-    rows = [row for row in read_lines(errors)[1] if row["purpose"] == "sweep" and row["outcome"] == "finished"]
-    found = []
-    for scene in scenes:
-        for engine, variant, mark in SERIES:
-            own = [row for row in rows if (row["scene"], row["engine"], row["variant"]) == (scene, engine, variant)]
-            points = {
-                measure: [[float(row["step"]), float(row[measure])] for row in own if float(row[measure]) > 0]
-                for measure in MEASURES
-            }
-            if own:
-                found.append({"scene": scene, "method": f"{engine} {variant}", "mark": mark, "points": points})
-    return found
-
 
 COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
 NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
@@ -39,6 +17,8 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
     """All rows of sweeps for the page of charts: {columns, rows}; a number that is missing is None.
 
     `cpu` is CPU time per simulated second [s], from timings.csv; settings are told in words, from descriptions.csv.
+    looks: the role of the colour of each engine, its place in the palette, and whether it solves the equations as they
+    are: such solvers are shown when they are asked for.
     """
     key = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
     spent = {tuple(row[name] for name in key): row for row in read_lines(timings)[1]} if timings else {}
@@ -54,7 +34,9 @@ def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
             + [_number(row[name]) for name in NUMBERS]
             + [_number(cost)]
         )
-    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows}
+    names = sorted({row[1] for row in rows})
+    looks = {name: {"role": role(family_of(name), names), "exact": name == Lagrange.name} for name in names}
+    return {"columns": [*COLUMNS, *NUMBERS, "cpu"], "rows": rows, "looks": looks}
 
 
 def _number(text: str) -> float | None:

@@ -3,7 +3,7 @@
 
 const WIDEST = 640;
 const NARROWEST = 280;
-const HEIGHT = 190;
+const HEIGHT = 150;
 const LEFT = 62;
 const BOTTOM = 30;
 const TOP = 20;
@@ -74,56 +74,4 @@ export function errorChart(place, t, lines, measure) {
     now.setAttribute("x1", x(time).toFixed(1));
     now.setAttribute("x2", x(time).toFixed(1));
   };
-}
-
-/** Stored rows and the present setting: error against the step, both logarithmic.
- * @param {Element} place @param {{method: string, mark: number, points: Record<Measure, [number, number][]>}[]} stored
- * @param {Measure} measure @param {{x: number, y: number, mark: number, name: string}[]} own */
-export function scatter(place, stored, measure, own) {
-  const series = stored.map(({ method, mark, points }) => ({ method, mark, points: points[measure] }));
-  const width = widthIn(place);
-  const height = 300;
-  const bottom = 44;
-  const seen = own.filter(({ y }) => Number.isFinite(y) && y > 0);
-  const xs = [...series.flatMap(({ points }) => points.map(([x]) => x)), ...seen.map(({ x }) => x)].map(Math.log10);
-  const ys = [...series.flatMap(({ points }) => points.map(([, y]) => y)), ...seen.map(({ y }) => y)].map(Math.log10);
-  if (!xs.length) return;
-  const [left, right] = [Math.floor(Math.min(...xs)), Math.ceil(Math.max(...xs))];
-  const [low, high] = [Math.floor(Math.min(...ys)), Math.ceil(Math.max(...ys))];
-  const x = (/** @type {number} */ value) => LEFT + ((width - LEFT - 12) * (Math.log10(value) - left)) / (right - left || 1);
-  const y = (/** @type {number} */ value) => TOP + ((height - TOP - bottom) * (high - Math.log10(value))) / (high - low || 1);
-  const label = `Against the step, in stored rows and with the present sliders: ${MEASURES[measure]}`;
-  const chart = svg("svg", { class: "chart", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label });
-  chart.append(svg("text", { x: LEFT, y: 13 }, `${MEASURES[measure]}; large marks: these sliders`));
-  for (let power = low; power <= high; power += Math.ceil((high - low) / 6)) {
-    chart.append(svg("line", { class: "axis", x1: LEFT, x2: width - 12, y1: y(10 ** power), y2: y(10 ** power) }));
-    chart.append(svg("text", { x: LEFT - 8, y: y(10 ** power) + 4, "text-anchor": "end" }, `1e${power}`));
-  }
-  for (let power = left; power <= right; power++) {
-    chart.append(svg("text", { x: x(10 ** power), y: height - 26, "text-anchor": power === right ? "end" : "middle" }, `1e${power}`));
-  }
-  chart.append(svg("text", { x: width - 12, y: height - 8, "text-anchor": "end" }, "step [s]"));
-  for (const { method, mark, points } of series) {
-    const group = svg("g", { class: `method-${mark}` });
-    const sorted = [...points].sort((a, b) => a[0] - b[0]);
-    const d = sorted.map(([px, py], index) => `${index ? "L" : "M"}${x(px).toFixed(1)} ${y(py).toFixed(1)}`).join("");
-    group.append(svg("path", { class: "line thin", d }), svg("title", {}, method));
-    for (const [px, py] of sorted) {
-      const dot = svg("circle", { class: "row", cx: x(px), cy: y(py), r: 3 });
-      dot.append(svg("title", {}, `${method} at ${px} s: ${py}`));
-      group.append(dot);
-    }
-    const [tx, ty] = sorted[0];
-    group.append(svg("text", { x: x(tx) + 6, y: y(ty) - 7 }, method));
-    chart.append(group);
-  }
-  for (const { x: px, y: py, mark, name } of seen) {
-    const group = svg("g", { class: `method-${mark} own` });
-    const mx = x(px);
-    const my = y(py);
-    group.append(svg("path", { class: "now-mark", d: `M${mx} ${my - 8}L${mx + 8} ${my}L${mx} ${my + 8}L${mx - 8} ${my}Z` }));
-    group.append(svg("title", {}, name));
-    chart.append(group);
-  }
-  place.replaceChildren(chart);
 }

@@ -1,84 +1,102 @@
 // @ts-check
-/** What the page loads of its live scenes: models, truth and drawings at every place of the sliders. */
+/** What a worker loads of its scenes: models, truth and drawings at every place of the sliders. */
+
+import { motion, released } from "./exact.js";
 
 /**
  * @typedef {import("./motion.js").Joint} Joint
- * @typedef {{parts: string[], numbers: number[], changes: number[][], velocity: number[], bodies: number[],
- *   turns: number[][], springs: boolean}} Texts
+ * @typedef {{parts: string[], numbers: number[][], changes: number[][], velocity: number[], bodies: number[],
+ *   turns: number[][], links: number[][], springs: boolean}} Texts
  * @typedef {{plans: number[]}} Plans
  * @typedef {{why: string}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
- * @typedef {{word: string, scene: string, measure: "angle"|"position", frames: number, steps: number[],
- *   duration: number, sliders: {name: string, size: number}[], bodies: string[], truth: number[], drawings: number[],
- *   joints: number[], mujoco: (Texts|Missing)[], munk: (Plans|Missing)[], traces: {body: number, point: number[]}[],
- *   native: Record<"munk"|"mujoco", {version: string, pose: string|null}>, pool: unknown[]}} Scene
- * @typedef {{scene: Scene, place: number, stepPlace: number, steps: number, every: number, tempo: number, munk: number, mujoco: number,
- *   integrator: number, timeConstant: number|null, impedance: number|null, solverIterations: number,
- *   tolerance: number, iterations: number, bias: number}} Setting
+ * @typedef {"munk"|"mujoco"} Name
+ * @typedef {{word: string, scene: string, measure: "angle"|"position", frames: number, window: [number, number],
+ *   steps: number[], duration: number, sliders: {name: string, size: number}[], bodies: string[],
+ *   truth: (number|null)[], mechanisms: number[]|null, forces: (number|null)[], drawings: number[], joints: number[],
+ *   blades: number[], traces: number[], centre: number|null, mujoco: (Texts|Missing)[], munk: (Plans|Missing)[],
+ *   native: Record<Name, (string[]|null)[]>, versions: Record<Name, string>, pool: unknown[]}} Scene
+ * @typedef {{key: string, place: number, stepPlace: number, steps: number, munk: number, mujoco: number,
+ *   integrator: number|null, timeConstant: number|null, impedance: number|null, solverIterations: number|null,
+ *   tolerance: number|null, iterations: number|null, bias: number|null, start: number[]|null, own: boolean}} Setting
+ *   what the page asks for; start: poses at which the reader let go; own: whether all is as in the scene but the ways
+ * @typedef {Setting & {scene: Scene, every: number, samples: number, step: number}} Run
  */
 
 /** Doubles as the site wrote them: base64, the lowest byte first. @param {string} text */
 export function doubles(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const view = new DataView(bytes.buffer);
-  return Float64Array.from({ length: bytes.length / 8 }, (_, index) => view.getFloat64(8 * index, true));
+  return new Float64Array(bytes.buffer);
 }
 
-/** Where the tables have these places of a scene's sliders; the last slider changes first.
- * @param {Scene} scene @param {number[]} places */
-export function placeOf(scene, places) {
-  return scene.sliders.reduce((place, { size }, index) => place * size + places[index], 0);
+/** @param {Setting} setting @param {Scene} scene @returns {Run} */
+export function runOf(setting, scene) {
+  const every = Math.max(1, setting.steps / scene.frames);
+  return { ...setting, scene, every, samples: setting.steps / every, step: scene.duration / setting.steps };
 }
 
-/** Sampling intervals of the motion. @param {Setting} setting */
-export const samplesOf = ({ steps, every }) => steps / every;
+/** @template T @param {Run} run @param {number[]} list @returns {T} */
+export const pooled = ({ scene, place }, list) => /** @type {T} */ (scene.pool[list[place]]);
 
-/** The step of the engines [s]. @param {Setting} setting */
-export const stepOf = ({ scene, tempo, steps }) => scene.duration / tempo / steps;
-
-/** Times of the samples [s]. @param {Setting} setting */
-export function times(setting) {
-  const samples = samplesOf(setting);
-  const { scene, tempo } = setting;
-  return Float64Array.from({ length: samples + 1 }, (_, index) => (index * scene.duration) / tempo / samples);
+/** The equations of a pinned linkage, from where the reader let it go; null where it is no such linkage.
+ * @param {Run} run @returns {import("./exact.js").Mechanism|null} */
+export function mechanismOf(run) {
+  const { scene, start } = run;
+  if (!scene.mechanisms) return null;
+  const told = /** @type {import("./exact.js").Mechanism} */ (pooled(run, scene.mechanisms));
+  const mechanism = { ...told, joints: /** @type {Joint[]} */ (pooled(run, scene.joints)) };
+  return start ? released(mechanism, start) : mechanism;
 }
 
-/** The exact poses at the samples, as the reference computed them. A faster motion passes the same poses sooner.
- * @param {Setting} setting */
-export function truth(setting) {
-  const { scene, place } = setting;
-  const whole = doubles(/** @type {string} */ (scene.pool[scene.truth[place]]));
-  const width = 3 * scene.bodies.length;
-  const samples = samplesOf(setting);
-  const stride = scene.frames / samples;
-  const poses = new Float64Array((samples + 1) * width);
-  for (let frame = 0; frame <= samples; frame++) {
-    poses.set(whole.subarray(frame * stride * width, (frame * stride + 1) * width), frame * width);
+/** The exact motion at the samples: as the reference computed it, or else by the page. `missed`: by how much the page's
+ * own moves when its steps are halved. @param {Run} run
+ * @returns {{pose: Float64Array, twist: Float64Array, forces: Float64Array[], missed: number|null}} */
+export function truth(run) {
+  const { scene, place, start, samples } = run;
+  const kept = scene.truth[place];
+  if (kept !== null && !start) {
+    const width = 6 * scene.bodies.length;
+    const whole = doubles(/** @type {string} */ (scene.pool[kept]));
+    const stride = (scene.frames / samples) * width;
+    const states = Array.from({ length: samples + 1 }, (_, frame) => whole.subarray(frame * stride, frame * stride + width));
+    return { ...split(states), forces: [], missed: null };
   }
-  return poses;
+  const mechanism = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
+  const spacing = run.every * run.step;
+  const found = motion(mechanism, samples, spacing, 2);
+  const rough = motion(mechanism, samples, spacing);
+  return { ...found, missed: found.pose.reduce((most, value, index) => Math.max(most, Math.abs(value - rough.pose[index])), 0) };
 }
 
-/** MJCF as the Python adapter writes it. @param {Scene} scene @param {Texts} texts @param {number} place */
-export function mjcf(scene, texts, place) {
-  const numbers = /** @type {string} */ (scene.pool[texts.numbers[place]]).split(",");
+/** Poses and twists apart. @param {ArrayLike<number>[]} states of every sample, six numbers a body */
+export function split(states) {
+  const bodies = states[0].length / 6;
+  const [pose, twist] = [new Float64Array(3 * bodies * states.length), new Float64Array(3 * bodies * states.length)];
+  states.forEach((state, sample) => {
+    for (let index = 0; index < 6 * bodies; index++) {
+      const at = 3 * (sample * bodies + Math.floor(index / 6)) + (index % 3);
+      (index % 6 < 3 ? pose : twist)[at] = state[index];
+    }
+  });
+  return { pose, twist };
+}
+
+/** MJCF as the Python adapter writes it. @param {Run} run @param {Texts} texts */
+export function mjcf(run, texts) {
+  const numbers = /** @type {string} */ (run.scene.pool[ofStep(run, texts.numbers)]).split(",");
   return texts.parts.map((part, index) => part + (numbers[index] ?? "")).join("");
 }
 
-/** @param {Setting} setting */
-export const drawingOf = ({ scene, place }) => /** @type {Drawing} */ (scene.pool[scene.drawings[place]]);
+/** What the adapter changes in MuJoCo's compiled model. @param {Run} run @param {Texts} texts */
+export const changesOf = (run, texts) => /** @type {[string, number[]][]} */ (run.scene.pool[ofStep(run, texts.changes)]);
 
-/** @param {Setting} setting */
-export const jointsOf = ({ scene, place }) => /** @type {Joint[]} */ (scene.pool[scene.joints[place]]);
-
-/** What the adapter changes in MuJoCo's compiled model; on skates it depends on the step.
- * @param {Setting} setting @param {Texts} texts */
-export function changesOf({ scene, place, stepPlace }, texts) {
-  const own = texts.changes[place];
-  return /** @type {[string, number[]][]} */ (scene.pool[own[Math.min(stepPlace, own.length - 1)]]);
+/** @param {Run} run @param {number[][]} table by place, and by step where it depends on that */
+function ofStep({ place, stepPlace }, table) {
+  return table[place][Math.min(stepPlace, table[place].length - 1)];
 }
 
-/** Why an engine can't run what is chosen, or an empty text. @param {Setting} setting @param {"munk"|"mujoco"} engine */
-export function whyNot(setting, engine) {
-  const way = setting.scene[engine][setting[engine]];
+/** Why an engine can't run what is chosen, or an empty text. @param {Scene} scene @param {Setting} setting @param {Name} engine */
+export function whyNot(scene, setting, engine) {
+  const way = scene[engine][setting[engine]];
   return "why" in way ? way.why : "";
 }

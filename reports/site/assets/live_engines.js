@@ -1,26 +1,27 @@
 // @ts-check
 /** The engines themselves: MuJoCo and Munk2D in WebAssembly, run as the Python adapters run them. */
 
-import { changesOf, doubles, mjcf, samplesOf, stepOf, truth } from "./live_data.js";
+import { changesOf, doubles, mechanismOf, mjcf, split } from "./live_data.js";
 
-/** @typedef {import("./live_data.js").Setting} Setting */
-/** @typedef {import("./live_data.js").Texts} Texts @typedef {import("./live_data.js").Plans} Plans */
+/** @typedef {import("./live_data.js").Run} Run
+ * @typedef {import("./live_data.js").Texts} Texts @typedef {import("./live_data.js").Plans} Plans */
 
-const HEAD = 5; // numbers of a plan before its bodies, see live/munk_plan.py
+const HEAD = 8; // numbers of a plan before its bodies, see live/models.py
 const BODY = 11; // numbers of a body
+const SMALL = 1e-6; // s: what a motion is moved by, to and fro, to read the velocities of bodies
 
-/** Poses at the samples by MuJoCo. @param {any} mujoco @param {Setting} setting */
-export function runMujoco(mujoco, setting) {
-  const texts = /** @type {Texts} */ (setting.scene.mujoco[setting.mujoco]);
-  const model = mujoco.MjModel.from_xml_string(mjcf(setting.scene, texts, setting.place));
+/** Poses and twists at the samples by MuJoCo, and the springs of its rows there. @param {any} mujoco @param {Run} run */
+export function runMujoco(mujoco, run) {
+  const texts = /** @type {Texts} */ (run.scene.mujoco[run.mujoco]);
+  const model = mujoco.MjModel.from_xml_string(mjcf(run, texts));
   const data = new mujoco.MjData(model);
   try {
-    change(model, changesOf(setting, texts));
-    set(model, setting);
-    const velocity = /** @type {number[]} */ (setting.scene.pool[texts.velocity[setting.place]]);
-    data.qvel.set(velocity.map((rate) => rate * setting.tempo));
+    change(model, changesOf(run, texts));
+    set(model, run);
+    data.qvel.set(run.scene.pool[texts.velocity[run.place]]);
+    if (run.start) begin(run, texts, data);
     mujoco.mj_forward(model, data);
-    return poses(setting, texts, mujoco, model, data);
+    return { ...states(run, texts, mujoco, model, data), spring: springOf(data) };
   } finally {
     data.delete();
     model.delete();
@@ -37,89 +38,149 @@ function change(model, changes) {
   }
 }
 
-/** The sliders of MuJoCo; what is null stays as shipped. @param {any} model @param {Setting} setting */
-function set(model, setting) {
+/** The sliders of MuJoCo; what is null stays as the method has it. @param {any} model @param {Run} run */
+function set(model, run) {
   const { opt } = model;
-  opt.timestep = stepOf(setting);
-  opt.integrator = setting.integrator;
-  opt.iterations = setting.solverIterations;
-  opt.tolerance = setting.tolerance;
+  opt.timestep = run.step;
+  opt.integrator = run.integrator ?? opt.integrator;
+  opt.iterations = run.solverIterations ?? opt.iterations;
+  opt.tolerance = run.tolerance ?? opt.tolerance;
   for (const kind of ["eq", "pair"]) {
     const rows = model[`${kind}_solref`].length / 2;
     for (let row = 0; row < rows; row++) {
-      if (setting.timeConstant !== null) model[`${kind}_solref`].set([setting.timeConstant, 1], 2 * row);
-      if (setting.impedance !== null) {
-        model[`${kind}_solimp`].set([setting.impedance, setting.impedance, 0.001, 0.5, 1], 5 * row);
-      }
+      if (run.timeConstant !== null) model[`${kind}_solref`].set([run.timeConstant, 1], 2 * row);
+      if (run.impedance !== null) model[`${kind}_solimp`].set([run.impedance, run.impedance, 0.001, 0.5, 1], 5 * row);
     }
   }
 }
 
-/** @param {Setting} setting @param {Texts} texts @param {any} mujoco @param {any} model @param {any} data */
-function poses(setting, texts, mujoco, model, data) {
-  const samples = samplesOf(setting);
-  const bodies = texts.bodies.length;
-  const found = new Float64Array(3 * bodies * (samples + 1));
-  const between = setting.every * stepOf(setting);
-  const start = truth(setting).subarray(0, 3 * bodies);
-  for (let sample = 0; sample <= samples; sample++) {
-    for (let count = 0; sample > 0 && count < setting.every; count++) mujoco.mj_step(model, data);
-    // MuJoCo starts anew, its clock too, once numbers grow too large: what follows is no motion of this mechanism.
-    if (!(Math.abs(data.time - sample * between) < stepOf(setting) / 2)) return found.fill(NaN, 3 * sample * bodies);
-    mujoco.mj_kinematics(model, data); // a step leaves the places of bodies as they were before it
-    const { xpos, qpos } = data;
-    texts.bodies.forEach((own, body) => {
-      const turned = texts.turns[body].reduce((sum, place) => sum + qpos[place], 0);
-      found.set([xpos[3 * own], xpos[3 * own + 1], start[3 * body + 2] + turned], 3 * (sample * bodies + body));
-    });
+/** Start where the reader let go: hinges and slides from the poses of bodies. @param {Run} run @param {Texts} texts @param {any} data */
+function begin(run, texts, data) {
+  const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
+  const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
+  for (const [body, parent, rotation, slide, dx, dy] of texts.links) {
+    const moved = (/** @type {number} */ own, /** @type {number} */ axis) => (own < 0 ? 0 : now.pose[3 * own + axis] - old.pose[3 * own + axis]);
+    const rate = (/** @type {number} */ own) => (own < 0 ? 0 : now.twist[3 * own + 2]);
+    if (rotation >= 0) {
+      data.qpos[rotation] = moved(body, 2) - moved(parent, 2);
+      data.qvel[rotation] = rate(body) - rate(parent);
+    }
+    if (slide >= 0) {
+      data.qpos[slide] = dx * moved(body, 0) + dy * moved(body, 1);
+      data.qvel[slide] = dx * now.twist[3 * body] + dy * now.twist[3 * body + 1];
+    }
   }
-  return found;
 }
 
-/** Poses at the samples by Munk2D. @param {any} munk @param {Setting} setting */
-export function runMunk(munk, setting) {
-  const plans = /** @type {Plans} */ (setting.scene.munk[setting.munk]);
-  const plan = doubles(/** @type {string} */ (setting.scene.pool[plans.plans[setting.place]]));
-  const bodies = plan[HEAD - 1];
-  for (let body = 0; body < bodies; body++) {
-    for (let velocity = 6; velocity < 9; velocity++) plan[HEAD + BODY * body + velocity] *= setting.tempo;
+/** The stiffest-loaded row of a constraint as a spring of a unit of inertia: k [1/s^2], b [1/s], impedance. @param {any} data */
+function springOf(data) {
+  if (!data.nefc) return null;
+  const [k, b, impedance] = data.efc_KBIP;
+  return { k, b, impedance };
+}
+
+/** @param {Run} run @param {Texts} texts @param {any} mujoco @param {any} model @param {any} data */
+function states(run, texts, mujoco, model, data) {
+  const { samples, every, step, scene } = run;
+  const bodies = texts.bodies.length;
+  const start = run.start ? mechanismOf({ ...run, start: null })?.pose : firstPose(run);
+  const poses = () => {
+    mujoco.mj_kinematics(model, data); // a step leaves the places of bodies as they were before it
+    const { xpos, qpos } = data;
+    return texts.bodies.flatMap((own, body) => {
+      const turned = texts.turns[body].reduce((sum, place) => sum + qpos[place], 0);
+      return [xpos[3 * own], xpos[3 * own + 1], /** @type {number[]} */ (start)[3 * body + 2] + turned];
+    });
+  };
+  /** @type {number[][]} */
+  const found = [];
+  for (let sample = 0; sample <= samples; sample++) {
+    for (let count = 0; sample > 0 && count < every; count++) mujoco.mj_step(model, data);
+    // MuJoCo starts anew, its clock too, once numbers grow too large: what follows is no motion of this mechanism.
+    if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
+    const now = poses();
+    const [qpos, qvel] = [Float64Array.from(data.qpos), Float64Array.from(data.qvel)];
+    const near = [-SMALL, SMALL].map((time) => {
+      data.qpos.set(qpos.map((value, index) => value + time * qvel[index]));
+      return poses();
+    });
+    data.qpos.set(qpos);
+    mujoco.mj_kinematics(model, data);
+    found.push(Array.from({ length: 6 * bodies }, (_, index) => {
+      const at = 3 * Math.floor(index / 6) + (index % 3);
+      return index % 6 < 3 ? now[at] : (near[1][at] - near[0][at]) / (2 * SMALL);
+    }));
   }
-  const samples = samplesOf(setting);
-  const size = (samples + 1) * 3 * bodies;
+  while (found.length <= samples) found.push(new Array(6 * scene.bodies.length).fill(NaN));
+  return split(found);
+}
+
+/** Poses of the bodies at the start, of which models in tree coordinates tell the changes. @param {Run} run */
+function firstPose(run) {
+  const own = mechanismOf(run)?.pose;
+  if (own) return own;
+  const whole = doubles(/** @type {string} */ (run.scene.pool[/** @type {number} */ (run.scene.truth[run.place])]));
+  return [...split([whole.subarray(0, 6 * run.scene.bodies.length)]).pose];
+}
+
+/** Poses and twists at the samples by Munk2D; with `last`, after `samples` a step more of so many iterations, and each
+ * joint's impulse after it [N s]. @param {any} munk @param {Run} run @param {number} last */
+export function runMunk(munk, run, last = 0) {
+  const plans = /** @type {Plans} */ (run.scene.munk[run.munk]);
+  const plan = doubles(/** @type {string} */ (run.scene.pool[plans.plans[run.place]]));
+  const bodies = plan[HEAD - 4];
+  if (run.start) place(run, plan);
+  const iterations = run.iterations ?? plan[HEAD - 3];
+  const bias = run.bias ?? plan[HEAD - 2];
+  // A part of a gap that is left after a step, not after a second, is told in a space whose second is the step.
+  const unit = run.bias === null && plan[HEAD - 1] ? run.step : 1;
+  const states_ = run.samples + 1 + (last ? 1 : 0);
+  const size = states_ * 6 * bodies + (last ? 2 * plan.length : 0);
   const given = munk._malloc(8 * plan.length);
   const out = munk._malloc(8 * size);
   try {
     munk.HEAPF64.set(plan, given / 8);
-    munk._munk_run(given, plan.length, stepOf(setting), setting.iterations, setting.bias, samples, setting.every, out);
+    munk._munk_run(given, plan.length, run.step / unit, unit, iterations, bias, run.samples, run.every, last, out);
     const found = Float64Array.from(munk.HEAPF64.subarray(out / 8, out / 8 + size));
-    for (let body = 0; body < bodies; body++) fromOrigin(found, plan, body, bodies);
-    return found;
+    const rows = Array.from({ length: states_ }, (_, index) => fromOrigins(found.subarray(6 * bodies * index, 6 * bodies * (index + 1)), plan));
+    return { ...split(rows), impulses: found.subarray(6 * bodies * states_), iterations, left: unit === 1 ? bias ** run.step : bias };
   } finally {
     munk._free(given);
     munk._free(out);
   }
 }
 
-/** From where Munk2D has a body's origin to our own. @param {Float64Array} found @param {Float64Array} plan
- * @param {number} body @param {number} bodies */
-function fromOrigin(found, plan, body, bodies) {
-  const [x, y] = plan.subarray(HEAD + BODY * body + 9, HEAD + BODY * body + 11);
-  if (x === 0 && y === 0) return;
-  for (let place = 3 * body; place < found.length; place += 3 * bodies) {
-    const [c, s] = [Math.cos(found[place + 2]), Math.sin(found[place + 2])];
-    found[place] -= c * x - s * y;
-    found[place + 1] -= s * x + c * y;
+/** Start where the reader let go. @param {Run} run @param {Float64Array} plan */
+function place(run, plan) {
+  const { pose, twist } = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
+  for (let at = HEAD, body = 0; body < run.scene.bodies.length; at += BODY, body++) {
+    const [x, y, angle] = pose.slice(3 * body, 3 * body + 3);
+    const [ox, oy] = plan.subarray(at + 9, at + 11);
+    const [c, s] = [Math.cos(angle), Math.sin(angle)];
+    plan.set([x + c * ox - s * oy, y + s * ox + c * oy, angle], at + 3);
+    // A crank's own motion is a turn about its origin, which is its pin.
+    plan.set(plan[at] ? [0, 0, twist[3 * body + 2]] : twist.slice(3 * body, 3 * body + 3), at + 6);
   }
 }
 
-/** The engines that this site has, loaded; null for one that it was built without. @param {string} packages */
-export async function load(packages) {
-  const one = async (/** @type {string} */ name, /** @type {object} */ given) => {
-    const address = new URL(`${packages}${name}`, document.baseURI);
-    const { default: start } = await import(address.href);
-    return start(given);
-  };
-  const wanted = (document.body.dataset.engines ?? "").split(" ");
+/** From where Munk2D has a body's origin to our own, in place. @param {Float64Array} state @param {Float64Array} plan */
+function fromOrigins(state, plan) {
+  for (let at = HEAD + 9, own = 0; own < state.length; at += BODY, own += 6) {
+    const [x, y] = plan.subarray(at, at + 2);
+    if (x === 0 && y === 0) continue;
+    const [c, s] = [Math.cos(state[own + 2]), Math.sin(state[own + 2])];
+    const [ax, ay] = [c * x - s * y, s * x + c * y];
+    state[own] -= ax;
+    state[own + 1] -= ay;
+    state[own + 3] += state[own + 5] * ay;
+    state[own + 4] -= state[own + 5] * ax;
+  }
+  return state;
+}
+
+/** The engines that this site has, loaded; null for one that it was built without. @param {string} packages @param {string[]} wanted */
+export async function load(packages, wanted) {
+  const one = async (/** @type {string} */ name, /** @type {object} */ given) => (await import(`${packages}${name}`)).default(given);
   const [mujoco, munk] = await Promise.all([
     wanted.includes("mujoco") ? one("mujoco.js", { printErr: () => {}, print: () => {} }) : null,
     wanted.includes("munk2d") ? one("munk2d.js", {}) : null,

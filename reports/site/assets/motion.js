@@ -4,13 +4,14 @@
 /**
  * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[],
  *   line: number|null}} Joint a pin, or a slot of the first body along `line` [rad]
- * @typedef {{name: string, pose: (number|null)[], mark?: number}} Motion
- * @typedef {{name: string, at: number[], force: (number|null)[], normal?: (number|null)[],
+ * @typedef {{name: string, mark: number, pose: ArrayLike<number>, twist: ArrayLike<number>}} Motion
+ * @typedef {{name: string, at: ArrayLike<number|null>, force: ArrayLike<number|null>, partly?: boolean,
+ *   contact?: boolean, normal?: (number|null)[],
  *   friction?: (number|null)[]}} Force
- * @typedef {{name: string, unit: string, at: number[], motions: (number|null)[][]}} Loose a skate or a rolling contact
- * @typedef {{t: number[], bodies: string[], joints: Joint[], size: number, measure: "angle"|"position",
- *   truth: {pose: number[], twist: number[]}, motions: Motion[], lost: {name: string, why: string}[], loose: Loose[],
- *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[]}} Take
+ * @typedef {{name: string, body: number, point: number[], angle: number}} Blade
+ * @typedef {{t: ArrayLike<number>, bodies: string[], joints: Joint[], blades: Blade[], size: number,
+ *   measure: "angle"|"position", truth: {pose: ArrayLike<number>, twist: ArrayLike<number>}, motions: Motion[],
+ *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[], window: number[]}} Take
  * @typedef {[number, number]} Point
  */
 
@@ -23,7 +24,7 @@ export function poseAt(pose, bodies, frame, body) {
   const start = 3 * (frame * bodies + body);
   const read = (/** @type {number} */ index) => {
     const value = pose[index];
-    return value === null || value === undefined ? NaN : value;
+    return value ?? NaN;
   };
   return [read(start), read(start + 1), read(start + 2)];
 }
@@ -67,6 +68,28 @@ export function errors(truth, pose, bodies, frames) {
     }
   }
   return { angle, position };
+}
+
+/** Values that charts can have: what blew up is no number. @param {Float64Array} pose */
+export const finite = (pose) => pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
+
+/** How far apart two motions look at every instant: of bodies, as far as they reach [m]; NaN where one gave up.
+ * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
+ * @param {number} frames @param {number} size */
+export function seen(truth, pose, bodies, frames, size) {
+  const { angle, position } = errors(truth, pose, bodies, frames);
+  return position.map((moved, frame) => moved + 0.5 * size * Math.sin(Math.min(angle[frame], Math.PI) / 2));
+}
+
+/** The velocity of a body's point that is across a blade there, as a vector [m/s]. @param {Blade} blade
+ * @param {ArrayLike<number>} pose @param {ArrayLike<number>} twist @param {number} bodies @param {number} frame @returns {Point} */
+export function slip({ body, point, angle }, pose, twist, bodies, frame) {
+  const [vx, vy, rate] = poseAt(twist, bodies, frame, body);
+  const heading = poseAt(pose, bodies, frame, body)[2];
+  const [ax, ay] = placed([0, 0, heading], point);
+  const [nx, ny] = [-Math.sin(heading + angle), Math.cos(heading + angle)];
+  const across = (vx - rate * ay) * nx + (vy + rate * ax) * ny;
+  return [across * nx, across * ny];
 }
 
 /** The largest gap of any pin or slot over all instants [m].

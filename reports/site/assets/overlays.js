@@ -1,14 +1,13 @@
 // @ts-check
-/** What can be switched on over a picture: forces, the friction that rolling demands, instant centres, open joints. */
+/** What can be switched on over a picture: forces, the friction that rolling demands, instant centres. */
 
 import { svg } from "./chart.js";
-import { ends, instantCentre, poseAt, told } from "./motion.js";
+import { instantCentre, poseAt, told } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take @typedef {import("./motion.js").Point} Point */
-/** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number, gaps: number[]}} Scene what is drawn on */
+/** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number}} Scene what is drawn on */
 /** @typedef {{there: (take: Take) => boolean, draw: (scene: Scene) => string}} Overlay */
 
-const LENS = 0.09; // radius of a magnified joint, of the picture's width
 const ARROW = 0.3; // length of the longest arrow, of the picture's width
 
 /** @type {Record<string, Overlay>} */
@@ -16,13 +15,12 @@ export const OVERLAYS = {
   reactions: { there: ({ forces }) => forces.length > 0, draw: drawForces },
   friction: { there: ({ forces }) => forces.some(({ friction }) => friction !== undefined), draw: drawFriction },
   centre: { there: ({ centre }) => centre !== null, draw: drawCentre },
-  gaps: { there: ({ joints, loose, motions }) => joints.length + loose.length > 0 && motions.length > 0, draw: drawGaps },
 };
 
 /** A vector of numbers in pairs, at an instant. @param {ArrayLike<number|null>} flat @param {number} frame @returns {Point} */
 const at = (flat, frame) => [flat[2 * frame] ?? NaN, flat[2 * frame + 1] ?? NaN];
 
-/** Lengths of vectors. @param {(number|null)[]} flat */
+/** Lengths of vectors. @param {ArrayLike<number|null>} flat */
 function norms(flat) {
   const found = [];
   for (let index = 0; index < flat.length; index += 2) found.push(Math.hypot(flat[index] ?? 0, flat[index + 1] ?? 0));
@@ -30,7 +28,7 @@ function norms(flat) {
 }
 
 /** The largest of numbers, of those that are there. @param {(number|null)[]} values */
-const most = (values) => values.reduce((/** @type {number} */ a, b) => (b !== null && b > a ? b : a), 0);
+const most = (values) => [...values].reduce((/** @type {number} */ a, b) => (b !== null && b > a ? b : a), 0);
 
 /** @param {Scene} scene @param {Point} from @param {Point} by @param {string} kind */
 function arrow({ overlay, width }, [x, y], [dx, dy], kind) {
@@ -56,9 +54,12 @@ function drawForces(scene) {
   const scale = (ARROW * width) / largest;
   for (const each of take.forces) {
     const [x, y] = at(each.force, frame);
-    arrow(scene, at(each.at, frame), [scale * x, scale * y], "");
+    const place = at(each.at, frame);
+    arrow(scene, place, [scale * x, scale * y], "");
+    if (each.contact) scene.overlay.append(svg("circle", { class: "contact", cx: place[0], cy: place[1], r: 0.008 * width }));
   }
-  return `The longest arrow of this motion is ${told(largest)} N.`;
+  const partly = take.forces.some((each) => each.partly) ? " The motion does not determine all of these forces: drawn is the part that it does." : "";
+  return `The longest arrow of this motion is ${told(largest)} N.${partly}`;
 }
 
 /** The contact force in its two parts, and the coefficient that they ask for. @param {Scene} scene */
@@ -81,89 +82,26 @@ function drawFriction(scene) {
   return remarks.join(" ");
 }
 
-/** @param {Scene} scene */
+/** The point about which the body turns: by the truth, and by the pose and velocity of each engine. @param {Scene} scene */
 function drawCentre({ take, frame, overlay, width }) {
-  if (take.centre === null) return "";
+  const body = take.centre ?? 0;
   const bodies = take.bodies.length;
-  const pose = poseAt(take.truth.pose, bodies, frame, take.centre);
-  const centre = instantCentre(pose, poseAt(take.truth.twist, 1, frame, 0));
-  if (!centre) return "At this instant the body does not turn: its instant centre is infinitely far away.";
   const size = 0.012 * width;
-  const [x, y] = centre;
-  overlay.append(
-    svg("line", { class: "polar", x1: pose[0], y1: pose[1], x2: x, y2: y }),
-    svg("line", { class: "centre", x1: x - size, y1: y - size, x2: x + size, y2: y + size }),
-    svg("line", { class: "centre", x1: x - size, y1: y + size, x2: x + size, y2: y - size }),
-  );
-  return `The ${take.bodies[take.centre]} turns about (${x.toFixed(2)}, ${y.toFixed(2)}) m.`;
-}
-
-/** Every joint as a circle with what is open in it, much larger than it is. @param {Scene} scene */
-function drawGaps(scene) {
-  const { take, frame, gaps, width } = scene;
-  const bodies = take.bodies.length;
-  const radius = LENS * width;
-  const remarks = [];
-  const largest = Math.max(...gaps, 0);
-  if (take.joints.length && largest <= 0) remarks.push("No joint is open.");
-  if (largest > 0) {
-    const factor = round(radius / largest);
-    for (const joint of take.joints) {
-      const [centre] = ends(joint, take.truth.pose, bodies, frame);
-      lens(scene, centre, take.motions.map(({ pose }) => {
-        const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, frame);
-        return [(bx - ax) * factor, (by - ay) * factor];
-      }));
-    }
-    remarks.push(`Gaps are drawn ${larger(factor)}; the largest of this motion is ${told(largest)} m.`);
-  }
-  for (const unit of new Set(take.loose.map((each) => each.unit))) remarks.push(drawLoose(scene, unit, radius));
-  return remarks.filter(Boolean).join(" ");
-}
-
-/** Slips of skates [m/s] or openings of rolling contacts [m]. @param {Scene} scene @param {string} unit @param {number} radius */
-function drawLoose(scene, unit, radius) {
-  const own = scene.take.loose.filter((each) => each.unit === unit);
-  const largest = Math.max(...own.flatMap(({ motions }) => motions.map((flat) => most(norms(flat)))));
-  const what = unit === "m" ? "Openings of the contact" : "Sideways velocities of the blade";
-  if (!(largest > 0)) return "";
-  const factor = round(radius / largest);
-  for (const { at: places, motions } of own) {
-    lens(scene, at(places, scene.frame), motions.map((flat) => {
-      const [x, y] = at(flat, scene.frame);
-      return [factor * x, factor * y];
-    }));
-  }
-  const scale = unit === "m" ? larger(factor) : `with ${told(1 / factor)} m/s as a metre of the picture`;
-  return `${what} are drawn ${scale}; the largest of this motion is ${told(largest)} ${unit}.`;
-}
-
-/** @param {Scene} scene @param {Point} centre @param {Point[]} vectors one a motion */
-function lens({ take, overlay, width }, [x, y], vectors) {
-  const group = svg("g", {});
-  group.append(svg("circle", { class: "lens", cx: x, cy: y, r: LENS * width }));
-  vectors.forEach(([dx, dy], index) => {
-    if (!Number.isFinite(dx + dy)) return;
-    const own = svg("g", { class: `method-${take.motions[index].mark ?? index + 1}` });
-    const dot = 0.006 * width;
-    own.append(
-      svg("line", { class: "gap", x1: x, y1: y, x2: x + dx, y2: y + dy }),
-      svg("circle", { class: "dot", cx: x, cy: y, r: dot }),
-      svg("circle", { class: "dot", cx: x + dx, cy: y + dy, r: dot }),
+  let remark = "";
+  for (const [index, { pose, twist }] of [...take.motions, take.truth].entries()) {
+    const now = poseAt(pose, bodies, frame, body);
+    const centre = instantCentre(now, poseAt(twist, bodies, frame, body));
+    const own = take.motions[index];
+    if (!own) remark = centre ? `By the truth the ${take.bodies[body]} turns about (${centre[0].toFixed(2)}, ${centre[1].toFixed(2)}) m.` : "At this instant the body does not turn: its instant centre is infinitely far away.";
+    if (!centre || !Number.isFinite(centre[0] + centre[1])) continue;
+    const [x, y] = centre;
+    const group = svg("g", { class: own ? `method-${own.mark}` : "truth" });
+    group.append(
+      svg("line", { class: "polar", x1: now[0], y1: now[1], x2: x, y2: y }),
+      svg("line", { class: "centre", x1: x - size, y1: y - size, x2: x + size, y2: y + size }),
+      svg("line", { class: "centre", x1: x - size, y1: y + size, x2: x + size, y2: y - size }),
     );
-    group.append(own);
-  });
-  overlay.append(group);
-}
-
-/** The largest of 1, 2, 5, 10, ... that is not above a number. @param {number} value */
-function round(value) {
-  const power = 10 ** Math.floor(Math.log10(value));
-  return power * (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1);
-}
-
-/** @param {number} factor */
-function larger(factor) {
-  if (factor < 1) return `${told(factor)} times as large as they are`;
-  return factor < 1e6 ? `${factor.toLocaleString("en")} times as large as they are` : `${factor.toExponential(0)} times as large as they are`;
+    overlay.append(group);
+  }
+  return remark;
 }

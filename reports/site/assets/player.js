@@ -1,106 +1,116 @@
 // @ts-check
-/** A picture that moves: what a page shows at rest is moved, dragged, and given what can be switched on over it. */
+/** A picture that moves: played slower where errors grow, dragged, and given what can be switched on over it. */
 
 import { errorChart } from "./chart.js";
-import { UNITS, errors, largestGap, poseAt, told } from "./motion.js";
+import { Lens } from "./lens.js";
+import { UNITS, errors, placed, poseAt, seen, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 
-const SECONDS = 6; // how long a motion takes to play, however fast it was
+const SHORTEST = 5; // s: a motion that is faster is slowed down until it takes as long
+const GROWING = 3; // times slower while the visible difference grows fastest
+const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
 export class Player {
-  /** @param {HTMLElement} figure @param {Take} take */
-  constructor(figure, take) {
+  /** @param {HTMLElement} figure */
+  constructor(figure) {
+    const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (figure.querySelector(name));
     this.figure = figure;
-    this.controls = /** @type {HTMLElement} */ (figure.querySelector(".controls"));
-    this.time = /** @type {HTMLInputElement} */ (figure.querySelector(".time input"));
-    this.clock = /** @type {HTMLElement} */ (figure.querySelector(".clock"));
-    this.button = /** @type {HTMLButtonElement} */ (figure.querySelector(".play"));
-    this.remark = /** @type {HTMLElement} */ (figure.querySelector(".remark"));
-    this.chart = /** @type {HTMLElement} */ (figure.querySelector(".errors"));
+    this.time = /** @type {HTMLInputElement} */ (find(".time input"));
+    this.clock = find(".clock");
+    this.button = /** @type {HTMLButtonElement} */ (find(".play"));
+    this.remark = find(".remark");
+    this.chart = find(".errors");
+    this.lens = new Lens(find(".lens"));
     this.boxes = /** @type {HTMLInputElement[]} */ ([...figure.querySelectorAll(".overlays input")]);
     this.stage = /** @type {SVGSVGElement} */ (figure.querySelector("svg.stage"));
     this.overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
     /** @type {Element[][]} the drawn bodies of each motion */
     this.groups = [];
-    /** @type {number[]} the largest of each motion [m] */
-    this.gaps = [];
-    this.bodies = take.bodies.length;
-    this.frames = take.t.length;
+    /** @type {Take|null} */
+    this.take = null;
     this.frame = 0;
     this.playing = false;
+    this.stopAt = 0; // the frame at which a motion looks most wrong
+    this.slower = 1;
+    /** @type {number[]} when each frame is shown [s], from the first on */
+    this.schedule = [];
     /** @type {(time: number) => void} */
     this.mark = () => {};
-    const on = (figure.dataset.on ?? "").split(" ");
-    for (const box of this.boxes) {
-      box.checked = on.includes(box.value);
-      box.addEventListener("change", () => this.show());
-    }
+    for (const box of this.boxes) box.addEventListener("change", () => this.show());
     this.time.addEventListener("input", () => {
       this.stop();
       this.frame = Number(this.time.value);
       this.show();
     });
-    this.button.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
-    this.controls.hidden = false;
-    this.chart.hidden = false;
-    this.take = take;
-    // At rest most motions have nothing to show: no gap is open yet, and forces are those of the start.
-    if (on.some((word) => word !== "paths" && word)) this.frame = Math.round(0.4 * (take.t.length - 1));
-    this.load(take);
+    this.button.addEventListener("click", () => (this.playing ? this.stop() : this.play(false)));
   }
 
   /** Take over a drawing whose groups stand in the order of the motions, the truth last. @param {Take} take */
   load(take) {
     this.take = take;
-    this.bodies = take.bodies.length;
-    this.frames = take.t.length;
     this.stage = /** @type {SVGSVGElement} */ (this.figure.querySelector("svg.stage"));
     this.overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
     this.groups = [...this.stage.querySelectorAll(".motion")].map((group) => [...group.querySelectorAll(".body")]);
-    this.time.max = String(this.frames - 1);
-    this.frame = Math.min(this.frame, this.frames - 1);
+    [this.time.min, this.time.max] = take.window.map(String);
+    this.frame = Math.min(Math.max(this.frame, take.window[0]), take.window[1]);
     for (const box of this.boxes) {
       const there = box.value === "paths" ? take.traces.length > 0 : OVERLAYS[box.value].there(take);
       box.disabled = !there;
       const row = box.closest("label");
       if (row) row.hidden = !there;
     }
-    this.measure();
+    this.lens.load(take);
+    this.measure(take);
     this.show();
   }
 
-  /** The errors of the motions, drawn and told. */
-  measure() {
-    const { take, bodies, frames } = this;
-    const lines = take.motions.map((motion, index) => ({
-      name: motion.name,
-      mark: motion.mark ?? index + 1,
-      values: errors(take.truth.pose, motion.pose, bodies, frames)[take.measure],
-    }));
+  /** Errors, drawn and told; how fast each part of the motion is to be played, and where it stops. @param {Take} take */
+  measure(take) {
+    const { bodies: { length: bodies }, t: { length: frames }, truth, window: [first, last] } = take;
+    const lines = take.motions.map(({ name, mark, pose }) => ({ name, mark, values: errors(truth.pose, pose, bodies, frames)[take.measure] }));
     this.mark = errorChart(this.chart, take.t, lines, take.measure);
-    for (const line of lines) {
-      const worst = line.values.reduce((a, b) => Math.max(a, b), 0);
-      const place = this.figure.querySelector(`.legend .method-${line.mark} .figure`);
-      if (place) place.textContent = `up to ${told(worst)} ${UNITS[take.measure]}`;
+    for (const { mark, values } of lines) {
+      const place = this.figure.querySelector(`.legend .method-${mark} .figure`);
+      if (place) place.textContent = `up to ${told(values.reduce((a, b) => Math.max(a, b), 0))} ${UNITS[take.measure]}`;
     }
-    this.gaps = take.motions.map((motion) => largestGap(take.joints, motion.pose, bodies, frames));
+    const apart = new Float64Array(frames);
+    for (const { pose } of take.motions) {
+      seen(truth.pose, pose, bodies, frames, take.size).forEach((value, frame) => (apart[frame] = Math.max(apart[frame], Number.isFinite(value) ? value : 0)));
+    }
+    const far = apart.map((value) => Math.min(value, take.size));
+    this.stopAt = last;
+    for (let frame = last; frame >= first; frame--) if (far[frame] > far[this.stopAt]) this.stopAt = frame;
+    const real = take.t[last] - take.t[first];
+    this.slower = SLOWER.find((by) => real * by >= SHORTEST) ?? 100;
+    const growth = Array.from(far, (value, frame) => Math.max(0, value - (far[frame - 1] ?? 0)));
+    const fastest = Math.max(...growth.slice(first), 1e-3 * take.size);
+    this.schedule = [];
+    let at = 0;
+    for (let frame = first; frame <= last; frame++) {
+      if (frame > first) at += (take.t[frame] - take.t[frame - 1]) * this.slower * (1 + ((GROWING - 1) * growth[frame]) / fastest);
+      this.schedule[frame] = at;
+    }
   }
 
-  play() {
+  /** @param {boolean} anew from the first frame to where the difference is largest, else on from here to the end */
+  play(anew) {
+    if (!this.take) return;
+    const [first, last] = this.take.window;
+    const end = anew ? this.stopAt : last;
+    if (anew || this.frame >= last) this.frame = first;
     this.playing = true;
     this.button.textContent = "Pause";
     this.button.setAttribute("aria-pressed", "true");
-    if (this.frame >= this.frames - 1) this.frame = 0;
-    const begin = performance.now() - (this.frame / (this.frames - 1)) * SECONDS * 1000;
+    const begin = performance.now() / 1000 - this.schedule[this.frame];
+    const take = this.take;
     const step = (/** @type {number} */ now) => {
-      if (!this.playing) return;
-      // The first frame may have begun before the button was pressed.
-      const passed = Math.max(0, (now - begin) / 1000 / SECONDS);
-      this.frame = Math.min(this.frames - 1, Math.floor(passed * (this.frames - 1)));
+      if (!this.playing || this.take !== take) return;
+      const passed = now / 1000 - begin;
+      while (this.frame < end && this.schedule[this.frame + 1] <= passed) this.frame++;
       this.show();
-      if (this.frame >= this.frames - 1) this.stop();
+      if (this.frame >= end) this.stop();
       else requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
@@ -119,11 +129,12 @@ export class Player {
 
   /** Draw the present instant. */
   show() {
-    const { take, frame, bodies } = this;
+    const { take, frame } = this;
+    if (!take) return;
     const motions = [...take.motions.map((motion) => motion.pose), take.truth.pose];
     this.groups.forEach((group, index) => {
       group.forEach((element, body) => {
-        const [x, y, angle] = poseAt(motions[index], bodies, frame, body);
+        const [x, y, angle] = poseAt(motions[index], take.bodies.length, frame, body);
         const there = Number.isFinite(x + y + angle);
         element.setAttribute("visibility", there ? "visible" : "hidden");
         if (there) element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
@@ -131,13 +142,56 @@ export class Player {
     });
     this.stage.classList.toggle("paths", this.on("paths"));
     this.time.value = String(frame);
-    this.clock.textContent = `${take.t[frame].toFixed(3)} s`;
+    this.clock.textContent = `${take.t[frame].toFixed(3)} s${this.slower > 1 ? `, ${this.slower} × slower` : ""}`;
     this.time.setAttribute("aria-valuetext", this.clock.textContent);
     this.mark(take.t[frame]);
     this.overlay.replaceChildren();
-    const { overlay, gaps } = this;
+    const { overlay } = this;
     const width = this.stage.viewBox.baseVal.width;
-    const remarks = Object.entries(OVERLAYS).map(([name, { draw }]) => (this.on(name) ? draw({ take, frame, overlay, width, gaps }) : ""));
+    const remarks = Object.entries(OVERLAYS).map(([name, { draw }]) => (this.on(name) ? draw({ take, frame, overlay, width }) : ""));
+    this.lens.show(frame);
     this.remark.textContent = remarks.filter(Boolean).join(" ");
+  }
+
+  /** Let the reader take the mechanism: `pull` gets the body, its point and where the hand is; `release` the end.
+   * @param {(body: number, point: number[], wanted: number[]) => Float64Array|null} pull @param {() => void} release */
+  grabbed(pull, release) {
+    const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));
+    /** @type {{body: number, point: number[]}|null} */
+    let held = null;
+    const hand = (/** @type {PointerEvent} */ event) => {
+      const world = /** @type {SVGGElement} */ (this.stage.querySelector(".world"));
+      const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {DOMMatrix} */ (world.getScreenCTM()).inverse());
+      return [x, y];
+    };
+    frame_.addEventListener("pointerdown", (event) => {
+      const take = this.take;
+      if (!take) return;
+      const wanted = hand(event);
+      const near = take.bodies.map((_, body) => poseAt(take.truth.pose, take.bodies.length, this.frame, body)).flatMap((pose, body) => {
+        const own = take.joints.flatMap(({ first, second, firstPoint, secondPoint }) => [...(first === body ? [firstPoint] : []), ...(second === body ? [secondPoint] : [])]);
+        return [[0, 0], ...own].map((point) => ({ body, point, away: Math.hypot(...placed(pose, point).map((value, axis) => value - wanted[axis])) }));
+      }).sort((a, b) => a.away - b.away)[0];
+      if (near.away > 0.15 * take.size || !pull(near.body, near.point, wanted)) return;
+      this.stop();
+      held = near;
+      frame_.setPointerCapture(event.pointerId);
+      event.preventDefault();
+    });
+    frame_.addEventListener("pointermove", (event) => {
+      if (!held || !this.take) return;
+      const pose = pull(held.body, held.point, hand(event));
+      if (!pose) return;
+      for (const group of this.groups) {
+        group.forEach((element, body) => element.setAttribute("transform", `translate(${pose[3 * body]} ${pose[3 * body + 1]}) rotate(${(pose[3 * body + 2] * 180) / Math.PI})`));
+      }
+      this.overlay.replaceChildren();
+    });
+    const end = () => {
+      if (held) release();
+      held = null;
+    };
+    frame_.addEventListener("pointerup", end);
+    frame_.addEventListener("pointercancel", end);
   }
 }

@@ -1,5 +1,7 @@
 // @ts-check
-/** The stored rows as a chart with hover and a table; what is chosen stands in the link. */
+/** The stored rows as a chart with hover and a table; what the reader chooses stands in the link. */
+
+import { equip } from "./tables.js";
 
 const Plot = /** @type {any} */ (window).Plot;
 const form = /** @type {HTMLFormElement} */ (document.getElementById("choice"));
@@ -16,9 +18,16 @@ const UNITS = {
 
 /** @typedef {Record<string, string|number|null>} Row */
 
+/** Of each engine the role of its colour, and whether it solves the equations as they are. @type {Record<string, {role: string, exact: boolean}>} */
+let looks = {};
+// Variants by line, so that a method has one look in every chart: an engine's colour, its variant's dashes.
+const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "7 4", extended: "" });
+const HEADINGS = /** @type {Record<string, string>} */ ({ default: "as shipped", tuned: "documented settings", extended: "with our code" });
+
 /** @returns {Promise<Row[]>} */
 async function read() {
-  const { columns, rows } = await (await fetch("rows.json")).json();
+  const { columns, rows, looks: told } = await (await fetch("rows.json")).json();
+  looks = told;
   return rows.map((/** @type {(string|number|null)[]} */ row) =>
     Object.fromEntries(columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])),
   );
@@ -35,15 +44,18 @@ function fill(select, words) {
 /** @param {Row[]} rows */
 function draw(rows) {
   const [scene, engine, x, y, words] = ["scene", "engine", "x", "y", "filter"].map(chosen);
+  const all = /** @type {HTMLInputElement} */ (form.elements.namedItem("all")).checked;
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
   const kept = rows.filter(
     (row) =>
-      row.scene === scene && (!engine || row.engine === engine) &&
+      row.scene === scene && (!engine || row.engine === engine) && (all || usual(row)) &&
       wanted.every((word) => `${row.engine} ${row.variant} ${row.outcome}`.toLowerCase().includes(word)),
   );
+  /** @type {Row[]} */
   const points = kept
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
-    .map((row) => ({ ...row, method: `${row.engine} ${row.variant}` }));
+    .map((row) => ({ ...row, method: nameOf(row) }));
+  const engines = [...new Set(points.map((row) => String(row.engine)))];
   const unit = { step: "step [s]", cpu: "CPU time per simulated second [s]" }[x];
   chart.replaceChildren(
     points.length
@@ -52,13 +64,15 @@ function draw(rows) {
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: unit, tickFormat: ".0e", ticks: 5 },
           y: { type: "log", label: UNITS[y] ?? y, tickFormat: ".0e" },
-          color: { legend: true, scheme: "Tableau10" }, symbol: { legend: true },
+          color: { legend: true, domain: engines, range: engines.map((name) => `var(--${looks[name].role})`) },
           marks: [
-            Plot.line(points, { x, y, z: "method", stroke: "method", sort: x, strokeOpacity: 0.6 }),
+            ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
+              Plot.line(points.filter((row) => row.variant === variant), { x, y, z: "method", stroke: "engine", sort: x, strokeDasharray: DASHES[variant] ?? "1 2 6 2" })),
+            Plot.text(points, Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
             Plot.dot(points, {
-              x, y, stroke: "method", symbol: "engine", tip: true, r: 4,
+              x, y, fill: "engine", tip: true, r: 3.5,
               channels: {
-                scene: "scene", step: { value: "step", label: "step [s]" }, outcome: "outcome", settings: "settings",
+                method: "method", scene: "scene", step: { value: "step", label: "step [s]" }, outcome: "outcome", settings: "settings",
               },
             }),
           ],
@@ -71,15 +85,25 @@ function draw(rows) {
       const line = document.createElement("tr");
       for (const name of ["engine", "variant", "step", "outcome", "position", "angle", "velocity", "gap", "energy", "reaction", "cpu"]) {
         const value = row[name];
-        line.insertCell().textContent = value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(3))) : value;
+        line.insertCell().textContent = name === "variant" ? (HEADINGS[String(value)] ?? String(value)) : value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(3))) : value;
       }
       return line;
     }),
   );
   const shown = kept.length > MOST ? `, the first ${MOST} of them in the table` : "";
   count.textContent = `${kept.length} rows${shown}.`;
-  const state = ["scene", "engine", "x", "y", "filter"].map((name) => `${name}=${encodeURIComponent(chosen(name))}`);
-  history.replaceState(null, "", `#${state.join("&")}`);
+}
+
+/** Whether a row is one of an engine's three variants: of other methods there are many. @param {Row} row */
+const usual = ({ engine, variant }) => String(variant) in HEADINGS && !looks[String(engine)].exact;
+
+/** What a method is called. @param {Row} row */
+const nameOf = ({ engine, variant }) => `${engine} ${HEADINGS[String(variant)] ?? variant}`;
+
+/** What the reader chose, in the address. */
+function keep() {
+  const state = ["scene", "engine", "x", "y", "filter"].filter((name) => chosen(name)).map((name) => `${name}=${encodeURIComponent(chosen(name))}`);
+  history.replaceState(history.state, "", `#${state.join("&")}`);
 }
 
 async function begin() {
@@ -88,17 +112,27 @@ async function begin() {
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")), unique("scene"));
   fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("engine")), ["", ...unique("engine")]);
   /** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")).value = "free_four_bar";
-  for (const part of location.hash.slice(1).split("&")) {
-    const [name, value] = part.split("=").map(decodeURIComponent);
-    const element = name ? form.elements.namedItem(name) : null;
-    if (element instanceof HTMLSelectElement && [...element.options].some((option) => option.value === value)) element.value = value;
-    if (element instanceof HTMLInputElement) element.value = value ?? "";
-  }
-  form.addEventListener("input", () => draw(rows));
+  const restore = () => {
+    for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
+      const element = form.elements.namedItem(name);
+      if (element instanceof HTMLSelectElement && [...element.options].some((option) => option.value === value)) element.value = value;
+      if (element instanceof HTMLInputElement && element.type === "search") element.value = value;
+    }
+  };
+  restore();
+  addEventListener("hashchange", () => {
+    restore();
+    draw(rows);
+  });
+  form.addEventListener("input", () => {
+    draw(rows);
+    keep();
+  });
   form.addEventListener("submit", (event) => event.preventDefault());
   addEventListener("resize", () => draw(rows));
   form.hidden = false;
   draw(rows);
+  equip(/** @type {HTMLTableElement} */ (body.parentElement));
   document.documentElement.dataset.ready = "yes";
 }
 

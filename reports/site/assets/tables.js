@@ -22,8 +22,8 @@ function sort(table, column, rising) {
   body.append(...rows.map(({ row }) => row));
 }
 
-/** @param {HTMLTableElement} table */
-function equip(table) {
+/** Headings that sort, and a filter. @param {HTMLTableElement} table */
+export function equip(table) {
   const body = table.tBodies[0];
   if (!table.tHead || !body || body.rows.length < 2) return;
   const heads = [...table.tHead.rows[0].cells];

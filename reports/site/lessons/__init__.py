@@ -1,4 +1,4 @@
-"""The lessons: which motions each shows and in which order; their words stand beside, one Markdown file a lesson."""
+"""The lessons: the scenes each lets run and the experiments it makes; their words stand beside, one file each."""
 
 from dataclasses import replace
 
@@ -9,15 +9,16 @@ from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_
 from reports.site.lessons.rolling import GEARS, ROLLING
 from reports.site.lessons.skates import SKATE, WHEELS
 
-LESSONS = (FOUR_BAR, SLIDER_CRANK, SKATE, WHEELS, ROLLING, PENDULUM, GEARS, CENTRODES)
+LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, SKATE, WHEELS, ROLLING, GEARS, CENTRODES)
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
     """A take of a scene in these methods, drawn as the lessons draw a scene of this name, if one of them does."""
-    takes = [take for lesson in LESSONS for take in lesson.takes.values() if take.scene.name == scene.name]
-    plain = next((take for take in takes if not take.curves), Take(scene))
+    plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
+    if plain is None:
+        return Take(scene, methods)
     bodies = {body.name for body in scene.mechanism().bodies}
     ends = {body: points for body, points in plain.ends.items() if body in bodies}
     traces = tuple((body, point) for body, point in plain.traces if body in bodies)
     centre = plain.centre if plain.centre in bodies else None
-    return replace(Take(scene, methods), ends=ends, traces=traces, centre=centre)
+    return replace(Take(scene, methods), ends=ends, traces=traces, centre=centre, axle=plain.axle)

@@ -2,197 +2,257 @@
 
 from __future__ import annotations
 
-from engines import mujoco, pymunk
-from reference.scenes.four_bar.scenes import (
-    DrivenFourBar,
-    FreeFourBar,
-    OverdrivenFourBar,
-    Parallelogram,
-    SpinningFourBar,
-)
+from dataclasses import replace
+from functools import cache
+
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank.scenes import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
-from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import scenes
+from reports.site.lesson import Claim, Experiment, Lesson
+from reports.site.live.sliders import DOCUMENTED, Live, Point, Slider
 
-SHIPPED = (("pymunk as shipped", pymunk.DEFAULT), ("MuJoCo as shipped", mujoco.DEFAULT))
-SET = (("pymunk, tuned", pymunk.TUNED), ("MuJoCo, tuned", mujoco.TUNED))
-BOTH = (*SHIPPED, *SET)
-
-
-def with_steps(methods, every: int):
-    """Methods of a take, all with as many steps between samples."""
-    return tuple((word, engine, every) for word, engine in methods)
-
-
-COUPLER = (("coupler", (0.0, 0.0)),)
+BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
+FORCES, CENTRE = (frozenset({"paths", word}) for word in ("reactions", "centre"))
+RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
+DENSITIES = tuple(1.0 if ratio == 1 else (1.0, ratio, 1.0) for ratio in RATIOS)
+DENSITY = Slider("density", "the coupler's density to that of the others", DENSITIES, tuple(map("{:g}".format, RATIOS)))
+HEAVY = DENSITIES[-1]
+COUPLER = FreeFourBar().coupler
+COUPLERS = Slider(
+    "coupler", "coupler [m]", (0.53, COUPLER, 0.65, 0.9), ("0.53", f"{COUPLER:.3f}, the chapter's", "0.65", "0.9")
+)
+REVOLUTION = (15, 30, 60, 120, 300, 600, 1200)
+DRIVEN = Live(
+    "driven",
+    DrivenFourBar(),
+    REVOLUTION,
+    60,
+    3,
+    (
+        Slider("crank", "crank [m]", (0.2, 0.4, 0.45)),
+        COUPLERS,
+        replace(DENSITY, values=DENSITIES[2:], texts=("1", "10", "100")),
+    ),
+    traces=(("coupler", (0.0, 0.0)),),
+    centre="coupler",
+)
+FREE = Live(
+    "let go",
+    FreeFourBar(),
+    (25, 50, 100, 200, 500, 1000, 2000),
+    50,
+    3,
+    (
+        Slider("crank", "crank [m]", (0.3, 0.4, 0.45)),
+        replace(DENSITY, values=DENSITIES[::2], texts=("0.01", "1", "100")),
+    ),
+    traces=(("coupler", (0.0, 0.0)),),
+)
 
 FOUR_BAR = Lesson(
     "four_bar",
     "The four-bar linkage",
     "four_bar",
-    {
-        "driven": Take(DrivenFourBar(), with_steps(SHIPPED, 1), traces=COUPLER, centre="coupler"),
-        "free": Take(FreeFourBar(), with_steps(SHIPPED, 1), traces=COUPLER, centre="coupler"),
-        "set": Take(FreeFourBar(), with_steps(BOTH, 1), traces=COUPLER),
-        "large": Take(SpinningFourBar(), with_steps(BOTH, 1), samples=20, traces=COUPLER),
-        "heavy": Take(FreeFourBar(density=(0.01, 0.01, 100.0)), with_steps(BOTH, 1), traces=COUPLER),
-        "change": Take(Parallelogram(), with_steps(BOTH, 1), traces=COUPLER),
-        "overdriven": Take(
-            OverdrivenFourBar(),
-            with_steps(SHIPPED, 1),
-            end=int(OverdrivenFourBar().stopping_time / OverdrivenFourBar().spacing) + 1,
-        ),
-    },
+    (DRIVEN, FREE),
     (
-        Step("driven", frozenset({"paths"}), ("four_bar", "Nine configurations")),
-        Step("driven", frozenset({"gaps"}), ("four_bar", "Why the engine's pin is not the ideal one")),
-        Step("free", frozenset({"reactions"})),
-        Step("set", frozenset({"gaps"}), ("four_bar", "Which step for which mechanism")),
-        Step(
-            "large",
-            frozenset(),
+        Experiment("driven", section=("four_bar", "Nine configurations")),
+        Experiment(
+            "driven",
+            after={"bias": 0.0},
+            claims=(Claim("munk", most=0.1),),
+            causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
+            section=("four_bar", "Why the engine's pin is not the ideal one"),
+        ),
+        Experiment(
+            "let go",
+            {"integrator": 1},
+            {"steps": 2000},
+            (Claim("mujoco", 0.8, 1.2),),
+            (({"timeConstant": 0.002, "impedance": 0.9999}, Claim("mujoco", most=0.1)),),
+        ),
+        Experiment(
+            "let go",
+            after=BOTH,
+            claims=(Claim("munk", most=0.2), Claim("mujoco", most=0.001)),
+            section=("four_bar", "Which step for which mechanism"),
+        ),
+        Experiment(
+            "let go",
+            {"bias": 0.0, "steps": 1000},
+            {"iterations": 1},
+            (Claim("munk", least=10),),
+            (({"iterations": 2}, Claim("munk", most=0.1)), ({"steps": 500}, Claim("munk", most=1.0))),
+        ),
+        Experiment(
+            "let go",
+            {"density": HEAVY, **BOTH},
+            {"iterations": 10},
+            (Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
+            (({"iterations": 100}, Claim("munk", most=0.1)), ({"density": 1.0}, Claim("munk", most=0.1))),
+            FORCES,
             ("four_bar", "Where methods fail"),
-            (
-                (
-                    "A step of a twentieth of a second",
-                    "large",
-                    "The bars turn at 10 rad/s and more, so that half a radian passes in a step. No method is accurate "
-                    "here. The joints open, and no engine says so.",
-                ),
-                (
-                    "A heavy bar on light ones",
-                    "heavy",
-                    "The rocker is ten thousand times as dense as the other bars. The motion is as smooth as before; "
-                    "sweeps over the joints need many more rounds for it.",
-                ),
-                (
-                    "Through a change point",
-                    "change",
-                    "Twice a revolution all bars lie in line, and the loop could go on parallel or crossed. The "
-                    "bars' inertia decides: it goes on parallel.",
-                ),
-                (
-                    "Driven towards a dead centre",
-                    "overdriven",
-                    "These bars can follow the crank for a while only. Shown is the time until then. After it no "
-                    "position closes the loop, and the reference refuses.",
-                ),
-            ),
         ),
     ),
-    live=scenes.FOUR_BAR,
 )
 
+ROD = (("rod", (0.0, 0.0)),)
 SLIDER_CRANK = Lesson(
     "slider_crank",
     "The slider-crank",
     "slider_crank",
-    {
-        "driven": Take(DrivenSliderCrank(), with_steps(SHIPPED, 1), traces=(("rod", (0.0, 0.0)),), centre="rod"),
-        "free": Take(FreeSliderCrank(), with_steps(SHIPPED, 1), traces=(("rod", (0.0, 0.0)),), centre="rod"),
-        "set": Take(FreeSliderCrank(), with_steps(BOTH, 1), traces=(("rod", (0.0, 0.0)),)),
-        "large": Take(FreeSliderCrank(), with_steps(BOTH, 1), samples=20),
-    },
     (
-        Step("driven", frozenset({"paths"}), ("slider_crank", "In motion")),
-        Step("driven", frozenset({"centre"})),
-        Step("free", frozenset({"reactions"})),
-        Step("set", frozenset({"gaps"}), ("slider_crank", "Which step for which mechanism")),
-        Step(
-            "large",
-            frozenset(),
-            ("slider_crank", "Where methods fail"),
+        Live(
+            "driven",
+            DrivenSliderCrank(),
+            REVOLUTION,
+            60,
+            3,
             (
-                (
-                    "Steps of a twentieth of a second",
-                    "large",
-                    "The linkage falls and swings back, the slider stays on its line. Steps this large are wrong, and "
-                    "a warning would help.",
-                ),
+                Slider("crank", "crank [m]", (0.15, 0.3, 0.45, 0.6)),
+                Slider("slider_mass", "mass of the slider [kg]", (0.05, 0.5, 5.0, 50.0)),
             ),
+            traces=ROD,
+            centre="rod",
+        ),
+        Live(
+            "let go",
+            FreeSliderCrank(),
+            (50, 100, 200, 400, 1000, 2000, 4000),
+            50,
+            3,
+            (
+                Slider("crank", "crank [m]", (0.15, 0.3, 0.45, 0.6)),
+                Slider("slider_mass", "mass of the slider [kg]", (0.05, 0.5, 5.0)),
+            ),
+            traces=ROD,
+            centre="rod",
         ),
     ),
-    live=scenes.SLIDER_CRANK,
+    (
+        Experiment("driven", shown=CENTRE, section=("slider_crank", "In motion")),
+        Experiment("let go", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1))),
+        Experiment(
+            "driven",
+            {"slider_mass": 50.0, **BOTH},
+            {"iterations": 10},
+            (Claim("munk", least=10),),
+            (({"iterations": 100}, Claim("munk", most=0.1)), ({"slider_mass": 0.5}, Claim("munk", most=0.1))),
+            FORCES,
+            ("slider_crank", "Where methods fail"),
+        ),
+    ),
 )
 
 TIP = ((0.5, 0.0), (-0.5, 0.0))
-TWO = (("link 2", (0.5, 0.0)),)
 PENDULUM = Lesson(
     "pendulum",
     "Pendulums",
     "pendulum",
-    {
-        "one": Take(BarPendulum(duration=4.0), with_steps(SHIPPED, 1), ends={"link 1": TIP}),
-        "two": Take(LinkPendulum(), with_steps(SHIPPED, 1), ends={"link 2": TIP}, traces=TWO),
-        "set": Take(LinkPendulum(), with_steps(BOTH, 10), ends={"link 2": TIP}, traces=TWO),
-        "ten": Take(TenLinks(), with_steps(SHIPPED, 1), ends={"link 10": TIP}, end=301),
-        "heavy": Take(
-            LinkPendulum(links=3, tip=100.0, duration=2.0),
-            (*with_steps(SHIPPED, 10), ("MuJoCo, tuned", mujoco.TUNED, 10)),
-            ends={"link 3": TIP},
-        ),
-    },
     (
-        Step("one", frozenset({"reactions"}), ("pendulum", "In motion")),
-        Step("two", frozenset({"paths"})),
-        Step("set", frozenset({"paths"}), ("pendulum", "Which step for which mechanism")),
-        Step("ten", frozenset({"gaps"})),
-        Step(
-            "heavy",
-            frozenset({"gaps"}),
-            ("pendulum", "Where methods fail"),
+        Live(
+            "one link",
+            BarPendulum(duration=4.0),
+            (50, 100, 200, 400, 1000, 2000, 4000),
+            100,
+            3,
             (
-                (
-                    "A heavy tip on light links",
-                    "heavy",
-                    "The last of three links is a hundred times as heavy. It should swing nearly as if alone, and pull "
-                    "the light ones straight.",
-                ),
+                Slider("angle", "start angle [rad]", (0.5, 1.0, 2.0, 3.0)),
+                Slider("length", "length [m]", (0.5, 1.0, 2.0)),
             ),
+            ends={"link 1": TIP},
+        ),
+        Live(
+            "two links",
+            LinkPendulum(),
+            (25, 125, 250, 500, 1250, 2500, 5000),
+            125,
+            3,
+            (
+                Slider("tip", "mass of the last link to the other's", (0.1, 1.0, 10.0, 100.0)),
+                Slider("angle", "start angle [rad]", (0.5, 1.0, LinkPendulum().angle)),
+            ),
+            ends={"link 2": TIP},
+            traces=(("link 2", (0.5, 0.0)),),
+        ),
+        Live("ten links", TenLinks(), (75, 150, 300, 600, 1500, 3000), 75, 3, ends={"link 10": TIP}),
+    ),
+    (
+        Experiment("one link", after={"integrator": 1}, claims=(Claim("mujoco", most=1e-3),), shown=FORCES),
+        Experiment(
+            "one link",
+            after={"bias": 0.0},
+            claims=(Claim("munk", most=0.1),),
+            causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
+            section=("pendulum", "In motion"),
+        ),
+        Experiment(
+            "two links",
+            BOTH,
+            {"steps": 5000},
+            (Claim("mujoco", 5e-5, 2e-4), Claim("munk", 0.05, 0.2)),
+            (({"integrator": 0}, Claim("mujoco", least=1000)),),
+            section=("pendulum", "Which step for which mechanism"),
+        ),
+        Experiment(
+            "ten links",
+            after={"bias": 0.0, "iterations": 1},
+            claims=(Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
+            causes=(({"iterations": 100}, Claim("munk", most=0.1)),),
+        ),
+        Experiment(
+            "two links",
+            {"tip": 100.0},
+            {"iterations": 2},
+            (Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
+            (({"iterations": 20}, Claim("munk", most=0.1)), ({"tip": 1.0}, Claim("munk", most=1.0))),
+            FORCES,
+            ("pendulum", "Where methods fail"),
         ),
     ),
-    live=scenes.PENDULUM,
 )
 
 
-def centrode_take(alone: bool) -> Take:
+@cache
+def rolling_centrodes() -> Live:
     """The four-bar with both curves of its coupler's instant centre, over the arc on which that turns one way."""
     truth, curves = exact()
-    scene = DrivenFourBar()
-    fixed = tuple(map(tuple, curves.space_curve.point(_arcs(curves.space_arc)).tolist()))
-    moving = tuple(map(tuple, curves.body_curve.point(_arcs(curves.body_arc)).tolist()))
-    methods = () if alone else with_steps(SHIPPED, 1)
-    return Take(
+    scene, frames = DrivenFourBar(), 240
+    first, last = (round(t / scene.duration * frames) for t in (truth.t[0], truth.t[-1]))
+    fixed, moving = curves.space_curve, curves.body_curve
+
+    def drawn(curve, arc) -> tuple[Point, ...]:
+        low, high = float(min(arc)), float(max(arc))
+        return tuple(map(tuple, curve.point([low + (high - low) * index / 120 for index in range(121)]).tolist()))
+
+    return Live(
+        "rolling",
         scene,
-        methods,
-        samples=200,
-        traces=COUPLER,
+        (60, 120, 240, 480, 1200),
+        frames,
+        2,
+        traces=(("coupler", (0.0, 0.0)),),
         centre="coupler",
-        curves=((None, fixed), ("coupler", moving)),
-        start=round(truth.t[0] / (scene.duration / 200)) + 1,
-        end=round(truth.t[-1] / (scene.duration / 200)),
+        curves=((None, drawn(fixed, curves.space_arc)), ("coupler", drawn(moving, curves.body_arc))),
+        window=(first + 1, last - 1),
     )
-
-
-def _arcs(arc):
-    low, high = float(min(arc)), float(max(arc))
-    return [low + (high - low) * index / 120 for index in range(121)]
 
 
 CENTRODES = Lesson(
     "centrodes",
     "Centrodes: any motion as rolling",
     "centrodes",
-    {"rolling": centrode_take(True), "engines": centrode_take(False), "whole": FOUR_BAR.takes["driven"]},
+    (rolling_centrodes(), replace(DRIVEN, word="whole", sliders=())),
     (
-        Step("whole", frozenset({"centre"})),
-        Step("rolling", frozenset({"centre"}), ("centrodes", "The coupler of the four-bar")),
-        Step("rolling", frozenset({"centre", "paths"})),
-        Step("engines", frozenset({"centre"}), ("centrodes", "The centre as a measure of an engine")),
-        Step("engines", frozenset({"gaps"}), ("centrodes", "Shapes of your own")),
+        Experiment("whole", shown=CENTRE),
+        Experiment("rolling", shown=CENTRE, section=("centrodes", "The coupler of the four-bar")),
+        Experiment(
+            "rolling",
+            after=BOTH,
+            claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1)),
+            shown=CENTRE,
+            section=("centrodes", "The centre as a measure of an engine"),
+        ),
     ),
-    live=scenes.FOUR_BAR[:1],
 )

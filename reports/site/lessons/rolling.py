@@ -2,83 +2,113 @@
 
 from __future__ import annotations
 
-from engines import mujoco, pymunk
-from engines.pymunk.methods import ROLL_FACETED, ROLL_PIVOT
+from dataclasses import replace
+
+from engines import pymunk
+from engines.pymunk.joints.roll import Contact
+from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
-from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import scenes
+from reports.site.lesson import Claim, Experiment, Lesson
+from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
-CENTRE = (("roller", (0.0, 0.0)),)
-SHIPPED = (("pymunk, a polygon of 64 corners", pymunk.DEFAULT, 1), ("MuJoCo, contact as shipped", mujoco.DEFAULT, 1))
-ROWS = (("pymunk, a pin moved to the contact", ROLL_PIVOT, 1), ("MuJoCo, rows written by us", mujoco.EXTENDED, 1))
-CORNERS = tuple((engine.variant.removeprefix("roll: contact, "), engine, 10) for engine in ROLL_FACETED[:2])
+ROLLER = (("roller", (0.0, 0.0)),)
+HUNDRED = (20, 50, 100, 200, 500, 1000, 2000)
+START_RATE = Slider("start_rate", "turning rate at the start [rad/s]", (2.0, 3.0, 4.0, 5.0))
+FEW, MANY = "a polygon of 8 corners", "a polygon of 512 corners"
+CORNERS = (
+    (SHIPPED, pymunk.DEFAULT),
+    (DOCUMENTED, pymunk.TUNED),
+    (FEW, replace(pymunk.DEFAULT, contact=Contact(vertices=8))),
+    (MANY, ROLL_FACETED[-1]),
+)
+BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
+FORCES, CENTRE = (frozenset({"paths", word}) for word in ("reactions", "centre"))
 
 ROLLING = Lesson(
     "rolling",
     "Rolling: the ellipse and the cam",
     "rolling",
-    {
-        "ellipse": Take(RollingEllipse(), SHIPPED, traces=CENTRE, centre="roller"),
-        "cam": Take(RollingCam(), SHIPPED, traces=CENTRE, centre="roller"),
-        "rows": Take(RollingEllipse(), ROWS, traces=CENTRE, centre="roller"),
-        "polygon": Take(RollingEllipse(), CORNERS, traces=CENTRE),
-        "large": Take(RollingDisc(), SHIPPED, samples=20, traces=CENTRE),
-    },
     (
-        Step("ellipse", frozenset({"paths"}), ("rolling", "Roulettes")),
-        Step("cam", frozenset({"paths", "centre"}), ("rolling", "The contact")),
-        Step("ellipse", frozenset({"reactions"}), ("rolling", "Friction demanded, friction given")),
-        Step("rows", frozenset({"paths"}), ("rolling", "Errors that no step removes")),
-        Step(
-            "polygon",
-            frozenset({"paths"}),
-            ("rolling", "Where methods fail"),
-            (
-                (
-                    "The polygon wheel",
-                    "polygon",
-                    "An ellipse has no corners. A polygon falls from corner to corner and loses energy each time: the "
-                    "engine computes another body, and a smaller step computes that body better.",
-                ),
-                (
-                    "Steps of a tenth of a second",
-                    "large",
-                    "The disc stays on the ground and rolls on. Steps this large are wrong, and a warning would help.",
-                ),
-            ),
+        Live(
+            "an ellipse",
+            RollingEllipse(),
+            HUNDRED,
+            100,
+            3,
+            (Slider("along_y", "short half axis [m]", (0.2, 0.3, 0.4, 0.5)), START_RATE),
+            munk=CORNERS,
+            traces=ROLLER,
+            centre="roller",
+        ),
+        Live(
+            "a disc",
+            RollingDisc(),
+            HUNDRED,
+            100,
+            3,
+            (Slider("eccentricity", "centre of mass beside the middle [m]", (0.05, 0.15, 0.25)), START_RATE),
+            traces=ROLLER,
+            centre="roller",
+        ),
+        Live("a cam", RollingCam(), HUNDRED, 100, 3, (START_RATE,), munk=CORNERS, traces=ROLLER, centre="roller"),
+    ),
+    (
+        Experiment("a cam", shown=CENTRE, section=("rolling", "The contact")),
+        Experiment(
+            "an ellipse",
+            shown=frozenset({"paths", "friction"}),
+            section=("rolling", "Friction demanded, friction given"),
+        ),
+        Experiment(
+            "an ellipse",
+            after={"steps": 2000},
+            claims=(Claim("munk", 0.7, 1.3), Claim("mujoco", 0.7, 2.0)),
+            causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
+            section=("rolling", "Errors that no step removes"),
+        ),
+        Experiment(
+            "a disc",
+            after={"steps": 2000},
+            claims=(Claim("munk", 0.05, 0.15),),
+            section=("rolling", "Roulettes"),
+        ),
+        Experiment(
+            "an ellipse",
+            {"munk": MANY, "steps": 2000},
+            {"munk": FEW},
+            (Claim("munk", least=10),),
+            section=("rolling", "Where methods fail"),
         ),
     ),
-    live=scenes.ROLLING,
 )
 
 GEARS = Lesson(
     "gears",
     "Elliptic gears",
     "rolling",
-    {
-        "mesh": Take(EllipticGears(), ROWS, centre="second"),
-        "round": Take(EllipticGears(eccentricity=0.2), ROWS, centre="second"),
-        "long": Take(EllipticGears(eccentricity=0.7), ROWS, centre="second"),
-    },
     (
-        Step("mesh", frozenset(), ("rolling", "Elliptic gears")),
-        Step("round", frozenset()),
-        Step("mesh", frozenset({"centre"})),
-        Step("mesh", frozenset({"gaps"}), ("rolling", "The contact")),
-        Step(
-            "long",
-            frozenset(),
-            None,
-            (
-                (
-                    "A longer ellipse",
-                    "long",
-                    "With an eccentricity of 0.7 the second gear turns from 0.18 to 5.7 times as fast as the first. "
-                    "The gears still roll on each other at every instant.",
-                ),
-            ),
+        Live(
+            "two gears",
+            EllipticGears(),
+            (50, 100, 200, 400, 1000, 2000),
+            100,
+            5,
+            (Slider("eccentricity", "eccentricity [1]", (0.0, 0.2, 0.5, 0.7)),),
+            munk=CORNERS,
+            centre="second",
         ),
     ),
-    live=scenes.GEARS,
+    (
+        Experiment("two gears", after={"eccentricity": 0.7}, shown=FORCES, section=("rolling", "Elliptic gears")),
+        Experiment("two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), shown=FORCES),
+        Experiment(
+            "two gears",
+            BOTH,
+            {"munk": FEW},
+            (Claim("munk", least=10),),
+            shown=FORCES,
+            section=("rolling", "The contact"),
+        ),
+    ),
 )

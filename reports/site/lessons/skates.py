@@ -2,96 +2,109 @@
 
 from __future__ import annotations
 
-from engines import mujoco, pymunk
-from reference.scenes.skates.sleigh import ChaplyginSleigh, SleighBackwards
+from engines import pymunk
+from engines.pymunk.methods import SKATE_CENTRE, SKATE_PROJECTED
+from reference.scenes.skates.sleigh import ChaplyginSleigh
 from reference.scenes.wheels.car_and_trailer import CarAndTrailer
-from reports.site.lesson import Lesson, Step, Take
-from reports.site.live import scenes
+from reports.site.lesson import Claim, Experiment, Lesson
+from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
-CENTRE = (("body", (0.0, 0.0)),)
+NAIVE, PROJECTED = "naive: the centre's sideways velocity set to zero", "our code: an impulse at the blade"
+MUNK = (
+    (SHIPPED, "pymunk as shipped has no joint for a skate"),
+    (DOCUMENTED, pymunk.TUNED),
+    (NAIVE, SKATE_CENTRE),
+    (PROJECTED, SKATE_PROJECTED),
+)
+BOTH = {"munk": DOCUMENTED, "mujoco": DOCUMENTED}
+FORCES = frozenset({"paths", "reactions", "centre"})
 SLEIGH = ChaplyginSleigh()
-BODY = SLEIGH.mechanism().bodies[0].name
-TRACE = ((BODY, (0.0, 0.0)),)
-NAIVE = ("the centre's velocity set to zero", pymunk.DEFAULT)
-SHIPPED = ("MuJoCo, a capsule with friction", mujoco.DEFAULT)
-GROOVE = ("pymunk, a groove at the blade", pymunk.TUNED)
-TENDON = ("MuJoCo, a tendon at the blade", mujoco.TUNED)
 
 SKATE = Lesson(
     "skate",
     "The skate",
     "skate",
-    {
-        "naive": Take(SLEIGH, ((*NAIVE, 1),), traces=TRACE, centre=BODY),
-        "friction": Take(SLEIGH, ((*SHIPPED, 1),), traces=TRACE, centre=BODY),
-        "rows": Take(SLEIGH, ((*GROOVE, 1), (*TENDON, 1)), traces=TRACE, centre=BODY),
-        "backwards": Take(SleighBackwards(), ((*NAIVE, 1), (*GROOVE, 1), (*TENDON, 1)), traces=TRACE),
-    },
     (
-        Step("rows", frozenset({"paths"}), ("skate", "What the row takes, and what it leaves")),
-        Step("rows", frozenset({"reactions", "centre"})),
-        Step("friction", frozenset({"paths"})),
-        Step("rows", frozenset({"paths"}), ("skate", "How do I put an ideal skate into pymunk?")),
-        Step(
-            "naive",
-            frozenset({"paths"}),
-            ("skate", "Where methods fail"),
+        Live(
+            "the sleigh",
+            SLEIGH,
+            (25, 75, 150, 300, 750, 1500, 3000),
+            75,
+            3,
             (
-                (
-                    "The naive skate",
-                    "naive",
-                    "After each step the sideways velocity of the centre is set to zero. The blade is not at the "
-                    "centre, so this is another body's motion. What is set to zero stays zero, and proves nothing.",
-                ),
-                (
-                    "Run backwards",
-                    "backwards",
-                    "With the centre of mass behind the blade the smallest turning grows, until the sleigh has turned "
-                    "round. A method that hides this instability is wrong.",
-                ),
+                Slider("offset", "centre of mass ahead of the blade [m]", (-0.3, 0.1, 0.3, 0.5, 0.8)),
+                Slider("turning_rate", "turning rate at the start [rad/s]", (0.5, 1.0, 2.0, 4.0)),
             ),
+            munk=MUNK,
+            centre=SLEIGH.mechanism().bodies[0].name,
         ),
     ),
-    live=scenes.SKATE,
+    (
+        Experiment("the sleigh", BOTH, shown=FORCES, section=("skate", "What the row takes, and what it leaves")),
+        Experiment("the sleigh", after={"steps": 3000}, claims=(Claim("mujoco", 1.5, 2.5),)),
+        Experiment(
+            "the sleigh",
+            BOTH,
+            {"munk": NAIVE},
+            (Claim("munk", least=100),),
+            (({"steps": 3000}, Claim("munk", 0.9, 1.1)), ({"munk": PROJECTED}, Claim("munk", most=0.01))),
+            section=("skate", "Where methods fail"),
+        ),
+        Experiment(
+            "the sleigh",
+            BOTH,
+            {"steps": 3000},
+            (Claim("munk", 0.05, 0.2),),
+            section=("skate", "How do I put an ideal skate into pymunk?"),
+        ),
+    ),
 )
 
 CAR = CarAndTrailer()
-PARTS = tuple((body.name, (0.0, 0.0)) for body in CAR.mechanism().bodies)
 REVERSING = CarAndTrailer(steering=0.0, hitch=0.0, speed=-1.0, bend=0.05)
+STEPS = (25, 125, 250, 500, 1250, 2500, 5000)
+PARTS = tuple(body.name for body in CAR.mechanism().bodies)
 WHEELS = Lesson(
     "wheels",
     "A car and its trailer",
     "wheels",
-    {
-        "naive": Take(CAR, (("sideways velocity set to zero", pymunk.DEFAULT, 1),), traces=PARTS),
-        "friction": Take(CAR, ((*SHIPPED, 1),), traces=PARTS),
-        "rows": Take(CAR, ((*GROOVE, 1), (*TENDON, 1)), traces=PARTS, centre=PARTS[0][0]),
-        "reversing": Take(REVERSING, ((*GROOVE, 1), (*TENDON, 1)), traces=PARTS),
-    },
     (
-        Step("rows", frozenset({"paths"}), ("wheels", "How a vehicle can still move")),
-        Step("rows", frozenset({"centre"})),
-        Step("rows", frozenset({"reactions"})),
-        Step("friction", frozenset({"paths"}), ("wheels", "Errors and costs")),
-        Step(
-            "naive",
-            frozenset({"paths"}),
-            ("wheels", "Where methods fail"),
+        Live(
+            "forwards",
+            CAR,
+            STEPS,
+            125,
+            3,
             (
-                (
-                    "The naive wheel",
-                    "naive",
-                    "The centre of the car is not above an axle. Without its sideways velocity, it moves as another "
-                    "car would.",
-                ),
-                (
-                    "Reverse with the trailer",
-                    "reversing",
-                    "A trailer that is pushed folds: a small angle grows until it jack-knifes. The reference shows "
-                    "when.",
-                ),
+                Slider("steering", "steering [rad]", (0.0, 0.2, 0.4, 0.6)),
+                Slider("bend", "bend of the trailer at the start [rad]", (0.3, 0.8, 1.2)),
             ),
+            munk=MUNK,
+            centre=PARTS[0],
+            axle=CAR.track / 2,
+        ),
+        Live(
+            "backwards",
+            REVERSING,
+            STEPS,
+            125,
+            3,
+            (Slider("bend", "bend of the trailer at the start [rad]", (0.0125, 0.025, 0.05, 0.1, 0.2)),),
+            munk=MUNK,
+            axle=CAR.track / 2,
         ),
     ),
-    live=scenes.WHEELS,
+    (
+        Experiment("forwards", BOTH, shown=FORCES, section=("wheels", "How a vehicle can still move")),
+        Experiment("forwards", after={"steps": 5000}, claims=(Claim("mujoco", 0.5, 1.5),)),
+        Experiment(
+            "forwards",
+            BOTH,
+            {"munk": NAIVE},
+            (Claim("munk", least=10),),
+            (({"steps": 5000}, Claim("munk", 0.8, 1.3)), ({"munk": PROJECTED}, Claim("munk", most=0.1))),
+            section=("wheels", "Where methods fail"),
+        ),
+        Experiment("backwards", {**BOTH, "bend": 0.0125}, {"bend": 0.05}),
+    ),
 )

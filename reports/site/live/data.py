@@ -18,18 +18,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Unsupported
+from engines import Engine, Unsupported
+from engines.mujoco.stiffness import Shipped
+from reference.joints import Drive, Pin, Skate, Slot
 from reference.mechanism import Mechanism
+from reference.scene import Scene
+from reference.trajectory import Trajectory
 from reports.model.tasks import Answer, Motion
 from reports.site import drawn
-from reports.site.drawn import joints_of, loose, measure_of
+from reports.site.drawn import index_of, joints_of, loose, measure_of
+from reports.site.embed import forces, picture, shown
 from reports.site.lesson import Lesson, Source, Take
-from reports.site.live import sliders
 from reports.site.live.models import plan_of, text_of
-from reports.site.live.sliders import Live
+from reports.site.live.sliders import ENGINES, Live, Name, Point
 from reports.site.munk2d import compiled
-from reports.site.packages import MUJOCO, NotFetched, fetched
-from reports.site.rows import stored_rows
+from reports.site.packages import MUJOCO, NotFetched
 
 NUMBER = re.compile(r"(?<=[\" ])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?=[\" ])")
 PACKAGES = {"munk": ("pymunk", "pymunk"), "mujoco": ("MuJoCo", "mujoco-core")}  # its name, and that of its package
@@ -52,38 +55,104 @@ class Pool:
 
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
-    """All that a page needs of a live scene, for JSON; lists of places are in the order of `Live.places`."""
+    """All that a page needs of a live scene, for JSON; lists of places are in the order of `Live.places`.
+
+    Of pinned linkages the page finds the exact motion itself, from `mechanisms`; `truth` is then that of the scene's
+    own numbers alone. Poses and twists of a body are six numbers.
+    """
     pool = Pool()
     places = list(live.places())
-    mechanisms, poses = [], []  # of each place once, side by side: both may need the same integration
-    for scene in places:
-        mechanisms.append(scene.mechanism())
-        poses.append(scene.motion(np.arange(live.frames + 1) * (scene.duration / live.frames)).pose)
+    mechanisms = [scene.mechanism() for scene in places]
     mechanism = live.scene.mechanism()
+    pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
+    times = np.arange(live.frames + 1) * (live.scene.duration / live.frames)
+    motions = [scene.motion(times) if not pinned or scene == live.scene else None for scene in places]
+    truth = live.scene.motion(times)
+    stored = live.stored()
+    ways: dict[Name, list[dict[str, Any]]] = {
+        "mujoco": [_or_why(lambda own=own: _texts(own, live, mechanisms, pool), own) for _, own in live.mujoco],
+        "munk": [_or_why(lambda own=own: _plans(own, live, mechanisms, pool), own) for _, own in live.munk],
+    }
+    points = [[(body, point) for body, point in live.traces] or _blades(each) for each in mechanisms]
     return {
         "word": live.word,
         "scene": live.scene.name,
         "measure": measure_of(mechanism),
         "frames": live.frames,
+        "window": live.window or (0, live.frames),
         "steps": live.steps,
         "duration": live.scene.duration,
         "sliders": [{"name": slider.field, "size": len(slider.values)} for slider in live.sliders],
         "bodies": [body.name for body in mechanism.bodies],
-        "truth": [pool.number(packed(pose)) for pose in poses],
-        "drawings": [
-            pool.number(_drawing(Take(scene, ends=live.ends, traces=live.traces), own, pose))
-            for scene, own, pose in zip(places, mechanisms, poses, strict=True)
+        "truth": [None if each is None else pool.number(packed(_states(each))) for each in motions],
+        "mechanisms": [pool.number(_equations(each)) for each in mechanisms] if pinned else None,
+        "forces": [
+            None if each is None else pool.number(forces(one, each))
+            for one, each in zip(mechanisms, motions, strict=True)
         ],
-        "joints": [pool.number(joints_of(own)) for own in mechanisms],
-        "mujoco": [_or_why(lambda engine=engine: _texts(engine, live, mechanisms, pool)) for _, engine in live.mujoco],
-        "munk": [_or_why(lambda engine=engine: _plans(engine, mechanisms, pool)) for _, engine in live.munk],
-        "traces": [{"body": mechanism.body_index(body), "point": point} for body, point in live.traces],
+        "drawings": [
+            pool.number(_drawing(live, scene, one, truth.pose if each is None else each.pose))
+            for scene, one, each in zip(places, mechanisms, motions, strict=True)
+        ],
+        "joints": [pool.number(joints_of(each)) for each in mechanisms],
+        "blades": [pool.number(_edges(each)) for each in mechanisms],
+        "traces": [
+            pool.number([{"body": one.body_index(body), "point": point} for body, point in each])
+            for one, each in zip(mechanisms, points, strict=True)
+        ],
+        "centre": None if live.centre is None else mechanism.body_index(live.centre),
+        **ways,
         "native": {
-            name: {"version": native_version(name), "pose": _pose(answers.get(motion))}
-            for name, motion in live.shipped().items()
+            name: [
+                _native(answers.get(stored[name, index]) if (name, index) in stored else None, way)
+                for index, way in enumerate(each)
+            ]
+            for name, each in ways.items()
         },
+        "versions": {name: native_version(name) for name in ENGINES},
         "pool": pool.values,
     }
+
+
+def _states(motion: Trajectory) -> NDArray[np.float64]:
+    return np.concatenate([motion.pose, motion.twist], axis=-1)
+
+
+def _equations(mechanism: Mechanism) -> dict[str, Any]:
+    """What the page's own exact motion is made of, beside the joints."""
+    drives = [joint for joint in mechanism.joints if isinstance(joint, Drive)]
+    return {
+        "inertia": [value for body in mechanism.bodies for value in (body.mass, body.mass, body.inertia)],
+        "gravity": list(mechanism.gravity),
+        "pose": mechanism.pose.ravel().tolist(),
+        "twist": mechanism.twist.ravel().tolist(),
+        "drives": [
+            {
+                "first": index_of(mechanism, each.first),
+                "second": index_of(mechanism, each.second),
+                "rate": each.turning_rate,
+            }
+            for each in drives
+        ],
+    }
+
+
+def _blades(mechanism: Mechanism) -> list[tuple[str, Point]]:
+    return [(str(joint.second), joint.second_point) for joint in mechanism.joints if isinstance(joint, Skate)]
+
+
+def _edges(mechanism: Mechanism) -> list[dict[str, Any]]:
+    """The skates: the body of each, its point there [m] and the blade's angle on it [rad]."""
+    return [
+        {
+            "name": each.name,
+            "body": mechanism.body_index(str(each.second)),
+            "point": each.second_point,
+            "angle": each.angle,
+        }
+        for each in mechanism.joints
+        if isinstance(each, Skate)
+    ]
 
 
 def native_version(engine: str) -> str:
@@ -92,16 +161,21 @@ def native_version(engine: str) -> str:
     return f"{name} {version(package)}"
 
 
-def _or_why(make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def _or_why(make: Callable[[], dict[str, Any]], engine: Engine | str) -> dict[str, Any]:
     """What is made, or the sentence that says why it can't be."""
+    if isinstance(engine, str):
+        return {"why": engine}
     try:
         return make()
     except Unsupported as reason:
         return {"why": str(reason)}
 
 
-def _pose(answer: Answer | None) -> str | None:
-    return packed(answer.array("pose")) if answer is not None and answer.finished else None
+def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
+    """The poses that Python's engine gave, and where the page has no engine for this the twists."""
+    if answer is None or not answer.finished:
+        return None
+    return [packed(answer.array(name)) for name in (("pose", "twist") if "why" in way else ("pose",))]
 
 
 def packed(values: NDArray[np.float64]) -> str:
@@ -109,29 +183,29 @@ def packed(values: NDArray[np.float64]) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
-def _plans(engine: Any, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
-    return {"plans": [pool.number(packed(np.array(plan_of(engine, mechanism)))) for mechanism in mechanisms]}
+def _plans(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
+    plans = [plan_of(engine, mechanism, live.scene.duration) for mechanism in mechanisms]
+    return {"plans": [pool.number(packed(np.array(plan))) for plan in plans]}
 
 
 def _texts(engine: Any, live: Live, mechanisms: Sequence[Mechanism], pool: Pool) -> dict[str, Any]:
     steps = [live.scene.duration / steps for steps in live.steps]
-    # Where nothing stands on skates, a model for one step is that for all.
-    known = steps if loose(mechanisms[0]) else steps[:1]
+    # A model for one step is that for all, unless a blade stands in the ground or a spring is as fast as the step.
+    known = steps if not isinstance(engine.stiffness, Shipped) or loose(mechanisms[0]) else steps[:1]
     by_step = [[text_of(engine, mechanism, step) for step in known] for mechanism in mechanisms]
     texts = [each[0] for each in by_step]
     first = texts[0]
-    if any(each.text != told[0].text for told in by_step for each in told):
-        raise ValueError("the text of a model depends on the step")
     if any((each.bodies, each.turns, each.springs) != (first.bodies, first.turns, first.springs) for each in texts):
         raise ValueError("the trees of a slider's places differ")
-    parts, numbers = template([each.text for each in texts])
+    parts, numbers = template([each.text for told in by_step for each in told])
     return {
         "parts": parts,
-        "numbers": [pool.number(each) for each in numbers],
+        "numbers": [list(map(pool.number, numbers[at : at + len(known)])) for at in range(0, len(numbers), len(known))],
         "changes": [[pool.number(each.changes) for each in told] for told in by_step],
         "velocity": [pool.number(each.velocity) for each in texts],
         "bodies": first.bodies,
         "turns": first.turns,
+        "links": first.links,
         "springs": first.springs,
     }
 
@@ -144,7 +218,8 @@ def template(texts: Sequence[str]) -> tuple[list[str], list[str]]:
     return parts[0], [",".join(NUMBER.findall(text)) for text in texts]
 
 
-def _drawing(take: Take, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
+def _drawing(live: Live, scene: Scene, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
+    take = Take(scene, ends=live.ends, curves=live.curves, axle=live.axle)
     left, bottom, width, height = drawn.box(mechanism, take, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (left, -bottom - height, width, height)),
@@ -154,21 +229,22 @@ def _drawing(take: Take, mechanism: Mechanism, pose: NDArray[np.float64]) -> dic
     }
 
 
+def first_picture(live: Live) -> str:
+    """The exact motion at its start with its paths, for who has no script."""
+    take = Take(live.scene, samples=live.frames, ends=live.ends, traces=live.traces, curves=live.curves, axle=live.axle)
+    return picture(shown(take, {}), f"The mechanism: {live.word}")
+
+
 MUNK = "packages/munk2d.js"
-KNOWN = {MUNK: ("munk2d", "Munk2D"), "packages/mujoco.js": ("mujoco", "MuJoCo")}
-# Places of the engines' sliders for documented settings: MuJoCo holds a time constant to two steps at least.
-TUNED = {"integrator": 2, "timeConstant": 0, "impedance": 4, "tolerance": 2, "iterations": 6, "bias": 3}
+ENGINE_FILES = {MUNK: "munk2d", "packages/mujoco.js": "mujoco"}
 
 
 def engine_files(source: Source, lessons: Iterable[Lesson]) -> tuple[dict[str, bytes], list[str]]:
     """The engines' files and the data of all live scenes, and a sentence for each engine that is missing."""
-    lessons = [lesson for lesson in lessons if lesson.live]
     files: dict[str, bytes] = {}
     missing = []
-    if not lessons:
-        return files, missing
     try:
-        content = fetched(MUJOCO, source.cache)
+        content = source.registry.fetched(MUJOCO)
         files |= {name: content[path] for path, name in MUJOCO.files}
     except NotFetched as reason:
         missing.append(f"This site was built without MuJoCo: {reason}.")
@@ -177,25 +253,8 @@ def engine_files(source: Source, lessons: Iterable[Lesson]) -> tuple[dict[str, b
     except NotFetched as reason:
         missing.append(f"This site was built without Munk2D, the engine in pymunk: {reason}.")
     source.troubles += missing
-    if files:
-        known = {live.key: live for lesson in lessons for live in lesson.live}
-        for key, live in known.items():
-            told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
-            files[f"live/{key}.json"] = told.encode()
-        scenes = dict.fromkeys(live.scene.name for live in known.values())
-        rows = stored_rows(source.tables.get("errors.csv", ""), scenes)
-        files["live/rows.json"] = json.dumps(rows, separators=(",", ":")).encode()
+    known = {live.key: live for lesson in lessons for live in lesson.scenes}
+    for key, live in known.items():
+        told = json.dumps(data(live, source.answers), separators=(",", ":"), allow_nan=False)
+        files[f"live/{key}.json"] = told.encode()
     return files, missing
-
-
-def running_in(lesson: Lesson, files: dict[str, bytes], missing: list[str]) -> dict[str, object]:
-    """What a lesson's page says of the engines that it can run."""
-    there = [told for path, told in KNOWN.items() if path in files]
-    return {
-        "engines": [word for word, _ in there],
-        "names": [name for _, name in there],
-        "missing": missing,
-        "live": lesson.live,
-        "settings": sliders,
-        "tuned": TUNED,
-    }

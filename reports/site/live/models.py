@@ -38,6 +38,9 @@ class Text:
     velocity: tuple[float, ...]  # qvel at the start
     bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
     turns: tuple[tuple[int, ...], ...]  # for each body: the places in qpos whose sum is its rotation since the start
+    links: tuple[
+        tuple[float, ...], ...
+    ]  # body, parent (-1: ground), places in qpos of its rotation and its slide (-1: none), the slide's direction
     springs: bool  # whether solref and solimp act on anything
 
 
@@ -61,6 +64,7 @@ def text_of(engine: MuJoCo, mechanism: Mechanism, step: float) -> Text:
         tuple(start.qvel.tolist()),
         tuple(int(model.compiled.body(f"body {number}").id) for number in range(len(mechanism.bodies))),
         turns(model),
+        links(model),
         bool(model.compiled.neq or model.compiled.npair),
     )
 
@@ -91,7 +95,17 @@ def turns(model: TreeModel) -> tuple[tuple[int, ...], ...]:
     return tuple(found[number] for number in range(len(found)))
 
 
-STEP = 1e-3  # s: nothing of these models depends on it
+def links(model: TreeModel) -> tuple[tuple[float, ...], ...]:
+    """Of each body that hangs on a hinge or slides in a slot what a page needs to let it start elsewhere."""
+    found = []
+    for link in model.tree.links:
+        rotation = -1 if link.rotation is None else model.address[link.rotation]
+        slide = model.address[link.column] if link.kind == "slot" else -1
+        found.append((link.body, -1 if link.parent is None else link.parent, rotation, slide, *link.direction))
+    return tuple(found)
+
+
+STEP = 1e-3  # s: told in seconds, nothing of these models depends on it
 
 
 class Part(IntEnum):
@@ -103,26 +117,36 @@ class Part(IntEnum):
 Indexed = Callable[[Any], int]
 
 
-def plan_of(engine: Pymunk, mechanism: Mechanism) -> tuple[float, ...]:
-    """Gravity; collision slop and bias; the number of bodies; bodies; records. Raises Unsupported.
+def plan_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> tuple[float, ...]:
+    """Gravity; collision slop and bias; the number of bodies; iterations; error_bias; 1 if that is what is left after
+    a step, 0 after a second; bodies; records. For a motion of `duration` [s]. Raises Unsupported.
 
     A body: kind (0 dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin in our frame. A
     record: what it is, how many numbers follow, and these. Bodies are counted from 0, -1 is the ground, and records
     stand in the order in which the adapter added the constraints, since the solver sweeps in that order.
     """
-    model = engine.model(mechanism, STEP)
-    space = model.space
+    model = engine.model(mechanism, STEP, duration)
+    space, unit = model.space, model.unit
     places: dict[Any, int] = {body: index for index, body in enumerate(model.bodies)}
 
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    head = (*space.gravity, space.collision_slop, space.collision_bias, len(model.bodies))
-    records = [_constraint(each, index) for each in _in_order(space)]
+    constraints = _in_order(space)
+    biases = {each.error_bias for each in constraints if not any(each is aim.constraint for aim in _grooves(model))}
+    gravity = (each / unit**2 for each in space.gravity)
+    head = (*gravity, space.collision_slop, space.collision_bias, len(model.bodies), space.iterations)
+    head += (max(biases, default=1.0), float(unit != 1))
+    records = [_constraint(each, index, unit) for each in constraints]
     records += [_shape(each, index) for each in space.shapes]
     records += _by_hand(model, mechanism)
     flat = [head, *_bodies(model), *((part, len(numbers), *numbers) for part, numbers in records)]
     return tuple(map(float, chain(*flat)))
+
+
+def _grooves(model: Model) -> list[AimedGroove]:
+    """Those that are aimed: nothing of their gap is closed, whatever the others' error_bias."""
+    return [aim for aim in model.aims if isinstance(aim, AimedGroove)]
 
 
 def _in_order(space: Any) -> list[Any]:
@@ -134,12 +158,13 @@ def _bodies(model: Model) -> list[tuple[float, ...]]:
     for body, origin in zip(model.bodies, model.origins, strict=True):
         kinematic = body.body_type == pymunk_package.Body.KINEMATIC
         weight = (1.0, 1.0) if kinematic else (body.mass, body.moment)
-        placed = (*body.position, body.angle, *body.velocity, body.angular_velocity, *origin)
+        velocity = (each / model.unit for each in (*body.velocity, body.angular_velocity))
+        placed = (*body.position, body.angle, *velocity, *origin)
         told.append((float(kinematic), *weight, *placed))
     return told
 
 
-def _constraint(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
+def _constraint(each: Any, index: Indexed, unit: float) -> tuple[Part, tuple[float, ...]]:
     between = (index(each.a), index(each.b))
     match each:
         case PivotJoint():
@@ -147,7 +172,7 @@ def _constraint(each: Any, index: Indexed) -> tuple[Part, tuple[float, ...]]:
         case GrooveJoint():
             return Part.GROOVE, (*between, *each.groove_a, *each.groove_b, *each.anchor_b)
         case SimpleMotor():
-            return Part.MOTOR, (*between, each.rate)
+            return Part.MOTOR, (*between, each.rate / unit)
         case PinJoint():
             return Part.PIN, (*between, *each.anchor_a, *each.anchor_b, each.distance)
         case GearJoint():

@@ -1,29 +1,45 @@
-"""What a reader can change in a live part of a lesson: a mechanism's numbers, the step, how engines hold joints."""
+"""What a reader can change: a mechanism's numbers, the step, how engines hold joints, the engines' own settings."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 from engines import Engine, mujoco, pymunk
 from reference.scene import Scene
 from reports.model.cells import Cell
 from reports.model.tasks import Motion
 
+Name = Literal["munk", "mujoco"]
+Point = tuple[float, float]
+NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
 MOST = 125  # places of a scene's sliders: each has a model of each engine and a drawing in the page
-# Settings of the engines that every live part has: values in the page, and what is written beside them. None stands
-# for what the model has as shipped.
-INTEGRATORS = ((0, "Euler, as shipped"), (3, "implicitfast"), (1, "RK4"))
-TIME_CONSTANTS = ((0.002, "2 ms"), (0.005, "5 ms"), (0.01, "10 ms"), (None, "20 ms, as shipped"), (0.05, "50 ms"))
-IMPEDANCES = ((None, "0.9 to 0.95, as shipped"), (0.9, "0.9"), (0.99, "0.99"), (0.999, "0.999"), (0.9999, "0.9999"))
-SOLVER_ITERATIONS = ((1, "1"), (2, "2"), (5, "5"), (20, "20"), (100, "100, as shipped"))
-TOLERANCES = ((1e-8, "1e-8, as shipped"), (1e-11, "1e-11"), (1e-15, "1e-15"))
-SWEEPS = ((1, "1"), (2, "2"), (5, "5"), (10, "10, as shipped"), (20, "20"), (50, "50"), (100, "100"))
-BIASES = ((0.5, "0.5"), (float(pymunk.SHIPPED_ERROR_BIAS), "0.0018, as shipped"), (1e-6, "1e-6"), (0.0, "0"))
-TEMPOS = (0.25, 0.5, 1.0, 2.0, 4.0)
-TEMPO_WORDS = ("a quarter", "half", "as in the scene", "twice", "four times")
+SHIPPED, DOCUMENTED = "as shipped", "documented settings"
+# Settings of the engines: values in the page, and what is written beside them. None: as the method has it.
+OWN = (None, "as the method has it")
+INTEGRATORS = (OWN, (0, "Euler"), (3, "implicitfast"), (1, "RK4"))
+TIME_CONSTANTS = (OWN, *((value, f"{1000 * value:g} ms") for value in (0.002, 0.005, 0.01, 0.02, 0.05)))
+IMPEDANCES = (OWN, *((value, str(value)) for value in (0.9, 0.99, 0.999, 0.9999)))
+SOLVER_ITERATIONS = (OWN, *((value, str(value)) for value in (1, 2, 5, 20, 100)))
+TOLERANCES = (OWN, *((value, f"{value:g}") for value in (1e-8, 1e-11, 1e-15)))
+SWEEPS = (OWN, *((value, str(value)) for value in (1, 2, 5, 10, 20, 50, 100)))
+BIASES = (OWN, (0.5, "0.5"), (float(pymunk.SHIPPED_ERROR_BIAS), "0.0018"), (1e-6, "1e-6"), (0.0, "0"))
+ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
+    "munk": {
+        "iterations": ("iterations: sweeps over the joints", SWEEPS),
+        "bias": ("error_bias: left of a gap after a second", BIASES),
+    },
+    "mujoco": {
+        "integrator": ("integrator", INTEGRATORS),
+        "timeConstant": ("solref: time constant", TIME_CONSTANTS),
+        "impedance": ("solimp: impedance", IMPEDANCES),
+        "solverIterations": ("iterations of the solver", SOLVER_ITERATIONS),
+        "tolerance": ("tolerance of the solver", TOLERANCES),
+    },
+}
+SETTINGS = {name: pairs for each in ENGINES.values() for name, (_, pairs) in each.items()}
 
 
 @dataclass(frozen=True)
@@ -45,21 +61,13 @@ class Slider:
 
 
 @dataclass(frozen=True)
-class Trap:
-    """A button that moves sliders, by their places from 0, and what should then happen."""
-
-    words: str
-    places: Mapping[str, int]
-    told: str
-
-
-@dataclass(frozen=True)
 class Live:
     """A scene that engines run in the page.
 
     frames: sampling intervals that are shown; steps: of the whole motion, each a multiple or a divisor of `frames`, the
-    one at place `start` first. tempo: the whole motion can be had faster or slower, since nothing but speed sets its
-    time. munk, mujoco: ways to hold the joints, each with its words.
+    one at place `start` first. munk, mujoco: ways to hold the joints, each with its words, those as shipped and with
+    documented settings first; a sentence instead of an engine says why there is none. window: the frames that are
+    played, all unless given. ends, traces, centre, curves, axle: as in `Take`.
     """
 
     word: str
@@ -68,12 +76,14 @@ class Live:
     frames: int
     start: int
     sliders: tuple[Slider, ...] = ()
-    tempo: bool = False
-    munk: tuple[tuple[str, pymunk.Pymunk], ...] = (("as shipped", pymunk.DEFAULT),)
-    mujoco: tuple[tuple[str, mujoco.MuJoCo], ...] = (("as shipped", mujoco.DEFAULT),)
-    traps: tuple[Trap, ...] = ()
-    ends: Mapping[str, tuple[tuple[float, float], ...]] = field(default_factory=dict)
-    traces: tuple[tuple[str, tuple[float, float]], ...] = ()
+    munk: tuple[tuple[str, pymunk.Pymunk | str], ...] = ((SHIPPED, pymunk.DEFAULT), (DOCUMENTED, pymunk.TUNED))
+    mujoco: tuple[tuple[str, mujoco.MuJoCo | str], ...] = ((SHIPPED, mujoco.DEFAULT), (DOCUMENTED, mujoco.TUNED))
+    ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
+    traces: tuple[tuple[str, Point], ...] = ()
+    centre: str | None = None
+    curves: tuple[tuple[str | None, tuple[Point, ...]], ...] = ()
+    axle: float = 0.0
+    window: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         for steps in self.steps:
@@ -98,30 +108,39 @@ class Live:
         """Sampling intervals of a motion of so many steps."""
         return min(self.frames, steps)
 
-    def munk_words(self) -> list[tuple[int, str]]:
-        """The ways of pymunk by their place."""
-        return list(enumerate(words for words, _ in self.munk))
+    def ways(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
+        """The ways of an engine."""
+        return self.munk if name == "munk" else self.mujoco
 
-    def mujoco_words(self) -> list[tuple[int, str]]:
-        """The ways of MuJoCo by their place."""
-        return list(enumerate(words for words, _ in self.mujoco))
+    def values(self) -> dict[str, tuple[list[Any], int]]:
+        """The values of every control, and the place at which it stands at first."""
+        own = {slider.field: (list(slider.values), slider.start(self.scene)) for slider in self.sliders}
+        ways = {name: ([words for words, _ in self.ways(name)], 0) for name in ENGINES}
+        engines = {name: ([value for value, _ in pairs], 0) for name, pairs in SETTINGS.items()}
+        return {"steps": (list(self.steps), self.start), **own, **ways, **engines}
 
-    def shipped(self) -> dict[str, Motion]:
-        """The motions that Python's engines make of the scene itself, as the page first shows it."""
+    def texts(self) -> dict[str, tuple[list[str], int]]:
+        """What is written beside each place of every control, and the place at which it stands at first."""
+        own = {slider.field: (list(slider.told()), slider.start(self.scene)) for slider in self.sliders}
+        ways = {name: ([words for words, _ in self.ways(name)], 0) for name in ENGINES}
+        engines = {name: ([words for _, words in pairs], 0) for name, pairs in SETTINGS.items()}
+        steps = [f"{1000 * self.scene.duration / each:.3g} ms" for each in self.steps]
+        return {"steps": (steps, self.start), **own, **ways, **engines}
+
+    def located(self, given: Mapping[str, Any]) -> dict[str, int]:
+        """Places of controls from their values; raises ValueError for a value, KeyError for a control it has not."""
+        known = self.values()
+        return {name: known[name][0].index(value) for name, value in given.items()}
+
+    def stored(self) -> dict[tuple[Name, int], Motion]:
+        """The motions that Python's engines make of the scene itself, by engine and way: page and Python are compared,
+        and where the page has no engine for a way, its motion is shown.
+        """
         steps = self.steps[self.start]
         samples = self.samples(steps)
-        ways: Sequence[tuple[str, Engine]] = (("munk", self.munk[0][1]), ("mujoco", self.mujoco[0][1]))
-        return {name: Motion(Cell(self.scene, engine, steps // samples, "failure", samples)) for name, engine in ways}
-
-
-COARSE = Trap(
-    "Break it: a step too large",
-    {"steps": 0},
-    "Much of a turn passes in a step. No method is accurate here, and no engine says so.",
-)
-ONE_SWEEP = Trap(
-    "Break it: one sweep",
-    {"iterations": 0, "bias": 3, "steps": 6},
-    "All of the gap is closed in each step, by a single sweep. What it leaves grows as the step shrinks, so a smaller "
-    "step is worse.",
-)
+        return {
+            (name, index): Motion(Cell(self.scene, engine, steps // samples, "failure", samples))
+            for name in ENGINES
+            for index, (_, engine) in enumerate(self.ways(name))
+            if not isinstance(engine, str)
+        }

@@ -1,0 +1,153 @@
+// @ts-check
+/** The controls of a lesson: what they stand for, the numbers in the text that move them, and the link that holds them. */
+
+/** @typedef {import("./live_data.js").Setting} Setting */
+
+const LINK = "#set&";
+
+export class Form {
+  /** @param {HTMLElement} root */
+  constructor(root) {
+    this.root = root;
+    this.form = /** @type {HTMLFormElement} */ (root.querySelector("form"));
+    this.choice = /** @type {HTMLSelectElement} */ (this.form.elements.namedItem("scene"));
+    this.inputs = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("input[name]")]);
+    this.scenes = JSON.parse(root.dataset.scenes ?? "[]");
+    this.onchange = () => {};
+    this.form.addEventListener("submit", (event) => event.preventDefault());
+    this.form.addEventListener("input", () => this.onchange());
+    for (const number of root.querySelectorAll(".drag")) if (number instanceof HTMLElement) this.draggable(number);
+  }
+
+  get index() {
+    return Number(this.choice.value);
+  }
+
+  /** A slider of the present scene, or of an engine. @param {string} name */
+  input(name) {
+    const own = `${this.index}.${name}`;
+    return this.inputs.find((input) => input.name === own) ?? this.inputs.find((input) => input.name === name);
+  }
+
+  /** @param {string} name */
+  place(name) {
+    return Number(this.input(name)?.value ?? 0);
+  }
+
+  /** What a slider stands for. @param {string} name */
+  value(name) {
+    return JSON.parse(this.input(name)?.dataset.values ?? "[null]")[this.place(name)];
+  }
+
+  /** What is written beside a slider. @param {string} name */
+  words(name) {
+    return JSON.parse(this.input(name)?.dataset.words ?? '[""]')[this.place(name)];
+  }
+
+  /** What of an engine's own settings is not as the method has it. @param {string} engine */
+  changed(engine) {
+    const own = this.inputs.filter((input) => input.closest("fieldset")?.dataset.engine === engine && input.value !== input.defaultValue && !input.disabled);
+    return own.map(({ name }) => `${(this.input(name)?.closest("label")?.dataset.name ?? name)} ${this.words(name)}`);
+  }
+
+  /** The present places of all sliders. @param {number[]|null} start @returns {Setting} */
+  setting(start) {
+    const { key, fields } = this.scenes[this.index];
+    const place = fields.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum * (Number(this.input(name)?.max) + 1) + this.place(name), 0);
+    const ways = ["munk", "mujoco"];
+    return {
+      key, place, start, stepPlace: this.place("steps"), steps: this.value("steps"), munk: this.place("munk"), mujoco: this.place("mujoco"),
+      integrator: this.value("integrator"), timeConstant: this.value("timeConstant"), impedance: this.value("impedance"),
+      solverIterations: this.value("solverIterations"), tolerance: this.value("tolerance"),
+      iterations: this.value("iterations"), bias: this.value("bias"),
+      own: !start && this.shown().every((input) => ways.some((way) => input.name.endsWith(`.${way}`)) || input.value === input.defaultValue),
+    };
+  }
+
+  /** The sliders of the present scene and of the engines. */
+  shown() {
+    return this.inputs.filter(({ name }) => !name.includes(".") || name.startsWith(`${this.index}.`));
+  }
+
+  /** Write beside each slider, and in the text, what it stands for; what acts on nothing here can't be moved. @param {string[]} idle */
+  label(idle) {
+    for (const group of this.form.querySelectorAll("fieldset[data-scene]")) {
+      if (group instanceof HTMLElement) group.hidden = group.dataset.scene !== this.choice.value;
+    }
+    for (const input of this.shown()) {
+      const name = input.name.split(".").at(-1) ?? "";
+      input.disabled = idle.includes(name);
+      const text = input.disabled ? "acts on nothing here" : this.words(name);
+      const output = input.closest("label")?.querySelector(".value");
+      if (output) output.textContent = text;
+      input.setAttribute("aria-valuetext", text);
+    }
+    for (const number of this.root.querySelectorAll(".part.shown .drag")) {
+      if (!(number instanceof HTMLElement)) continue;
+      const input = this.input(number.dataset.name ?? "");
+      number.textContent = this.words(number.dataset.name ?? "");
+      number.setAttribute("aria-valuenow", input?.value ?? "0");
+      number.setAttribute("aria-valuemax", input?.max ?? "0");
+      number.setAttribute("aria-valuetext", number.textContent ?? "");
+    }
+  }
+
+  /** A number in the text: dragged to either side, or moved by the arrow keys, it moves its slider. @param {HTMLElement} number */
+  draggable(number) {
+    const part = /** @type {HTMLElement|null} */ (number.closest(".part"));
+    const to = (/** @type {number} */ place) => {
+      const own = Number(part?.dataset.scene);
+      if (own !== this.index) this.move(own, JSON.parse(part?.dataset.before ?? "{}"));
+      for (const other of this.root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
+      const input = this.input(number.dataset.name ?? "");
+      const wanted = String(Math.min(Math.max(place, 0), Number(input?.max)));
+      if (!input || input.value === wanted) return;
+      input.value = wanted;
+      this.onchange();
+    };
+    let [from, begin] = [0, 0];
+    number.addEventListener("pointerdown", (event) => {
+      [from, begin] = [event.clientX, this.place(number.dataset.name ?? "")];
+      number.setPointerCapture(event.pointerId);
+      event.preventDefault();
+      number.focus();
+    });
+    number.addEventListener("pointermove", (event) => {
+      if (number.hasPointerCapture(event.pointerId)) to(begin + Math.round((event.clientX - from) / 25));
+    });
+    number.addEventListener("keydown", (event) => {
+      const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+      if (!by) return;
+      event.preventDefault();
+      to(this.place(number.dataset.name ?? "") + by);
+    });
+  }
+
+  /** Another scene, its sliders at places, the others as they come. @param {number} scene @param {Record<string, number>} places */
+  move(scene, places) {
+    this.choice.value = String(scene);
+    for (const input of this.shown()) input.value = input.defaultValue;
+    for (const [name, place] of Object.entries(places)) {
+      const input = this.input(name);
+      if (input) input.value = String(Math.min(place, Number(input.max)));
+    }
+  }
+
+  /** The link that holds the sliders. */
+  get link() {
+    return `${LINK}${[`scene=${this.index}`, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
+  }
+
+  /** The sliders as a link has them; what a link has wrong is left alone. @param {string} link */
+  restore(link) {
+    if (!link.startsWith(LINK)) return false;
+    const given = link.slice(LINK.length).split("&").map((part) => part.split("=")).filter(([, value]) => /^\d+$/.test(value ?? ""));
+    const scene = Number(given.find(([name]) => name === "scene")?.[1] ?? 0);
+    this.move(scene < this.scenes.length ? scene : 0, {});
+    for (const [name, value] of given) {
+      const input = this.inputs.find((each) => each.name === name);
+      if (input && Number(value) <= Number(input.max)) input.value = value;
+    }
+    return true;
+  }
+}

@@ -1,0 +1,161 @@
+// @ts-check
+/** A magnifier on one joint: how it opens in each engine, and how one step of pymunk sweeps over the joints. */
+
+import { svg } from "./chart.js";
+import { ends, poseAt, slip, told } from "./motion.js";
+
+/** @typedef {import("./motion.js").Take} Take */
+/** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
+
+const SIZE = 200; // of the picture, whose middle is the pin of the ideal joint
+const TRAIL = 12; // frames
+
+export class Lens {
+  /** @param {HTMLElement} place */
+  constructor(place) {
+    this.place = place;
+    this.picture = /** @type {Element} */ (place.querySelector("svg"));
+    this.words = /** @type {HTMLElement} */ (place.querySelector(".words"));
+    this.choice = /** @type {HTMLSelectElement} */ (place.querySelector("select"));
+    /** @type {Take|null} */
+    this.take = null;
+    /** @type {{name: string, unit: string, at: (motion: number, frame: number) => number[]}[]} */
+    this.joints = [];
+    this.factor = 1;
+    this.frame = 0;
+    this.choice.addEventListener("change", () => this.scale());
+  }
+
+  /** @param {Take} take */
+  load(take) {
+    this.take = take;
+    const bodies = take.bodies.length;
+    this.joints = [
+      ...take.joints.map((joint) => ({
+        name: joint.name, unit: "m",
+        at: (/** @type {number} */ motion, /** @type {number} */ frame) => {
+          const [[ax, ay], [bx, by]] = ends(joint, take.motions[motion].pose, bodies, frame);
+          return [bx - ax, by - ay];
+        },
+      })),
+      ...take.blades.map((blade) => ({
+        name: blade.name, unit: "m/s",
+        at: (/** @type {number} */ motion, /** @type {number} */ frame) => slip(blade, take.motions[motion].pose, take.motions[motion].twist, bodies, frame),
+      })),
+    ];
+    this.place.hidden = !this.joints.length || !take.motions.length;
+    if (this.place.hidden) return;
+    const largest = this.joints.map((_, index) => this.most(index));
+    const worst = largest.indexOf(Math.max(...largest));
+    this.choice.replaceChildren(...this.joints.map(({ name }, index) => new Option(`${index === worst ? "worst: " : ""}${name}`, String(index), false, index === worst)));
+    this.scale();
+  }
+
+  /** The largest opening of a joint in this motion. @param {number} index */
+  most(index) {
+    const { take, joints } = this;
+    let most = 0;
+    for (let frame = 0; take && frame < take.t.length; frame++) {
+      take.motions.forEach((_, motion) => (most = Math.max(most, Math.hypot(...joints[index].at(motion, frame)) || 0)));
+    }
+    return most;
+  }
+
+  /** How much larger the joint is drawn: its largest opening fills the picture. */
+  scale() {
+    const most = this.most(Number(this.choice.value));
+    this.factor = most > 0 ? (0.42 * SIZE) / most : 0;
+    this.show(this.frame);
+  }
+
+  /** @param {number} frame */
+  show(frame) {
+    this.frame = frame;
+    const { take, factor } = this;
+    const joint = this.joints[Number(this.choice.value)];
+    if (!take || !joint || this.place.hidden) return;
+    const middle = SIZE / 2;
+    const parts = [svg("circle", { class: "hole", cx: middle, cy: middle, r: 9 })];
+    const remarks = take.motions.map(({ name, mark }, motion) => {
+      const [x, y] = joint.at(motion, frame);
+      const away = Math.hypot(x, y);
+      if (!Number.isFinite(away)) return `${name}: lost`;
+      const group = svg("g", { class: `method-${mark}` });
+      const trail = Array.from({ length: Math.min(TRAIL, frame) + 1 }, (_, back) => joint.at(motion, frame - back)).filter(([a, b]) => Number.isFinite(a + b));
+      const path = trail.map(([a, b], index) => `${index ? "L" : "M"}${(middle + factor * a).toFixed(1)} ${(middle - factor * b).toFixed(1)}`).join("");
+      group.append(svg("path", { class: "line", d: path }));
+      group.append(svg("path", { class: mark === 2 && joint.unit === "m" ? "spring" : "gap", d: zigzag(middle, middle, middle + factor * x, middle - factor * y, mark === 2 && joint.unit === "m") }));
+      group.append(svg("circle", { class: "dot", cx: middle + factor * x, cy: middle - factor * y, r: 5 }));
+      parts.push(group);
+      return `${name} ${told(away)} ${joint.unit}`;
+    });
+    const bar = 10 ** Math.floor(Math.log10((0.5 * SIZE) / (factor || 1)));
+    if (factor) {
+      parts.push(svg("line", { class: "bar", x1: 10, x2: 10 + bar * factor, y1: SIZE - 12, y2: SIZE - 12 }));
+      parts.push(svg("text", { x: 10, y: SIZE - 18 }, `${told(bar)} ${joint.unit}`));
+    }
+    this.picture.replaceChildren(...parts);
+    const enlarged = this.drawn ? factor / this.drawn : 0;
+    const times = joint.unit === "m" && factor && enlarged ? `, ${Number(enlarged.toPrecision(1)).toLocaleString("en")} times as large as above` : "";
+    this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
+  }
+
+  /** How large a metre is drawn in the picture above, in the units of this one. */
+  get drawn() {
+    const stage = /** @type {SVGGraphicsElement|null} */ (this.place.closest("figure")?.querySelector("svg.stage .world"));
+    const own = this.picture.clientWidth / SIZE;
+    return stage && own ? Math.abs(stage.getScreenCTM()?.a ?? 0) / own : 0;
+  }
+
+  /** One sweep of a step: what it adds to each joint's impulse and by what the joint still opens; which sweep it is.
+   * @param {{found: Sweep[], whole: number, which: number[], step: number}} step @param {number} number from 0 @param {Element} table */
+  sweep({ found, whole, which, step }, number, table) {
+    const { take } = this;
+    if (!take) return "";
+    const bodies = take.bodies.length;
+    const held = take.joints.map((joint, index) => ({ joint, own: which[index] })).filter(({ own }) => own >= 0);
+    const worst = Math.max(...held.map(({ joint }) => remaining(joint, found[0], bodies, step)));
+    table.replaceChildren(...held.map(({ joint, own }) => {
+      const now = remaining(joint, found[number], bodies, step);
+      const [before, after] = [number - 1, number].map((at) => found[at]?.impulses.slice(2 * own, 2 * own + 2) ?? [0, 0]);
+      const row = document.createElement("tr");
+      for (const text of [joint.name, number ? told(Math.hypot(after[0] - before[0], after[1] - before[1])) : "–", told(now)]) row.insertCell().textContent = text;
+      const bar = document.createElement("span");
+      bar.className = "share";
+      bar.style.width = `${now > 0 ? Math.max(0, 100 + (100 * Math.log10(now / worst)) / 8).toFixed(1) : 0}%`;
+      row.insertCell().append(bar);
+      return row;
+    }));
+    return `One step of pymunk, ${told(1000 * step)} ms long, after sweep ${number + 1} of ${whole}:`;
+  }
+}
+
+/** The speed with which a pin opens beyond what the solver asks for [m/s]. @param {import("./motion.js").Joint} joint
+ * @param {Sweep} sweep @param {number} bodies @param {number} step */
+function remaining(joint, { pose, twist, left }, bodies, step) {
+  const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, 0);
+  const speed = (/** @type {number} */ body, /** @type {number} */ x, /** @type {number} */ y) => {
+    if (body < 0) return [0, 0];
+    const [px, py] = poseAt(pose, bodies, 0, body);
+    const [vx, vy, rate] = poseAt(twist, bodies, 0, body);
+    return [vx - rate * (y - py), vy + rate * (x - px)];
+  };
+  const [first, second] = [speed(joint.first, ax, ay), speed(joint.second, bx, by)];
+  const closing = (1 - left) / step;
+  const [ox, oy] = [second[0] - first[0] + closing * (bx - ax), second[1] - first[1] + closing * (by - ay)];
+  if (joint.line === null) return Math.hypot(ox, oy);
+  return Math.abs(oy * Math.cos(joint.line) - ox * Math.sin(joint.line));
+}
+
+/** A line between two points, drawn as a spring if it is one. @param {number} x1 @param {number} y1 @param {number} x2 @param {number} y2 @param {boolean} spring */
+function zigzag(x1, y1, x2, y2, spring) {
+  const points = spring ? 12 : 1;
+  const length = Math.hypot(x2 - x1, y2 - y1) || 1;
+  const [nx, ny] = [(4 * (y1 - y2)) / length, (4 * (x2 - x1)) / length];
+  let path = `M${x1.toFixed(1)} ${y1.toFixed(1)}`;
+  for (let point = 1; point <= points; point++) {
+    const side = point === points ? 0 : point % 2 ? 1 : -1;
+    path += `L${(x1 + ((x2 - x1) * point) / points + side * nx).toFixed(1)} ${(y1 + ((y2 - y1) * point) / points + side * ny).toFixed(1)}`;
+  }
+  return path;
+}

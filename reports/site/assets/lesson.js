@@ -1,0 +1,291 @@
+// @ts-check
+/** A lesson: one stage for all of its experiments, guesses, numbers that can be dragged, and the engines in a worker. */
+
+import { svg } from "./chart.js";
+import { dragged } from "./exact.js";
+import { Form } from "./form.js";
+import { placed, told, UNITS } from "./motion.js";
+import { Player } from "./player.js";
+
+/** @typedef {import("./live_data.js").Setting} Setting */
+/** @typedef {any} Answer what the worker tells of a setting, see worker.js */
+
+const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
+const MARKS = { munk: 1, mujoco: 2 };
+const root = /** @type {HTMLElement} */ (document.getElementById("lesson"));
+const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+const figure = find("figure");
+const player = new Player(figure);
+const form = new Form(root);
+const lens = player.lens;
+/** @type {Worker|null} */
+let worker = null;
+/** @type {Map<number, {resolve: (told: any) => void, reject: (why: Error) => void}>} */
+const asked = new Map();
+let number = 0;
+/** @type {Answer} */
+let shown = null;
+/** @type {number[]|null} the pose at which the reader let go */
+let start = null;
+/** @type {{setting: Setting, play: boolean}|null} what is wanted next: of settings that wait, the last one */
+let waiting = null;
+let busy = false;
+
+/** @param {object} message @returns {Promise<any>} */
+function ask(message) {
+  return new Promise((resolve, reject) => {
+    asked.set(++number, { resolve, reject });
+    worker?.postMessage({ id: number, ...message });
+  });
+}
+
+/** The worker, and in it the engines, once the page needs them. */
+function load() {
+  if (worker) return;
+  const base = new URL(root.dataset.folder ?? "", document.baseURI).href;
+  worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+  worker.onmessage = ({ data: { id, told: answer, why } }) => {
+    const one = asked.get(id);
+    asked.delete(id);
+    if (why) one?.reject(new Error(why));
+    else one?.resolve(answer);
+  };
+  worker.onerror = (event) => failed(new Error(event.message ?? "the worker could not start"));
+  ask({ kind: "load", folder: base, packages: `${base}packages/`, wanted: (root.dataset.engines ?? "").split(" ") }).catch(failed);
+  find(".status").textContent = "The engines are being loaded.";
+}
+
+/** @param {unknown} reason */
+function failed(reason) {
+  find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
+}
+
+/** Show what the form says; while one runs, of those that follow the last one wins. @param {boolean} play */
+function run(play) {
+  waiting = { setting: form.setting(start), play };
+  if (!busy) requestAnimationFrame(next);
+}
+
+async function next() {
+  if (!waiting || busy) return;
+  const { setting, play } = waiting;
+  [waiting, busy] = [null, true];
+  try {
+    load();
+    const answer = await ask({ setting });
+    show(answer, play);
+  } catch (reason) {
+    failed(reason);
+  }
+  busy = false;
+  if (waiting) requestAnimationFrame(next);
+}
+
+/** The drawing of a place of the sliders: bodies of each run, and of the truth over them. @param {Answer} answer */
+function stage({ drawing, motions }) {
+  const bodies = drawing.bodies.map((/** @type {string} */ shape) => `<g class="body">${shape}</g>`).join("");
+  const kinds = [...motions.map((/** @type {{name: "munk"|"mujoco"}} */ { name }) => `method method-${MARKS[name]}`), "truth"];
+  const groups = kinds.map((kind) => `<g class="motion ${kind}"><g class="traces"></g>${bodies}</g>`).join("");
+  return (
+    `<svg class="stage" viewBox="${drawing.box}" role="img" aria-label="The mechanism"><g class="world" ` +
+    `transform="scale(1 -1)"><g class="ground">${drawing.ground}</g>${groups}<g class="overlay"></g></g></svg>`
+  );
+}
+
+/** The path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
+function pathOf(pose, bodies, body, point) {
+  let path = "";
+  for (let at = 3 * body; at < pose.length; at += 3 * bodies) {
+    const [x, y] = placed([pose[at], pose[at + 1], pose[at + 2]], point);
+    if (Number.isFinite(x + y)) path += `${path ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
+  }
+  return path;
+}
+
+/** Forces of joints from the multipliers of the page's own exact motion. @param {Answer} answer */
+function forcesOf({ exact, joints, bodies, forces }) {
+  if (forces || !exact.forces.length) return forces ?? [];
+  let row = 0;
+  return joints.map((/** @type {import("./motion.js").Joint} */ { name, second, secondPoint, line }) => {
+    const [at, force] = [/** @type {number[]} */ ([]), /** @type {number[]} */ ([])];
+    exact.forces.forEach((/** @type {Float64Array} */ own, /** @type {number} */ frame) => {
+      const pose = [...exact.pose.subarray(3 * (frame * bodies.length + second), 3 * (frame * bodies.length + second) + 3)];
+      at.push(...placed(pose, secondPoint));
+      force.push(...(line === null ? [own[row], own[row + 1]] : [-Math.sin(line) * own[row], Math.cos(line) * own[row]]));
+    });
+    row += line === null ? 2 : 1;
+    return { name, at, force };
+  });
+}
+
+/** @param {Answer} answer @param {boolean} play */
+function show(answer, play) {
+  shown = answer;
+  const { motions, exact, bodies, traces, lost } = answer;
+  player.stop();
+  player.stage.outerHTML = stage(answer);
+  figure.querySelectorAll(".frame .traces").forEach((group, index) => {
+    const pose = motions[index]?.pose ?? exact.pose;
+    for (const { body, point } of traces) group.append(svg("path", { class: "trace", d: pathOf(pose, bodies.length, body, point) }));
+  });
+  const spring = motions.find((/** @type {any} */ { name }) => name === "mujoco")?.spring;
+  find(".springs").textContent = springWords(spring, answer);
+  player.load({
+    ...answer, size: answer.drawing.size, truth: exact, forces: forcesOf(answer),
+    motions: motions.map((/** @type {any} */ motion) => ({ ...motion, name: NAMES[/** @type {"munk"|"mujoco"} */ (motion.name)], mark: MARKS[/** @type {"munk"|"mujoco"} */ (motion.name)] })),
+  });
+  for (const name of /** @type {("munk"|"mujoco")[]} */ (["munk", "mujoco"])) {
+    const entry = find(`.legend .method-${MARKS[name]}`);
+    const way = [form.words(name), ...form.changed(name)].join(", ");
+    const from = motions.find((/** @type {any} */ one) => one.name === name)?.from;
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${way}${from ? " (stored: run in Python)" : ""}`;
+    entry.classList.toggle("lost", name in lost);
+    if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
+  }
+  form.label(answer.idle);
+  find(".status").textContent = statusOf(answer);
+  root.classList.add("ready");
+  root.dataset.errors = JSON.stringify(Object.fromEntries(motions.map((/** @type {any} */ { name, error }) => [name, error])));
+  root.dataset.spent = String(motions.reduce((/** @type {number} */ sum, /** @type {any} */ { milliseconds }) => sum + milliseconds, 0));
+  find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
+  find(".sweeps").hidden = true;
+  figure.classList.toggle("can-grab", Boolean(answer.mechanism));
+  if (play && !calm.matches) player.play(true);
+  else if (play) {
+    player.frame = player.stopAt;
+    player.show();
+  }
+}
+
+/** What MuJoCo's loop is, by its own numbers. @param {any} spring @param {Answer} answer */
+function springWords(spring, { joints, blades, motions }) {
+  if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
+  if (!spring) return "MuJoCo needs no spring here: its joints are hinges of a tree, which can't open.";
+  const { k, b, impedance } = spring;
+  return `MuJoCo holds this ${blades.length ? "contact" : "loop"} by a spring and a damper: a gap dies out in about ${told(2000 / b)} ms, and of an acceleration a that opens it (1 − d)/(d k) a stays: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
+}
+
+/** @param {Answer} answer */
+function statusOf({ exact, motions, versions, release }) {
+  const missed = exact.missed === null ? "" : `Here the page finds the exact motion itself, to ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
+  const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) => {
+    root.dataset[`apart_${name}`] = String(by);
+    return `${NAMES[/** @type {"munk"|"mujoco"} */ (name)]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python are at most ${told(by)} m or rad apart.`;
+  });
+  return missed + apart.join(" ");
+}
+
+/** One part of the lesson on the stage. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
+function stageOf(part, which, play) {
+  start = null;
+  const { scene, before, after, shown: on } = part.dataset;
+  const places = { ...JSON.parse(before ?? "{}"), ...(which === "after" ? JSON.parse(after ?? "{}") : {}) };
+  form.move(Number(scene), places);
+  player.boxes.forEach((box) => (box.checked = (on ?? "").split(" ").includes(box.value)));
+  for (const other of root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
+  run(play);
+}
+
+/** A guess is made: run it before and after, tell both errors, and why. @param {HTMLElement} part @param {HTMLElement} button */
+async function guessed(part, button) {
+  for (const each of part.querySelectorAll(".answers button")) {
+    each.classList.toggle("chosen", each === button);
+    each.setAttribute("aria-pressed", String(each === button));
+    each.classList.toggle("right", each instanceof HTMLElement && each.dataset.right !== undefined);
+  }
+  const measured = /** @type {HTMLElement} */ (part.querySelector(".measured"));
+  const why = /** @type {HTMLDetailsElement} */ (part.querySelector(".why"));
+  load();
+  stageOf(part, "before", false);
+  const before = await ask({ setting: form.setting(null) }).catch(failed);
+  stageOf(part, "after", true);
+  const after = await ask({ setting: form.setting(null) }).catch(failed);
+  why.open = true;
+  const verdict = button.dataset.right === undefined ? "Not so." : "Right.";
+  measured.textContent = before && after ? `${verdict} ${compared(before, after)}` : verdict;
+}
+
+/** @param {Answer} before @param {Answer} after */
+function compared(before, after) {
+  const unit = UNITS[/** @type {"angle"|"position"} */ (after.measure)];
+  return after.motions.map((/** @type {any} */ { name, error }) => {
+    const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+    const own = NAMES[/** @type {"munk"|"mujoco"} */ (name)];
+    if (!(old > 0) || !(error > 0)) return `${own}: largest error ${told(error)} ${unit}.`;
+    const ratio = Math.max(error / old, old / error);
+    const times = Number(ratio.toPrecision(2)).toLocaleString("en");
+    const by = ratio < 1.05 ? "as before" : `${times} times ${error > old ? "as large" : "smaller"}`;
+    return `${own}: ${told(old)} ${unit} before, ${told(error)} ${unit} now, ${by}.`;
+  }).join(" ");
+}
+
+/** What the reader changes by hand is kept in the address; what the page shows by itself is not. */
+function changed() {
+  history.replaceState(history.state, "", form.link);
+  run(true);
+}
+
+function begin() {
+  for (const part of root.querySelectorAll(".part")) {
+    if (!(part instanceof HTMLElement)) continue;
+    for (const button of part.querySelectorAll(".answers button")) {
+      if (button instanceof HTMLElement) button.addEventListener("click", () => guessed(part, button));
+    }
+    part.querySelector(".set")?.addEventListener("click", () => stageOf(part, "before", true));
+  }
+  for (const button of root.querySelectorAll("button[data-way]")) {
+    if (!(button instanceof HTMLElement)) continue;
+    button.addEventListener("click", () => {
+      start = null;
+      form.move(form.index, { munk: Number(button.dataset.way), mujoco: Number(button.dataset.way) });
+      changed();
+    });
+  }
+  form.onchange = changed;
+  /** @type {any} */
+  let sweep = null;
+  let at = 0;
+  find(".next").addEventListener("click", async () => {
+    const of = `${JSON.stringify(form.setting(start))} ${player.frame}`;
+    if (find(".sweeps").hidden || at >= sweep.found.length - 1 || sweep.of !== of) {
+      player.stop();
+      sweep = { of, ...(await ask({ kind: "sweeps", setting: form.setting(start), frame: Math.max(1, player.frame) })) };
+      at = -1;
+    }
+    find(".sweeps").hidden = false;
+    find(".sweeps .which").textContent = lens.sweep(sweep, ++at, find(".sweeps tbody"));
+    find(".next").textContent = at >= sweep.found.length - 1 ? "again from sweep 1" : "next sweep";
+  });
+  /** @type {Float64Array|null} */
+  let held = null;
+  player.grabbed((body, point, wanted) => {
+    if (!shown?.mechanism) return null;
+    const width = 3 * shown.bodies.length;
+    held ??= shown.exact.pose.slice(player.frame * width, (player.frame + 1) * width);
+    return (held = dragged(shown.mechanism, /** @type {Float64Array} */ (held), body, point, wanted));
+  }, () => {
+    start = held && [...held];
+    held = null;
+    run(true);
+  });
+  // The first experiment that is read is shown; the engines are loaded when it comes near.
+  const linked = form.restore(location.hash);
+  const parts = [...root.querySelectorAll(".part")];
+  if (linked) run(false);
+  let moved = linked;
+  const looking = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (!isIntersecting || !(target instanceof HTMLElement) || target.classList.contains("shown")) continue;
+      if (moved) moved = false;
+      else if (!target.querySelector(".answers .chosen")) stageOf(target, "before", true);
+    }
+  }, { rootMargin: "-25% 0px -70% 0px" });
+  for (const part of parts) looking.observe(part);
+  if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], "before", true);
+  addEventListener("hashchange", () => form.restore(location.hash) && run(false));
+  Object.assign(window, { crosscheck: { ask, form, setting: () => form.setting(start) } });
+}
+
+document.documentElement.classList.add("js");
+begin();
