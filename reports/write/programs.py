@@ -55,7 +55,7 @@ def advised_programs(page: Page, scene: Scene, found: Iterable[Advice], engines:
     for method, own in rows.items():
         source = program(programs_of(page), method) if scene is page.advised_scene else ""
         text = _alone(scene, method, own, source) if source else _with_suite(scene, engines[method], own, page.quantity)
-        made.append(Program(method, f"{FOLDER}/{scene.name}_{slug(method)}.py", text, bool(source)))
+        made.append(Program(method, f"{FOLDER}/{slug(scene.name)}_{slug(method)}.py", text, bool(source)))
     return made
 
 
