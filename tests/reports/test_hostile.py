@@ -193,7 +193,7 @@ def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
     page = catalogue.generic_page(odd, (Toy(),))
     cells = [Cell(odd, Toy(), every) for every in (1, 3, 10)]
     files = render_page(page, Material({cell: measure(cell, repeat=False) for cell in cells}, {}), "crosscheck report")
-    assert not [name for name, text in files.items() if "<script" in text]
+    assert not [name for name, text in files.items() if "<script" in text and not name.endswith(".py")]
 
 
 def test_the_server_answers_to_a_name_that_no_file_can_have(tmp_path, capfd):

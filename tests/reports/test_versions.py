@@ -117,7 +117,7 @@ def test_a_method_whose_numbers_stay_is_told_with_its_error_and_its_releases_and
     compare._print(Terminal(compare.WIDTH, "markdown"), compared(both, both), sides)
     head, _, line, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith("|"))
     told = dict(zip(head.split(" | "), line.split(" | "), strict=True))
-    assert (told["what changed most"], told["old==1"], told["new==2"]) == ("angle [rad]", "1e-5", "1.0e-5")
+    assert (told["what changed most"], told["old==1"], told["new==2"]) == ("angle [rad]", "1e-5", "1e-5")
     assert "nothing changed" in line
 
 
