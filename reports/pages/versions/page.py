@@ -74,18 +74,20 @@ def _look(entry: Entry, theme: Theme) -> tuple[str, str | None, str]:
 def _cell(panel: Axes, column: int, row: int, entry: Entry, theme: Theme) -> None:
     colour, hatch, letters = _look(entry, theme)
     # No patch: the limits are given, and need not follow each of some thousand cells.
-    panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1, hatch=hatch))
+    panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=theme.paper, linewidth=1))
+    if hatch:  # apart from its ground: in one patch its colours would not follow the reader's scheme
+        panel.add_artist(Rectangle((column, row), 1, 1, fill=False, edgecolor=theme.quiet, linewidth=0, hatch=hatch))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=theme.ink, fontsize=7, in_layout=False)
 
 
 def _legend(figure: Figure, entries: Sequence[Entry], theme: Theme) -> None:
-    patches = [Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role)) for role in SHADE_NAMES]
+    patches: list[Any] = [Rectangle((0, 0), 1, 1, facecolor=getattr(theme, role)) for role in SHADE_NAMES]
     names = [*SHADE_NAMES.values()]
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):
-            patches.append(
-                Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme), hatch=HATCHES.get(outcome))
-            )
+            ground = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome, theme))
+            lines = Rectangle((0, 0), 1, 1, fill=False, edgecolor=theme.quiet, linewidth=0, hatch=HATCHES.get(outcome))
+            patches.append((ground, lines))
             told = "our adapter builds none" if outcome is Outcome.UNSUPPORTED else outcome
             names.append(f"{outcome.letter}  {told}")
     figure.legend(patches, names, loc="outside lower center", ncols=4)
