@@ -21,6 +21,7 @@ from PIL import Image
 
 from reference.plane import rotated
 from reports.model.ending import BadInput
+from reports.plots.looks import family_of, role
 from reports.plots.theme import DARK, FONTS, LIGHT, Theme, settings, style_axes
 from reports.site import drawn
 from reports.site.embed import Shown
@@ -67,7 +68,7 @@ def animation(shown: Shown, title: str) -> str:
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" '
             f'height="{HEIGHT:g}" role="img"><title>{escape(title)}</title>',
-            f"<style>{_sheet()}{''.join(rules)}</style>",
+            f"<style>{_sheet(roles_of(shown))}{''.join(rules)}</style>",
             f'<rect class="paper" width="{WIDTH:g}" height="{HEIGHT:g}"/>',
             f'<text class="title" x="20" y="30">{escape(title)}</text>',
             f'<clipPath id="own"><rect width="{STAGE + 20:g}" height="{HEIGHT:g}"/></clipPath>',
@@ -77,6 +78,13 @@ def animation(shown: Shown, title: str) -> str:
             "</svg>\n",
         ]
     )
+
+
+def roles_of(shown: Shown) -> list[str]:
+    """The colour of each motion: that of its engine, as in all charts; variants differ by their lines."""
+    engines = {words: engine.name for words, engine, _ in shown.take.methods}
+    usual = zip(shown.motions, LOOKS, strict=False)
+    return [role(family_of(engines[name])) if name in engines else other for name, (other, _, _) in usual]
 
 
 def _keyframes(label: str, pose: Array) -> str:
@@ -144,15 +152,15 @@ def _legend(index: int, look: str, name: str) -> str:
     )
 
 
-def _sheet() -> str:
+def _sheet(roles: Sequence[str]) -> str:
     """The style: light and dark, and no motion where none is asked for."""
-    names = ("paper", "ink", "quiet", "grid", *(role for role, _, _ in LOOKS))
+    names = ("paper", "ink", "quiet", "grid", *dict.fromkeys(roles))
     light, dark = ("".join(f"--{name}:{getattr(theme, name)};" for name in names) for theme in SCHEMES)
     looks = "".join(
         f".k{index} path,.k{index} line{{stroke:var(--{role});stroke-width:{width:g};"
         f"stroke-dasharray:{dash or 'none'}}}"
         f".k{index} .own{{stroke-width:2.5}}.k{index} .pin{{stroke:none}}"
-        for index, (role, width, dash) in enumerate(LOOKS)
+        for index, (role, (_, width, dash)) in enumerate(zip(roles, LOOKS, strict=False))
     )
     rules = (
         f"text{{font:14px {FONTS};fill:var(--ink)}}.title{{font-size:17px;font-weight:bold}}.small{{font-size:12px}}"
@@ -259,7 +267,9 @@ def _film_stage(panel: Axes, shown: Shown, theme: Theme) -> list[tuple[Line2D, A
         points = np.vstack([fixed.points, fixed.points[:1]]) if fixed.closed else fixed.points
         panel.plot(*points.T, color=theme.quiet, linewidth=1.0)
     out = []
-    looks = [(getattr(theme, role), width) for role, width, _ in LOOKS[: len(shown.motions)]] + [(theme.ink, 2.0)]
+    widths = (width for _, width, _ in LOOKS)
+    looks = [(getattr(theme, own), width) for own, width in zip(roles_of(shown), widths, strict=False)]
+    looks.append((theme.ink, 2.0))
     for (colour, thick), pose in zip(looks, [*shown.motions.values(), shown.truth.pose], strict=True):
         for index, body in enumerate(shown.mechanism.bodies):
             for each in drawn.body_lines(shown.mechanism, shown.take, body.name):
@@ -278,11 +288,11 @@ def _film_chart(panel: Axes, shown: Shown, theme: Theme) -> list[tuple[Line2D, A
     panel.tick_params(labelsize=11)
     panel.set_title("largest error of an angle [rad]", fontsize=12, color=theme.ink, loc="left")
     out: list[tuple[Line2D, Array]] = []
-    for (role, _, dash), (name, pose) in zip(LOOKS, shown.motions.items(), strict=False):
+    for own, (_, _, dash), (name, pose) in zip(roles_of(shown), LOOKS, shown.motions.items(), strict=False):
         error = np.abs(pose - shown.truth.pose)[..., 2].max(axis=1)
         error = np.where(error > 0, error, np.nan)
         style = (0, tuple(float(part) / 2 for part in dash.split())) if dash else "-"
-        look: dict[str, Any] = {"color": getattr(theme, role), "linestyle": style}
+        look: dict[str, Any] = {"color": getattr(theme, own), "linestyle": style}
         (line,) = panel.plot([], [], linewidth=2.0, animated=True, **look)
         panel.plot([], [], linewidth=3.0, label=name, **look)  # for the legend, which stands still
         out.append((line, error))

@@ -94,6 +94,7 @@ def lesson_page(
     return {
         "title": lesson.title,
         "lesson": lesson,
+        "page": f"../results/{lesson.page if f'{lesson.page}.md' in source.pages else 'index'}.html",
         "parts": parts,
         "scenes": [{"key": live.key, "fields": [slider.field for slider in live.sliders]} for live in lesson.scenes],
         "picture": Markup(first_picture(lesson.scene(lesson.experiments[0].scene))),

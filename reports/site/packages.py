@@ -59,7 +59,7 @@ class Registry:
             ended = subprocess.run(words, capture_output=True, encoding="utf-8", timeout=ANSWERING)
         except subprocess.TimeoutExpired:
             return f"npm's registry did not answer within {ANSWERING} s"
-        return f"npm's registry does not answer ({_last(ended.stderr)})" if ended.returncode else ""
+        return f"npm's registry does not answer ({_reason(ended.stderr)})" if ended.returncode else ""
 
     def fetched(self, package: Package) -> dict[str, bytes]:
         """The package's files by their path in the archive, fetched once into `cache`. Raises NotFetched."""
@@ -79,8 +79,10 @@ class Registry:
         return self.cache / f"{package.name.strip('@').replace('/', '-')}-{package.version}.tgz"
 
 
-def _last(told: str) -> str:
-    return (told.strip().splitlines() or ["no reason was given"])[-1]
+def _reason(told: str) -> str:
+    """What npm says first; further down it names its own log."""
+    lines = [line for line in told.splitlines() if "error" in line]
+    return (lines or ["no reason was given"])[0]
 
 
 def _fetch(package: Package, path: Path) -> None:
@@ -97,7 +99,7 @@ def _fetch(package: Package, path: Path) -> None:
             raise NotFetched(f"npm did not fetch {package.name} within {PATIENCE} s") from None
         found = list(folder.glob("*.tgz"))
         if ended.returncode or not found:
-            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({_last(ended.stderr)})")
+            raise NotFetched(f"npm could not fetch {package.name} {package.version} ({_reason(ended.stderr)})")
         found[0].replace(path)
 
 

@@ -439,6 +439,20 @@ def test_a_table_is_sorted_and_filtered(opened):
     assert table.locator("th").first.get_attribute("aria-sort") == "descending"
 
 
+def test_the_charts_show_variants_first_and_their_table_is_sorted(opened):
+    page = opened("results/rows.html")
+    page.wait_for_selector("html[data-ready]")
+    assert page.evaluate("location.hash") == ""
+    methods = set(page.locator("#rows tbody td:nth-child(2)").all_inner_texts())
+    assert methods == {"as shipped", "documented settings", "with our code"}
+    page.locator("input[name=all]").check()
+    assert "lagrange" in set(page.locator("#rows tbody td:nth-child(1)").all_inner_texts())
+    page.locator("#rows th button").nth(5).click()
+    cells = page.locator("#rows tbody td:nth-child(6)").all_inner_texts()
+    errors = [float(cell) for cell in cells if cell[0].isdigit()]
+    assert errors == sorted(errors)
+
+
 def test_the_site_is_small(files):
     assert compressed_size(files) < 6_000_000
     early = {

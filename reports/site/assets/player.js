@@ -82,6 +82,8 @@ export class Player {
     const far = apart.map((value) => Math.min(value, take.size));
     this.stopAt = last;
     for (let frame = last; frame >= first; frame--) if (far[frame] > far[this.stopAt]) this.stopAt = frame;
+    // A motion that looks most wrong at its beginning is played to its end.
+    if (this.stopAt < first + 0.3 * (last - first)) this.stopAt = last;
     const real = take.t[last] - take.t[first];
     this.slower = SLOWER.find((by) => real * by >= SHORTEST) ?? 100;
     const growth = Array.from(far, (value, frame) => Math.max(0, value - (far[frame - 1] ?? 0)));

@@ -68,7 +68,9 @@ function draw(rows) {
           marks: [
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
               Plot.line(points.filter((row) => row.variant === variant), { x, y, z: "method", stroke: "engine", sort: x, strokeDasharray: DASHES[variant] ?? "1 2 6 2" })),
-            Plot.text(points, Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
+            // Lines of engines as shipped come together at short steps, the others at long ones: names stand where they part.
+            Plot.text(points.filter(({ variant }) => variant !== "default"), Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
+            Plot.text(points.filter(({ variant }) => variant === "default"), Plot.selectMaxX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "end", dx: -6, dy: -7 })),
             Plot.dot(points, {
               x, y, fill: "engine", tip: true, r: 3.5,
               channels: {
