@@ -40,11 +40,12 @@ class Drawing:
         Path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
     """A run of an engine at a step `dt` [s], the truth at the same times, and the run's errors.
 
-    `judge`: the ideal motion, and how fast neighbouring starts part. A notebook shows it as a table and a figure.
+    `judge`: the ideal motion, and how fast neighbouring starts part. `print` shows a line an error, a notebook a table
+    and a figure.
     """
 
     mechanism: Mechanism
@@ -104,6 +105,14 @@ class Comparison:
                 for text in panel.legend(frameon=False).get_texts():
                     text.set_color(LIGHT.ink)
         return Drawing(figure, f"{self.title} beside the truth")
+
+    def __repr__(self) -> str:
+        lines = [f"{self.title}: {number(1e3 * self.run.stepping)} ms of CPU time", *self.run.warnings]
+        lines += [
+            f"{row['quantity']}: {number(row['largest'])} {row['unit']} off at most, {number(row['at the end'])} at the end"
+            for row in self.rows()
+        ]
+        return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         head = "<tr><th>error</th><th>unit</th><th>largest</th><th>at the end</th></tr>"

@@ -51,7 +51,7 @@ class CheckRequest:
         return Plan.search(USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class CheckReport:
     """What was found, as the answer, as sections and as plain data; `trouble`: why nothing was written, if asked to."""
 
@@ -67,6 +67,11 @@ class CheckReport:
         """Whether a tolerance that was asked for is met, by the user's settings or by those that were looked for."""
         mended = (self.request.search or self.data["applied"] is not None) and self.data["advised"] is not None
         return self.request.tolerance is None or self.data["met"] or mended
+
+    def __repr__(self) -> str:
+        from reports.check.rendering import plain
+
+        return f"{self.verdict}\n{plain([self.answer])}"
 
     def _repr_html_(self) -> str:
         from reports.check.rendering import body
