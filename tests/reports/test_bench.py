@@ -9,7 +9,7 @@ from engines.lagrange import Lagrange, loading
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import SquareOnCatenaries
-from reports.bench import judge
+from reports.bench import answers, judge
 from reports.bench.suite import BETWEEN, OTHER, STARTING, Account, loop_costs, timings_alike
 from reports.cli.bench import bench
 from reports.model.cells import Cell
@@ -118,3 +118,10 @@ def test_crosscheck_bench_judge_prints_what_was_measured_beside_what_is_asked_fo
     assert [repr(Disc()), "0.25"] in told
     assert ["one evaluation", "3e-6", "5e-6", "s"] in told
     assert ["1e-6", "2", "9", "pymunk extended", "4.5"] in told  # milliseconds
+
+
+def test_a_command_is_timed_as_a_process_and_its_status_is_told():
+    found = answers.waited(answers.Question(("--help",), 0.15))
+    assert (found.status, found.cpu > 0, found.wall > 0) == (0, True, True)
+    refused = answers.waited(answers.Question(("no such command",), 0.15))
+    assert refused.status == 2

@@ -59,7 +59,7 @@ def test_the_lines_in_the_readme_are_those_that_a_test_pastes():
 def test_the_example_of_an_action_gives_compare_words_that_it_knows(file):
     text = (ROOT / "examples" / "compare_build" / file).read_text(encoding="utf-8")
     (line,) = re.findall(r"^ *crosscheck compare (.*) > comparison\.md$", text, re.MULTILINE)
-    known = get_command(app).get_command(None, "compare")
+    known = get_command(app).commands["compare"]  # pyright: ignore[reportAttributeAccessIssue]
     given = known.make_context("compare", shlex.split(line.replace("$COST", "1.5"))).params
     assert (given["cost"], given["as_markdown"], list(given["scenes"])) == (1.5, True, [])
 
