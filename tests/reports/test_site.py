@@ -28,6 +28,7 @@ from reports.site.animated import PAUSE, animation, film
 from reports.site.build import MARKER, build, reference_pages
 from reports.site.embed import Shown, forces, shown
 from reports.site.folder import compressed_size, refuse_strangers, write_site
+from reports.site.lecture import html as lecture_html
 from reports.site.lesson import Part, Source, part_of
 from reports.site.lessons import LESSONS, take_like
 from reports.site.markdown import Formulas, html, section
@@ -143,6 +144,18 @@ def test_without_npm_the_site_says_what_is_missing(files):
     assert "Formulas are shown as TeX, since node is not installed." in about
     assert '<code class="tex' in files["results/four_bar.html"].decode()
     assert json.loads(files[MARKER])["troubles"]
+
+
+def test_a_notebook_becomes_a_page_with_what_its_cells_print_and_draw():
+    codes = ["import matplotlib.pyplot as plt\nplt.plot([1, 2])\nprint('a <b>')", "1 / 0"]
+    cells = [{"cell_type": "markdown", "source": ["# A $x$"]}, *({"cell_type": "code", "source": [c]} for c in codes)]
+    formulas = Formulas()
+    page = lecture_html(json.dumps({"cells": cells[:2]}), formulas)
+    assert list(formulas.found) == [("x", False)]
+    assert page.index("plt.plot") < page.index('<pre class="printed">a &lt;b&gt;') < page.index("<svg")
+    assert page.endswith("</details>")  # the last cell has the solutions
+    with pytest.raises(NotFetched, match="a cell fails: ZeroDivisionError"):
+        lecture_html(json.dumps({"cells": cells}), formulas)
 
 
 def test_formulas_are_found_outside_of_code_alone_and_keep_their_place():
