@@ -109,8 +109,9 @@ class Comparison:
     def __repr__(self) -> str:
         lines = [f"{self.title}: {number(1e3 * self.run.stepping)} ms of CPU time", *self.run.warnings]
         lines += [
-            f"{row['quantity']}: {number(row['largest'])} {row['unit']} off at most, {number(row['at the end'])} at the end"
-            for row in self.rows()
+            f"{each['quantity']}: {number(each['largest'])} {each['unit']} off at most, "
+            f"{number(each['at the end'])} at the end"
+            for each in self.rows()
         ]
         return "\n".join(lines)
 

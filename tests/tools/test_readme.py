@@ -32,7 +32,7 @@ def test_the_python_example_runs_and_says_what_the_reader_expects(capsys):
     (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     exec(compile(example, "README.md", "exec"), {})
     said = capsys.readouterr().out
-    # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6, and ten times that where it swings by.
+    # RK4 at a step of 1e-3 s with the stiffness tied to it: of the order of 1e-6 to 1e-5.
     (angle,) = re.findall(r"^angle: (\S+) rad off at most", said, re.MULTILINE)
     assert 0 < float(angle) < 1e-4
 
