@@ -97,7 +97,7 @@ def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
         "foot": f"Made by `{command}`. Versions and machine: [index](index.md). Numbers: [errors.csv](errors.csv).",
         **page.words(material),
     }
-    texts = {page.document: template_of(page).render(given)} | page.further(material)
+    texts = {page.document: template_of(page).render(given)} | dict(page.further(material))
     return files | {name: inert_page(unmeasured.without_marks(text)) for name, text in texts.items()}
 
 

@@ -109,6 +109,7 @@ def files(
         "cases": len(told),
         "planned": max(planned, len(told)),
         "alone": any(isinstance(one.chunk.subject, Alone) for one in told),
+        "cases_a_seed": (plan.CASES, plan.COMPILED),
         "shapes": SHAPES if any(is_shaped(one.chunk.subject) for one in told) else 0,
         "rank": number(LEAST_RANK, 1),
         "near": number(NEAREST, 1),
