@@ -469,7 +469,7 @@ def exact(known: Known) -> Finding:
         "four_bar",
         len(targets) > 1
         and all(
-            cost[("lagrange", target)] < cost.get((engine, target), math.nan)
+            cost.get(("lagrange", target), math.nan) < cost.get((engine, target), math.nan)
             for target in targets
             for engine in ("mujoco", "pymunk")
         ),
