@@ -109,13 +109,13 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert found.advised is not None
     assert found.advised.error <= found.tolerance
     told = answer(found)
-    assert told.sentences[0].endswith("the tolerance of 1.0e-4 is missed.")
+    assert told.sentences[0].endswith("the tolerance of 1e-4 is missed.")
     option, default = told.code
     mended = re.sub(r"<option [^/]*/>", option, FOUR_BAR).replace("<worldbody>", f"{default}<worldbody>", 1)
     again = found_in(tmp_path, mended)
     assert again.met
     assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)
-    assert verdict(again).endswith("the tolerance of 1.0e-4 is met.")
+    assert verdict(again).endswith("the tolerance of 1e-4 is met.")
 
 
 def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):

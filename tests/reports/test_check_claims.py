@@ -61,11 +61,11 @@ def told(found: Checked, label: str) -> str:
     [
         # (error, cost) of the user's own settings first.
         ([(1e-5, 1.0), (1e-6, 2.0)], 1e-4, "no setting that was tried meets it much cheaper."),
-        ([(1e-5, 1.0), (2e-5, 0.5)], 1e-4, "setting 1: the error is 2.0e-5 instead of 1.0e-5, at 0.5 times"),
+        ([(1e-5, 1.0), (2e-5, 0.5)], 1e-4, "setting 1: the error is 2e-5 instead of 1e-5, at 0.5 times"),
         ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1e-4, "setting 1: the error is"),
-        ([(1e-3, 1.0), (2e-5, 4.0)], 1e-4, "the error is 2.0e-5 instead of 1.0e-3, at 4 times your CPU time."),
-        ([(1e-3, 1.0), (2e-3, 0.5)], 1e-4, "none of the 2 documented settings that were tried meets 1.0e-4; the"),
-        ([(1e-3, 1.0), (5e-4, 9.0)], 1e-4, "the best reached 5.0e-4 (setting 1)."),
+        ([(1e-3, 1.0), (2e-5, 4.0)], 1e-4, "the error is 2e-5 instead of 1e-3, at 4 times your CPU time."),
+        ([(1e-3, 1.0), (2e-3, 0.5)], 1e-4, "none of the 2 documented settings that were tried meets 1e-4; the"),
+        ([(1e-3, 1.0), (5e-4, 9.0)], 1e-4, "the best reached 5e-4 (setting 1)."),
     ],
 )
 def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, tolerance, said):
@@ -89,8 +89,8 @@ def test_a_tenth_is_counted_from_the_error_of_the_advised_setting(soft):
 def test_the_verdict_meets_where_the_error_is_within_the_tolerance_and_misses_where_not(soft):
     for error, word in ((1e-4, "met"), (1.001e-4, "missed")):
         found = priced(soft, (error, 1.0), tolerance=1e-4)
-        said = "model.xml in MuJoCo is off by up to 1.0e-4 in 0.2 s"
-        assert verdict(found) == f"{said}; the tolerance of 1.0e-4 is {word}."
+        said = "model.xml in MuJoCo is off by up to 1e-4 in 0.2 s"
+        assert verdict(found) == f"{said}; the tolerance of 1e-4 is {word}."
         assert verdict(found, asked=False) == f"{said}."
     gone = replace(soft, own_errors=replace(soft.own_errors, finished=False))
     assert verdict(gone, asked=False) == "model.xml in MuJoCo gives up before 0.2 s."
@@ -147,7 +147,7 @@ def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, s
     why = told(replace(swing, parts=parts), "why")
     assert ("and still falls" in why) == falls
     assert ("and no longer falls" in why) == (not falls)
-    assert "the step of 16.67 ms makes 8.0e-3" in why
+    assert "the step of 16.67 ms makes 8e-3" in why
     assert f"at {10 / 2 ** (len(sizes) - 1):.3g} ms it is {number(sizes[-1])}" in why
 
 

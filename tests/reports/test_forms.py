@@ -76,7 +76,7 @@ def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_now
     assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *words]) == 0
     assert invoke(["report", *words]) == 0
     pages = {path.name for path in tmp_path.glob("*.md")}
-    assert {"index.md", "four_bar.md", "four_bar_data.md"} <= pages
+    assert {"index.md", "four_bar.md"} <= pages
     assert not {"pendulum.md", "skate.md", "wheels.md", "faults.md"} & pages
     for page in pages:
         text = (tmp_path / page).read_text(encoding="utf-8")

@@ -135,7 +135,7 @@ def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_i
     (folder / "model.xml").write_text(FOUR_BAR)
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
     result.assert_outcomes(passed=1, failed=2)
-    result.stdout.fnmatch_lines(["four bar in MuJoCo is off by*; the tolerance of 1.0e-7 is missed."])
+    result.stdout.fnmatch_lines(["four bar in MuJoCo is off by*; the tolerance of 1e-7 is missed."])
     result.stdout.fnmatch_lines(["*<option timestep=*", "nothing.xml: there is no such file"])
     assert "During handling" not in result.stdout.str()
 

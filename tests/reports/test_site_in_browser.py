@@ -45,7 +45,7 @@ QUICK = ("four_bar", "skate", "rolling")
 @pytest.fixture(scope="module")
 def files(request):
     """The site with the quick lessons and with those that a test that was selected asks for."""
-    given = (vars(item).get("callspec") for item in request.session.items)
+    given = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
     wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
     texts[".csv"] |= {f"programs/{path.name}": path.read_text("utf-8") for path in RESULTS.glob("programs/*.py")}
