@@ -65,7 +65,7 @@ SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would b
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
 LACKS = {
     Gear: f"box2d has no gears since version 3 ({JOINTS})",
-    Skate: f"none of box2d's joints holds a velocity across a blade alone ({JOINTS})",
+    Skate: f"none of box2d's joints stops a slip across a line ({JOINTS})",
     Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
 }
 

@@ -1,6 +1,6 @@
 """Pinocchio under test: a tree in reduced coordinates whose loops are closed by exact contact constraints.
 
-Pinocchio (the package is called `pin`) computes accelerations and has no time stepping: the integrators here are ours,
+Pinocchio (the package is called `pin`) computes accelerations and integrates nothing: the integrators here are ours,
 semi-implicit Euler and the classical Runge-Kutta method of fourth order, as its own examples are written.
 
 The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot, for a body that hangs on
