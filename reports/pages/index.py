@@ -90,7 +90,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My wheel or blade creeps down a slope.",
-        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` takes nearly all of it away.",
+        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` and the elliptic cone take nearly all away.",
         "skate",
         "At rest across a slope",
     ),
