@@ -465,7 +465,7 @@ def exact(known: Known) -> Finding:
         "This suite's judge solves for the forces of ideal joints, with textbook integrators and nothing else. On the "
         f"free four-bar an error of 1e-6 rad costs it {milliseconds(fine['lagrange'])} ms of CPU time per simulated "
         f"second, MuJoCo {milliseconds(fine['mujoco'])} ms and pymunk {milliseconds(fine['pymunk'])} ms at their best. "
-        "Errors of 1e-2 and 1e-9 rad cost it least too. It knows no contacts, which the engines are made for.",
+        "Errors of 1e-2 and 1e-9 rad cost it least too. It is planar, without the contacts that engines are made for.",
         "four_bar",
         len(targets) > 1
         and all(

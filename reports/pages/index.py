@@ -90,7 +90,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My wheel or blade creeps down a slope.",
-        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` takes nearly all of it away.",
+        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` and the elliptic cone take nearly all away.",
         "skate",
         "At rest across a slope",
     ),
@@ -108,7 +108,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My groove joint comes apart (pymunk).",
-        "A `GrooveJoint` is right only if its anchor is a centre of mass and the grooved body can't turn.",
+        "A `GrooveJoint` is always right only if its anchor is a centre of mass and the grooved body can't turn.",
         "slider_crank",
         "The rod's end in a groove",
     ),
