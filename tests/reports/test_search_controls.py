@@ -25,9 +25,10 @@ SMALL = 1e-4
 SINGLE = {
     1e-6: ("pin", "rod"),
     1e-5: ("slot", "torsion-spring", "force", "torsion-spring rest_angle"),
-    1e-4: ("inertia", "spring", "damper", "torsion-damper", "torque", "spring rest_length", "force force"),
-    # The bound of relations is 1e4 roundings, and what moves is also what the start's velocity moves. A weld's angle is
-    # rounded as every number, and its rows make motions of that which are many times as large.
+    1e-4: ("inertia", "spring", "torsion-damper", "torque", "spring rest_length", "force force"),
+    1e-3: ("damper",),
+    # The bound of relations is 1e4 roundings, and what moves is also what the start's velocity moves. What a weld or a
+    # damper is off by is seen beside rounded numbers, of which the rows make motions that are many times as large.
     1e-2: ("weld", "turned", "mirrored", "renamed", "in other lengths", "in other masses"),
     1e-1: ("shifted", "swapped"),
 }
