@@ -1,0 +1,13 @@
+"""free_four_bar by the method lagrange dop853 none, with this suite: below 1e-9 rad."""
+
+from engines.lagrange import Lagrange
+from reference.scenes.four_bar.scenes import FreeFourBar
+
+scene = FreeFourBar()
+every = 1
+run = Lagrange(stabilisation="none").build(scene.mechanism(), dt=scene.spacing / every)
+trajectory = run(samples=scene.samples, every=every)
+truth = scene.motion(trajectory.t)
+error = abs((trajectory.pose - truth.pose))[..., 2].max()
+print(f"largest angle error: {error:.1e} rad")
+# 1.8e-11 rad when this was written

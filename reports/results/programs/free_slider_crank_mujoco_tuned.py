@@ -1,0 +1,42 @@
+"""Free slider crank in MuJoCo, as the method *tuned* does it."""
+
+import mujoco
+
+duration = 2.0  # s
+steps = 200  # 200: below 0.01; 2000: below 1e-4
+dt = duration / steps  # s
+solref = f"{5 * dt} 1"  # the loop's spring: critically damped, with a time constant of five steps
+
+model = mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <option timestep="{dt}" gravity="0 -9.81 0" integrator="RK4" jacobian="dense">
+    <flag contact="disable" island="disable"/>
+  </option>
+  <worldbody>
+    <body name="crank" pos="0.131637384284 0.0719138307906 0">
+      <inertial pos="0 0 0" mass="0.3" diaginertia="0.00225 0.00225 0.00225"/>
+      <joint name="crank" axis="0 0 1" pos="-0.131637384284 -0.0719138307906 0"/>
+      <body name="rod" pos="0.626438759525 0 0">
+        <inertial pos="0 0 0" mass="1" diaginertia="0.0833333333333 0.0833333333333 0.0833333333333"/>
+        <joint name="rod" axis="0 0 1" pos="-0.494801375242 0.0719138307906 0"/>
+      </body>
+    </body>
+    <body name="slider" pos="1.25287751905 0 0">
+      <inertial pos="0 0 0" mass="0.5" diaginertia="0.001 0.001 0.001"/>
+      <joint name="slider along" type="slide" axis="1 0 0"/>
+    </body>
+  </worldbody>
+  <equality>
+    <connect body1="slider" body2="rod" anchor="0 0 0"
+             solref="{solref}" solimp=".9999 .9999 .001 .5 1"/>
+  </equality>
+</mujoco>""")
+data = mujoco.MjData(model)
+data.joint("crank").qvel = 10
+data.joint("slider along").qvel = -1.82091696617
+data.joint("rod").qvel = -12.6604086179
+mujoco.mj_step(model, data, nstep=steps)
+mujoco.mj_forward(model, data)  # places of the bodies at the end, not in the last stage of RK4
+end = (*data.body("rod").xpos[:2], -0.144328214646 + data.joint("crank").qpos[0] + data.joint("rod").qpos[0])
+print("rod: x = {:.10f} m, y = {:.10f} m, angle = {:.10f} rad".format(*end))
+# Exact: rod: x = 0.5738685427 m, y = 0.1423535788 m, angle = -0.2887009293 rad

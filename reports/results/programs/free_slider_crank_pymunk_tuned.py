@@ -1,0 +1,48 @@
+"""Free slider crank in pymunk, as the method *tuned* does it."""
+
+import pymunk
+
+duration = 2.0  # s
+steps = 6000
+dt = duration / steps  # s
+
+# Mass [kg], moment of inertia [kg m^2], centre of mass [m], angle [rad], velocity [m/s], rate [rad/s].
+BODIES = {
+    "crank": (0.3, 0.00225, (0.131637384284, 0.0719138307906), 0.5, (-0.719138307906, 1.31637384284), 10),
+    "rod": (
+        1,
+        0.0833333333333,
+        (0.758076143809, 0.0719138307906),
+        -0.144328214646,
+        (-1.62959679099, 1.31637384284),
+        -2.66040861789,
+    ),
+    "slider": (0.5, float("inf"), (1.25287751905, 0), 0, (-1.82091696617, 0), 0),
+}
+# Two points [m] that are one, each from the centre of mass of its body; None is the ground.
+PINS = [
+    (None, (0, 0), "crank", (-0.15, 0)),
+    ("crank", (0.15, 0), "rod", (-0.5, 0)),
+    ("rod", (0.5, 0), "slider", (0, 0)),
+]
+
+space = pymunk.Space()
+space.gravity = (0, -9.81)
+space.iterations = 8
+bodies = {None: space.static_body}
+for name, (mass, moment, place, angle, velocity, rate) in BODIES.items():
+    body = bodies[name] = pymunk.Body(mass, moment)
+    body.position, body.angle, body.velocity, body.angular_velocity = place, angle, velocity, rate
+    space.add(body)
+joints = [pymunk.PivotJoint(bodies[a], bodies[b], one, other) for a, one, b, other in PINS]
+# A straight guide: exact, since its point is the centre of mass. A groove ends, so this one is long.
+joints.append(pymunk.GrooveJoint(space.static_body, bodies["slider"], (-1000, 0), (1000, 0), (0, 0)))
+for joint in joints:
+    joint.error_bias = 0  # close the whole gap in every step
+    space.add(joint)
+for _ in range(steps):
+    space.step(dt)
+body = bodies["rod"]
+end = body.position.x, body.position.y, body.angle
+print("rod: x = {:.10f} m, y = {:.10f} m, angle = {:.10f} rad".format(*end))
+# Exact: rod: x = 0.5738685427 m, y = 0.1423535788 m, angle = -0.2887009293 rad

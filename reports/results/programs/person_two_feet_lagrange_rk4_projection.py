@@ -1,0 +1,13 @@
+"""person_two_feet by the method lagrange rk4 projection, with this suite: below 1e-6 rad."""
+
+from engines.lagrange import Lagrange
+from reference.scenes.person import TwoFeet
+
+scene = TwoFeet()
+every = 1  # 3: below 1e-9
+run = Lagrange(integrator="rk4").build(scene.mechanism(), dt=scene.spacing / every)
+trajectory = run(samples=scene.samples, every=every)
+truth = scene.motion(trajectory.t)
+error = abs((trajectory.pose - truth.pose))[..., 2].max()
+print(f"largest angle error: {error:.1e} rad")
+# 8.0e-08 rad when this was written

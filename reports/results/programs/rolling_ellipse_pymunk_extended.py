@@ -1,0 +1,13 @@
+"""rolling_ellipse by the method pymunk extended, with this suite: below 1e-9 rad."""
+
+from engines.pymunk import EXTENDED
+from reference.scenes.rolling.scenes import RollingEllipse
+
+scene = RollingEllipse()
+every = 1
+run = EXTENDED.build(scene.mechanism(), dt=scene.spacing / every)
+trajectory = run(samples=scene.samples, every=every)
+truth = scene.motion(trajectory.t)
+error = abs((trajectory.pose - truth.pose))[..., 2].max()
+print(f"largest angle error: {error:.1e} rad")
+# 5.5e-11 rad when this was written
