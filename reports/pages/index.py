@@ -90,7 +90,7 @@ SYMPTOMS: tuple[Symptom, ...] = (
     ),
     Symptom(
         "My wheel or blade creeps down a slope.",
-        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` and the elliptic cone take nearly all away.",
+        "MuJoCo's friction creeps by its regularisation; `noslip_iterations` with an elliptic cone stops nearly all.",
         "skate",
         "At rest across a slope",
     ),

@@ -306,7 +306,8 @@ FAILURES: tuple[Failure, ...] = (
             "MuJoCo scales the softness of the row across by the square of their ratio, 1e-12 "
             "([engine_core_constraint.c](https://github.com/google-deepmind/mujoco/blob/main/src/engine/"
             "engine_core_constraint.c)). With equal coefficients it creeps; `noslip_iterations` takes nearly all of "
-            "that away, with the pyramidal cone only on gentle slopes. The naive zeroing (`pymunk naive`) is right here, where nothing turns."
+            "that away, with the pyramidal cone only on gentle slopes. The naive zeroing (`pymunk naive`) is right "
+            "here, where nothing turns."
         ),
     ),
     Failure(
