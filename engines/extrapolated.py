@@ -29,11 +29,9 @@ FORCES = 1e-3
 # 31153099 and 601) in pymunk, Exudyn and Bullet.
 CAUTION, LEAST, EARLY = 4, 0.5, 1 / 30
 # A series in the step needs steps that are short against what happens. Where the line of a spring, a damper or a rod
-# turns by more than this [rad] in a step of the coarsest run, all runs may miss alike; and an estimate that rises
-# STEEP-fold within the last tenth of the time is on its way to a singular position, as no power of time up to the 21st
-# rises so: errors have passed it by then.
+# turns by more than this [rad] in a step of the coarsest run, all runs may miss alike.
 UNRESOLVED = "ours: unresolved from 0 s on"
-TURNED, STEEP = 0.5, 10.0
+TURNED = 0.5
 # Poses of bodies, in each run, that are held against each other at most: all steps of nearly every run.
 WATCHED = 300_000
 
@@ -237,7 +235,7 @@ class ExtrapolatedRun(OneShot):
                 estimate[since:] = np.abs(poses[:-1, since:] - poses[-1, since:]).max(axis=0)
         warnings += self._doubts(reactions[:, ::each])
         early = largest > EARLY * CLAIM
-        unresolved_at = float(t[np.argmax(early)]) if above.any() or np.any(early & _steep(largest)) else None
+        unresolved_at = float(t[np.argmax(early)]) if above.any() else None
         turned = self._turned(poses[-1]) / (every * levels[0]) > TURNED
         if turned.any():
             at = float(t[np.argmax(turned)])
@@ -311,12 +309,6 @@ class ExtrapolatedRun(OneShot):
             acting = np.fmax.reduce(np.abs(forces[-1]), axis=None, initial=usual)
             share = np.fmax.reduce(expected_error(forces, levels, powers), axis=None, initial=0.0) / acting
         return [f"ours: reactions are resolved to {share:.0e} of the largest force"] if share > FORCES else []
-
-
-def _steep(largest: Array) -> NDArray[np.bool_]:
-    """(times,) where a rising number is more than STEEP times what it was a tenth of the time before."""
-    before = largest[np.arange(len(largest)) * 9 // 10]
-    return (largest > STEEP * before) & (np.arange(len(largest)) >= 10)
 
 
 def _watched(samples: int, every: int, bodies: int) -> int:

@@ -56,12 +56,13 @@ UNITS = {"angle": "rad", "position": "m"}
 
 
 def cell(case: Case, engine: Engine) -> Cell:
-    return Cell(case.scene, engine, EVERY)
+    """At this page's one step; beside the grid where no other page runs the method in this scene."""
+    own = engine == pymunk.LEAPFROG and case.scene != LOOP
+    return Cell(case.scene, engine, EVERY, "beside" if own else "sweep")
 
 
 ASKED = tuple(cell(case, engine) for case in (*MUJOCO, *PYMUNK) for engine in (case.before, *case.after) if engine)
-# Of these no other page has the row.
-OWN = tuple(each for each in ASKED if each.engine == pymunk.LEAPFROG and each.scene != LOOP)
+OWN = tuple(each for each in ASKED if each.purpose == "beside")
 
 
 def table(material: Material, cases: tuple[Case, ...], heads: tuple[str, ...]) -> str:
