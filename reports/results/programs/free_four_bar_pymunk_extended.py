@@ -4,7 +4,7 @@ import numpy as np
 import pymunk
 
 duration = 1.0  # s
-steps = 1000
+steps = 300
 dt = duration / steps  # s
 
 # Mass [kg], moment of inertia [kg m^2], centre of mass [m], angle [rad], velocity [m/s], rate [rad/s].

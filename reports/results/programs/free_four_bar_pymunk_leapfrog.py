@@ -3,7 +3,7 @@
 import pymunk
 
 duration = 1.0  # s
-steps = 300  # 300: below 0.01; 3000: below 1e-4; 30000: below 1e-6
+steps = 300  # 300: below 0.01; 3000: below 1e-4
 dt = duration / steps  # s
 
 # Mass [kg], moment of inertia [kg m^2], centre of mass [m], angle [rad], velocity [m/s], rate [rad/s].
