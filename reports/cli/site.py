@@ -52,7 +52,7 @@ def site(
     source = Source(
         pages=_texts(folder, "*.md"),
         pictures=_texts(folder, "*.svg"),
-        tables=_texts(folder, "*.csv") | _texts(folder, "programs/*.py"),
+        tables=_texts(folder, "*.csv") | _texts(folder, "programs/*.py") | _texts(folder, "upstream/*.md"),
         answers={},
         cache=results / CACHE,
         foot=_foot(),

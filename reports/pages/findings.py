@@ -411,7 +411,7 @@ def trees(known: Known) -> Finding:
         "versions",
         int(many) >= 10 and soft > 0.1 and hard < 1e-3,
         (of_releases("documented settings", tuned), of_releases("with our code", ours)),
-        "acceleration error [relative]",
+        "error [relative]",
         RELEASE,
     )
 

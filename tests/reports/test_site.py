@@ -68,7 +68,9 @@ def source(tmp_path_factory):
     """The published pages, no motions, and no packages: npm is not asked."""
     cache = tmp_path_factory.mktemp("cache")
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    texts[".csv"] |= {f"programs/{path.name}": path.read_text("utf-8") for path in RESULTS.glob("programs/*.py")}
+    for pattern in ("programs/*.py", "upstream/*.md"):
+        found = RESULTS.glob(pattern)
+        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
     return Source(texts[".md"], texts[".svg"], texts[".csv"], {}, cache, "Made by a test.", CONTRIBUTING, api=False)
 
 

@@ -48,7 +48,9 @@ def files(request):
     given = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
     wanted = {*QUICK, *(each.params.get("lesson") for each in given if each is not None)}
     texts = {suffix: {path.name: path.read_text("utf-8") for path in RESULTS.glob(f"*{suffix}")} for suffix in SUFFIXES}
-    texts[".csv"] |= {f"programs/{path.name}": path.read_text("utf-8") for path in RESULTS.glob("programs/*.py")}
+    for pattern in ("programs/*.py", "upstream/*.md"):
+        found = RESULTS.glob(pattern)
+        texts[".csv"] |= {path.relative_to(RESULTS).as_posix(): path.read_text("utf-8") for path in found}
     answers = {motion: answered(motion) for motion in LESSONS[0].tasks()}
     cache = Path(request.config.cache.mkdir("site"))
     source = Source(texts[".md"], texts[".svg"], texts[".csv"], answers, cache, "Made by a test.", api=False)
