@@ -206,9 +206,12 @@ class MuJoCo(Engine, Valid):
         return MuJoCoRun(model, data, size, plain, divided)
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
-        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps."""
-        return self._model(mechanism, dt, as_text)
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False, unit: Positive | None = None) -> Model:
+        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps.
+
+        `unit`: that of mass [kg], if not `engines.mujoco.model.unit_of_mass`.
+        """
+        return self._model(mechanism, dt, as_text, unit)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
@@ -218,7 +221,7 @@ class MuJoCo(Engine, Valid):
         """
         return as_text(self._model(mechanism, dt, as_text=True), self.stiffness.softening)
 
-    def _model(self, mechanism: Mechanism, dt: float, as_text: bool) -> Model:
+    def _model(self, mechanism: Mechanism, dt: float, as_text: bool, unit: float | None = None) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise else self.integrator
         options = {
@@ -240,6 +243,7 @@ class MuJoCo(Engine, Valid):
             self.rolls,
             self.rods,
             as_text,
+            unit,
         )
         model = build_model(mechanism, dt, settings)
         start = choose_solver(model, self.solvers)

@@ -5,6 +5,7 @@ The judge moves one mechanism at a time: no two cases are of one shape.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +20,7 @@ from engines.remembered import by_identity
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.gate.judge import TABLEAUS, in_numpy
+from reports.gate.judge import TABLEAUS, giving_way, in_numpy, own_inertia, stepped
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
@@ -100,6 +101,8 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         newton = _left_by_newton(engine, mechanism, truth, dt / parts)
         if all(error <= max(bound, newton.get(name, 0.0)) for name, (error, bound) in out.items()):
             raise NotAsked("what is missed is within the tolerance of Newton's method that it declares")
+        out |= _as_declared(engine, mechanism, promise, truth, run, parts)
+    if _misses(out):
         left = _left_by_sweeps(engine, mechanism, truth, dt / parts)
         if not np.isfinite(run.pose).all():
             raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, and says nothing")
@@ -231,6 +234,45 @@ def _resolved(mechanism: Mechanism, promise: Promise, truth: Trajectory, parts: 
     )
 
 
+def _as_declared(
+    engine: Engine, mechanism: Mechanism, promise: Promise, truth: Trajectory, run: Trajectory, parts: int
+) -> dict[str, tuple[float, float]]:
+    """How far a run is from the judge's with joints that give way as declared at its step, and how far it may be.
+
+    A softness that is tied to the step falls with its power only where it is small: a light body's gear that turns a
+    heavy one gives way by a radian, and a row without its term of velocities loses the energy of a short rod's end
+    until the row turns little in its own time constant. The judge's own run shows that, at the same steps, and the
+    engine may be as far from it as its numbers are open: by the steps, which it takes in other coordinates, so as far
+    as half steps lead; and by the compliance, a share of an inverse inertia that an engine takes at the start, or of
+    some estimate, and the judge at each pose: so as far as the largest ratio of two poses' leads. ROOM times these.
+    """
+    spacing = SPAN * mechanism.time_scale / SAMPLES
+    softness = engine.softness(mechanism, spacing / COARSE / parts)
+    if softness is None or not softness.compliance:
+        return {}
+    every, order = parts * COARSE, int(promise.step("angle"))
+
+    def judged_as(compliance: float, finer: int = 1) -> Trajectory:
+        soft = replace(softness, compliance=compliance * softness.compliance)
+        return stepped(mechanism, SAMPLES, spacing, order, finer * every, soft)
+
+    poses = stepped(mechanism, SAMPLES * COARSE, spacing / COARSE, order, parts, softness).pose
+    gives = giving_way(mechanism, softness)
+    own = np.array(
+        [own_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, gives) for rows in mechanism.rows(poses)]
+    )
+    right = judged_as(1.0)
+    others = [
+        _apart(mechanism, each, right, promise)
+        for each in (judged_as(1.0, 2), judged_as(float(np.max(own.max(axis=0) / own.min(axis=0)))))
+    ]
+    apart, least = _apart(mechanism, run, right, promise), _least(engine, mechanism, promise, truth, parts)
+    return {
+        name: (error, max(LEAST[name], least[name], ROOM * max(each[name] for each in others)))
+        for name, error in apart.items()
+    }
+
+
 def _left_by_sweeps(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: float) -> float:
     """Which part r of the slowest mode a step's sweeps leave, where their number is given: 0 for any other engine.
 
@@ -304,13 +346,30 @@ def _given_way(softness: Softness, mechanism: Mechanism, truth: Trajectory) -> f
 
     A row obeys J a = ... - damping slip - stiffness gap - R f with R a share of its own A = J M^-1 J^T: its gap is
     R f / stiffness at most, a blade's slip R f / damping. A light body's row that carries the force of a heavy one
-    gives way far, for its A is large. Joints make the smallest motion of it, M^-1 J^T (J M^-1 J^T)^-1 gap.
+    gives way far, for its A is large. Two rows of a joint are so along axes that rest, as MuJoCo's are: the direction
+    in which a rolling body is stiff, and the one in which it is light, give way alike where they stand at an angle.
+    Joints make the smallest motion of it, M^-1 J^T (J M^-1 J^T)^-1 gap.
     """
-    own = np.sum(mechanism.rows(mechanism.pose) ** 2 / mechanism.inertias.reshape(-1), axis=1)
-    pulled = softness.compliance * own * np.abs(np.nan_to_num(truth.reaction)).max(axis=0)
+    start, *_ = turned = [_along_axes(mechanism, pose) for pose in truth.pose]
+    rows = start @ mechanism.rows(mechanism.pose)
+    own = np.sum(rows**2 / mechanism.inertias.reshape(-1), axis=1)
+    force = [axes @ each for axes, each in zip(turned, np.nan_to_num(truth.reaction), strict=True)]
+    pulled = softness.compliance * own * np.abs(force).max(axis=0)
     gap = pulled / np.where(mechanism.holonomic, softness.stiffness, softness.damping / truth.t[-1])
-    moved = np.abs(response(mechanism.rows(mechanism.pose), mechanism.inertias).motion) @ (gap * softness.rows)
+    moved = np.abs(response(rows, mechanism.inertias).motion) @ (gap * softness.rows)
     return float((moved.reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]).max())
+
+
+def _along_axes(mechanism: Mechanism, pose: Array) -> Array:
+    """What turns rows (rows, rows): the two of a pin, a weld or a roll, which are of two directions, into x and y."""
+    rows, out, begin = mechanism.rows(pose), np.eye(mechanism.row_count), 0
+    for joint in mechanism.joints:
+        straight = begin + np.flatnonzero(~mechanism.turning[begin : begin + joint.size])
+        begin += joint.size
+        if len(straight) == 2:
+            place = 3 * mechanism.body_index(joint.second or "")
+            out[np.ix_(straight, straight)] = rows[straight, place : place + 2].T
+    return out
 
 
 def _rounded_gaps(softness: Softness, mechanism: Mechanism) -> float:
