@@ -72,6 +72,7 @@ class Model:
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
     written_as: Written | None = None  # the model as text, where that was asked for
+    softening: float | None = None  # of its rows, where that is not what was asked for
 
     @contextmanager
     def hooked(self) -> Iterator[None]:

@@ -200,8 +200,10 @@ def _refuse_what_is_huge(mechanism: Mechanism, model: Model, start: Any, softnes
     motion = TRUTH.build(mechanism, dt)(STEPS, 1)
     if motion.unresolved_at is not None:
         raise NotAsked("the judge itself does not hold what follows, as it says")
-    needed, turned = [rounding], np.abs(np.diff(motion.pose[..., 2], axis=0)).max(axis=1)
-    if np.any(turned > 1):  # within a step and to an end, of which both its ends say nothing
+    # Within a step something accelerates by its mean, or more.
+    needed = [rounding, *np.nan_to_num(np.diff(motion.twist, axis=0) / dt)]
+    turned = np.abs(np.diff(motion.pose[..., 2], axis=0)).max(axis=1)
+    if np.any(turned > 1):  # of which neither end of a step may say anything
         raise NotAsked("steps are too long for what turns soon after the start")
     for pose, twist in zip(motion.pose, motion.twist, strict=True):
         if np.isfinite(pose).all():
@@ -308,6 +310,8 @@ class Instant:
         all that hangs on it, about the centre of mass of the tree, times accelerations that add up joint by joint, and
         joints may move against each other: a light body far away is lost there. Of n coordinates the solution rounds
         3 n + 1 times (Higham 2002, theorem 10.4), and sums along the tree, and each of what is added, n + 3 times.
+        A body's velocity adds a torque v x m v, of the velocity at that centre of mass: its parts, m v^2, cancel but
+        for their rounding, which turns a fast body (Featherstone 2008, equation 2.70).
         """
         mechanism, data, unit = self.mechanism, self.data, ROUNDINGS * np.finfo(float).eps
         rows, right, law = mechanism.rows(self.pose), mechanism.bias(self.pose, self.twist) + self.aimed, self.law()
@@ -320,15 +324,18 @@ class Instant:
         moved, turned = self._along_chains(law.motion[:, :2]), self._along_chains(law.motion[:, 2:])
         turned += self._along_chains(self.twist[:, 2:]) ** 2
         hanging, pushed, torque = mass.copy(), mass * (moved + far * turned), mass * far * (moved + far * turned)
+        crossed = mass * (np.hypot(self.twist[:, 0], self.twist[:, 1]) + far * np.abs(self.twist[:, 2])) ** 2
         joined = np.zeros(len(mass))
         for link in reversed(self.model.tree.links):  # what hangs on a body is added to its own
             joined[link.body] = far[link.body] + math.hypot(*link.anchor)
             if link.parent is not None:
-                for each in (hanging, pushed, torque):
+                for each in (hanging, pushed, torque, crossed):
                     each[link.parent] += each[link.body]
         torque += hanging * joined * (moved + joined * turned)
         summed = np.stack([pushed, pushed, torque], axis=1) * (5 * self.model.compiled.nv + 7) / ROUNDINGS
-        summed[:, 2] += places * (touched.T @ np.abs(law.force) + mass * np.hypot(self.free[:, 0], self.free[:, 1]))
+        summed[:, 2] += crossed + places * (
+            touched.T @ np.abs(law.force) + mass * np.hypot(self.free[:, 0], self.free[:, 1])
+        )
         doubt = unit * gap, unit * summed
         least = rounded(rows, law, right, mechanism.inertias, self.free, self.give, doubt)
         return Constrained(least.motion / LAW, least.force / LAW)
@@ -356,11 +363,21 @@ class Instant:
         return difference(self.mechanism, change, (law or self.law()).motion, others)
 
     def missed_force(self, reaction: Array) -> float:
-        """By what reactions (rows,) miss the law, relative to the largest force."""
-        force = driving_force(self.mechanism, self.twist)
-        size = np.where(self.mechanism.turning, 1 / self.mechanism.length_scale, 1.0)
-        others = (force, float((self.floor.force * size).max(initial=0.0)))
-        return force_difference(self.mechanism, reaction, self.law().force, others)
+        """By what reactions (rows,) miss the law, relative to the largest force.
+
+        They are read from accelerations (`reference.rows.reactions`), by the SVD of a matrix A, M^(-1/2) J^T with its
+        columns made equally long. That rounds A by eps |A|, so a solution x by eps |x| over the smallest singular value
+        (Higham 2002, section 20.1), which a light body makes small that many rows turn over long arms.
+        """
+        mechanism, law = self.mechanism, self.law()
+        matrix = (mechanism.rows(self.pose) / np.sqrt(mechanism.inertias.reshape(-1))).T
+        long = np.linalg.norm(matrix, axis=0)
+        _, singular, right = np.linalg.svd(matrix / long, full_matrices=False)
+        read = np.linalg.norm(right.T / singular, axis=1) / long * float(np.linalg.norm(law.force * long))
+        rounded = self.floor.force + ROUNDINGS * np.finfo(float).eps / LAW * read
+        size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
+        others = (driving_force(mechanism, self.twist), float((rounded * size).max(initial=0.0)))
+        return force_difference(mechanism, reaction, law.force, others)
 
 
 def _motion(model: Model, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
