@@ -8,12 +8,14 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Engine, Promise, Softness, Unpromised
 from engines.exudyn import Exudyn
 from engines.lagrange import HELD, TRUTH
+from engines.mujoco import MuJoCo
 from engines.pymunk import Pymunk
 from engines.pymunk.contraction import contraction_at
 from engines.remembered import by_identity
@@ -21,6 +23,7 @@ from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.gate.judge import TABLEAUS, giving_way, in_numpy, own_inertia, stepped
+from reports.search.instant_mujoco import directions
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
@@ -289,14 +292,17 @@ def _left_by_sweeps(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
 
 
 def _left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: float) -> dict[str, float]:
-    """What Newton's method of Exudyn may leave in motions and reactions, as parts of them; nothing of another engine.
+    """What Newton's method of MuJoCo or Exudyn may leave in motions and reactions, as parts of them; 0 of any other.
 
-    It ends where one norm of what is left of forces [N], torques [N m] and what is held [m or rad; of index 2 as rates]
-    is below `relative` times what it begins with, which is about the largest force, and `absolute`, in the engine's own
-    units. A light body then accelerates by that over its mass, for the whole motion; and of a gap that is left in a
-    step the next one makes an acceleration 1 / (beta dt^2) times as large, beta = 1/4 or above, of a rate 2 / dt.
+    Exudyn's ends where one norm of what is left of forces [N], torques [N m] and what is held [m or rad; of index 2 as
+    rates] is below `relative` times what it begins with, which is about the largest force, and `absolute`, in the
+    engine's own units. A light body then accelerates by that over its mass, for the whole motion; and of a gap that is
+    left in a step the next one makes an acceleration 1 / (beta dt^2) times as large, beta = 1/4 or above, of a rate 2 /
+    dt.
     """
     own = engine.within(mechanism)
+    if isinstance(own, MuJoCo):
+        return {"motion": _left_by_mujoco(own, mechanism, dt) / _size(mechanism, truth, Promise(1))}
     if not isinstance(own, Exudyn):
         return {}
     length, mass, seconds = 1.0, 1.0, 1.0
@@ -319,6 +325,17 @@ def _left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
         "motion": float(moved.max()) / _size(mechanism, truth, Promise(1)),
         "reactions": float((pulled * arms).max(initial=0.0)) / largest,
     }
+
+
+def _left_by_mujoco(engine: MuJoCo, mechanism: Mechanism, dt: float) -> float:
+    """How far bodies go [m] by accelerations of mjMINVAL, 1e-15 in m/s^2 and rad/s^2, in every coordinate of its tree.
+
+    MuJoCo's solver takes no step that is shorter, whatever the tolerance. From one step of the integrator to the next,
+    which begins where the last one ended, slow accelerations change by less.
+    """
+    model = engine.model(mechanism, dt)
+    moved = np.abs(directions(model, model.start())).sum(axis=1).reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]
+    return float(moved.max()) * mujoco.mjMINVAL * (SPAN * mechanism.time_scale) ** 2 / 2
 
 
 def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
