@@ -335,13 +335,18 @@ def add_placeholders(building: Building) -> None:
 def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[WrittenJoint], softening: float
 ) -> Callback:
-    """What writes the joints' rows, the model's last equalities, each as soft as its own inverse inertia says."""
+    """What writes the joints' rows, the model's last equalities, each as soft as its own inverse inertia says.
+
+    The two of a joint are alike, by their mean: else how they give way would depend on the axes that they are along.
+    """
     data = mujoco.MjData(compiled)
     mujoco.mj_fwdPosition(compiled, data)
     jacobian, _ = RowWriter(tree, address, joints).rows(data.qpos, data.qvel)
     moved = np.empty_like(jacobian)
     mujoco.mj_solveM(compiled, data, moved, jacobian)
-    for number, inverse in enumerate(np.sum(jacobian * moved, axis=1)):
+    inverses, size = np.sum(jacobian * moved, axis=1), [joint.size for joint in joints]
+    alike = np.repeat([part.mean() for part in np.split(inverses, np.cumsum(size)[:-1])], size)
+    for number, inverse in enumerate(alike):
         compiled.tendon_invweight0[compiled.tendon(PLACEHOLDER.format(number)).id] = softening * inverse
     sizes = {int(mujoco.mjtEq.mjEQ_CONNECT): 3, int(mujoco.mjtEq.mjEQ_WELD): 6}
     first_row = sum(sizes.get(int(kind), 1) for kind in compiled.eq_type) - len(jacobian)

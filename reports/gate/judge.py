@@ -70,7 +70,7 @@ def giving_way(mechanism: Mechanism, soft: Softness) -> NDArray[np.bool_]:
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
 
-def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
+def own_inertia(matrix: Array, gives: NDArray[np.bool_], least: float = REDUNDANT) -> Array:
     """What each soft row feels while the rigid ones hold: the diagonal of the Schur complement (rows,)."""
     out = np.diag(matrix).copy()
     if not gives.all():
@@ -78,11 +78,11 @@ def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
         coupled = matrix[np.ix_(rigid, soft)]
         out[soft] -= np.einsum("ij,ij->j", coupled, solved(matrix[np.ix_(rigid, rigid)], coupled))
     # Of a row that others hold already nothing would be left; engines take an estimate that knows no others.
-    return np.maximum(out, REDUNDANT * np.diag(matrix))
+    return np.maximum(out, least * np.diag(matrix))
 
 
 def multipliers(
-    mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None
+    mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None, least: float = REDUNDANT
 ) -> tuple[Array, Array]:
     """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones: see `giving_way`."""
     free = mechanism.unconstrained(pose, twist)
@@ -98,7 +98,7 @@ def multipliers(
             right = np.where(gives, -rows @ free.reshape(-1), right)
         gap = np.nan_to_num(mechanism.gap(pose, t))
         right = right - gives * (soft.damping * mechanism.slip(pose, twist) + soft.stiffness * gap)
-        matrix = matrix + soft.compliance * np.diag(gives * own_inertia(matrix, gives))
+        matrix = matrix + soft.compliance * np.diag(gives * own_inertia(matrix, gives, least))
     reaction = solved(matrix, right)
     return free + (weighted.T @ reaction).reshape(-1, 3), reaction
 
@@ -221,6 +221,7 @@ def in_numpy(
     every: int,
     soft: Softness | None = None,
     project: bool = False,
+    least: float = REDUNDANT,
 ) -> Trajectory:
     """A mechanism's motion from its start, samples `spacing` [s] apart, by the steps of this module alone.
 
@@ -238,7 +239,7 @@ def in_numpy(
         for i, node in enumerate(nodes):
             velocity[i] = twist + dt * np.tensordot(stages[i, :i], acceleration[:i], 1)
             at = pose + dt * np.tensordot(stages[i, :i], velocity[:i], 1)
-            acceleration[i], reaction = multipliers(mechanism, at, velocity[i], t + node * dt, soft)
+            acceleration[i], reaction = multipliers(mechanism, at, velocity[i], t + node * dt, soft, least)
             if i == 0 and step % every == 0:
                 poses[step // every], twists[step // every], reactions[step // every] = pose, twist, reaction
         twist = twist + dt * np.tensordot(weights, acceleration, 1)

@@ -67,8 +67,9 @@ def declared(
     in_tree = rows @ directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
     length = np.where(mechanism.turning, 1.0, mechanism.length_scale)
-    # What the coordinates of the tree can't move at all is held by them.
-    loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length
+    # What the coordinates of the tree can't move, but by rounding of arms, is held by them.
+    rounding = ROUNDINGS * np.finfo(float).eps * float(np.abs(pose[:, :2]).max())
+    loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
     lines = jacobian(mujoco, compiled, data)
     seen, beside = model.address, [column for column in range(compiled.nv) if column not in model.address]
     waiting = [number for number, line in enumerate(lines) if np.linalg.norm(line) > SAME_ROW]  # one lies across
@@ -235,6 +236,17 @@ def solved(engine: MuJoCo) -> MuJoCo:
     a tenth of all. Springs alone cost a parabola, which one step of Newton's solves; friction does not.
     """
     return replace(engine, tolerance=min(engine.tolerance, ROUNDED**2))
+
+
+def left_by_its_solver(engine: MuJoCo, mechanism: Mechanism, dt: float, seconds: float) -> float:
+    """How far bodies go [m] by accelerations of mjMINVAL, 1e-15 in m/s^2 and rad/s^2, in every coordinate of the tree.
+
+    MuJoCo's solver takes no step that is shorter, whatever the tolerance. From one step of the integrator to the next,
+    which begins where the last one ended, slow accelerations change by less.
+    """
+    model = engine.model(mechanism, dt)
+    moved = np.abs(directions(model, model.start())).sum(axis=1).reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]
+    return float(moved.max()) * mujoco.mjMINVAL * seconds**2 / 2
 
 
 def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> None:
