@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -78,9 +79,10 @@ def test_a_light_body_beside_a_heavy_one_feels_its_gear():
     wheel = Body("wheel", 0.5, 5e-7, (1e-3, 0.0, 0.0))
     pin = Pin("pin", None, "small", (-2e-3, 0.0), (-2e-3, 0.0))
     mechanism = Mechanism((small, large, wheel), (pin, Gear("gear", "small", "wheel", 3.0, 0.0)), gravity=(0.0, -9.81))
-    model, held = DEFAULT.model(mechanism, 1e-3)
+    engine = replace(DEFAULT, settings=replace(DEFAULT.settings, tolerance=1e-28))
+    model, held = engine.model(mechanism, 1e-3)
     start = model.start()
-    assert DEFAULT.accelerations(model, held, start) == pytest.approx(start.qacc, rel=1e-9)
+    assert engine.accelerations(model, held, start) == pytest.approx(start.qacc, rel=1e-9)
 
 
 @pytest.mark.slow
