@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from engines import Engine, Promise, Softness, Unpromised
 from engines.exudyn import Exudyn
 from engines.lagrange import HELD, TRUTH
+from engines.pinocchio import Pinocchio
 from engines.pymunk import Pymunk
 from engines.pymunk.contraction import contraction_at
 from engines.remembered import by_identity
+from engines.tree import spanning_tree
 from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -23,13 +25,16 @@ from reports.gate.judge import TABLEAUS, in_numpy
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
+    Constrained,
     Fault,
     NotAsked,
     carried,
     difference,
     driving_force,
     force_difference,
+    ideal,
     response,
+    rounded,
     turned_in_a_step,
     written,
 )
@@ -44,9 +49,11 @@ ROOM = 2.5
 # Relative to the motion: rounding, that of combined runs and of a drive which a large inertia holds.
 LEAST = {"motion": 1e-8, "reactions": 1e-5}
 # An order shows where steps are short against all that happens: a rod that turns fast, impulses that settle in many
-# steps, a gap that is closed in a time of its own. So they are halved, up to this many parts, until it shows for poses
-# and for reactions; an error that was small by chance does not count against the next. What never falls is a fault, as
-# rounding that grows with shorter steps excuses no more than it does at the first.
+# steps, a gap that is closed in a time of its own. So they are halved, up to this many parts, until it shows for
+# poses and for reactions; an error that was small by chance does not count against the next. What never falls is a
+# fault, as rounding that grows with shorter steps excuses no more than it does at the first. A step at which the
+# motion is lost, as anybody sees, is too long, if it is right at shorter ones: kept impulses of rows that turn within
+# it grow, say.
 FINEST = 64
 LOST = 10.0  # times the motion: nothing is left of it, whatever a coarser step gives
 OFF = 0.1  # of a radian, or of the mechanism's length: forces of poses that far away are other forces
@@ -62,7 +69,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.touches:
         raise NotAsked("shapes that touch may part, and those with corners do not roll as the curves do, at any step")
     dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
-    coarse = _run(engine, mechanism, dt, COARSE)
+    coarse = engine.build(mechanism, dt)(SAMPLES, COARSE)
     promise = engine.order(mechanism)
     if isinstance(promise, Unpromised):
         raise NotAsked(f"no order is promised: {promise.reason}")
@@ -78,7 +85,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
     out: dict[str, tuple[float, float]] = {}
     parts, run, warned, silent, longest = 1, coarse, False, 0, 0
     while parts < FINEST and (not out or _misses(out)):
-        finer = _run(engine, mechanism, dt / (2 * parts), 2 * parts * COARSE)
+        finer = engine.build(mechanism, dt / (2 * parts))(SAMPLES, 2 * parts * COARSE)
         if not out and (coarse.warnings or finer.warnings):
             raise NotAsked("it says itself that something is wrong")
         parts *= 2
@@ -92,17 +99,19 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         if apart["motion"] * _size(mechanism, truth, promise) > OFF * mechanism.length_scale:
             least["reactions"] = LOST
         for name, error in apart.items():
-            if least[name] < LOST and (name not in out or not out[name][0] <= out[name][1]):
+            known = least[name] < LOST and (coarser[name] < LOST or parts == FINEST)
+            if known and (name not in out or not out[name][0] <= out[name][1]):
                 out[name] = (error, _may_be(promise, name, coarser[name], least[name]))
-    if _misses(out):
+    newton = _shares(mechanism, truth, promise, left_by_newton(engine, mechanism, truth, dt / parts))
+    lost = not np.isfinite(run.pose).all()
+    if lost or _misses(out):
         if warned and longest < 2:  # what two steps after each other say nothing of is silent
             raise NotAsked("it says itself, at shorter steps, that something is wrong")
-        newton = _left_by_newton(engine, mechanism, truth, dt / parts)
-        if all(error <= max(bound, newton.get(name, 0.0)) for name, (error, bound) in out.items()):
-            raise NotAsked("what is missed is within the tolerance of Newton's method that it declares")
         left = _left_by_sweeps(engine, mechanism, truth, dt / parts)
-        if not np.isfinite(run.pose).all():
+        if lost:
             raise Fault(f"at a step of {dt / parts:.3g} s it lost the motion, and says nothing")
+        if all(error <= max(bound, newton[name]) for name, (error, bound) in out.items()):
+            raise NotAsked("what is missed is within the tolerance of Newton's method that it declares")
         if not _resolved(mechanism, promise, truth, max(4, int(parts * (1 - left)))):
             raise NotAsked("something passes within a step: a textbook method shows no order at these steps either")
     if run.estimate is not None:
@@ -110,7 +119,7 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
         both = max(float(np.abs(each * size).max()) for each in (run.estimate, truth.estimate) if each is not None)
         told = both / _size(mechanism, truth, promise)  # the judge may miss as much as it says, too
         missed = _apart(mechanism, run, truth, promise)["motion"]
-        out["estimate"] = (missed, min(ESTIMATED * told + LEAST["motion"], LOST))
+        out["estimate"] = (missed, min(ESTIMATED * told + LEAST["motion"] + newton["motion"], LOST))
     return out
 
 
@@ -118,15 +127,6 @@ def errors(engine: Engine, mechanism: Mechanism) -> dict[str, tuple[float, float
 def judged(mechanism: Mechanism) -> Trajectory:
     """What the judge says of a mechanism, which many engines are asked about."""
     return TRUTH.build(mechanism, SPAN * mechanism.time_scale / SAMPLES)(SAMPLES, 1)
-
-
-def _run(engine: Engine, mechanism: Mechanism, dt: float, every: int) -> Trajectory:
-    """Settings as shipped know no step that is too long: they may lose a motion with all but the finest."""
-    run = engine.build(mechanism, dt)(SAMPLES, every)
-    lost = not np.isfinite(run.pose).all() and engine.variant != "default"
-    if lost and not run.warnings and run.reset_at is None:
-        raise Fault(f"at a step of {dt:.3g} s it lost the motion, and says nothing")
-    return run
 
 
 def _size(mechanism: Mechanism, truth: Trajectory, promise: Promise) -> float:
@@ -158,11 +158,22 @@ def _apart(mechanism: Mechanism, run: Trajectory, truth: Trajectory, promise: Pr
     return {"motion": max(moved), "reactions": max(pulled)}
 
 
+def _shares(mechanism: Mechanism, truth: Trajectory, promise: Promise, off: Constrained) -> dict[str, float]:
+    """What poses (bodies, 3) and forces (rows,) are off by, as parts of the motion and of the largest force."""
+    moved = np.abs(off.motion * [1.0, 1.0, mechanism.length_scale]).max()
+    pulled = np.abs(off.force * np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)).max(initial=0.0)
+    return {
+        "motion": float(moved) / _size(mechanism, truth, promise),
+        "reactions": float(pulled) / _force_size(mechanism, truth),
+    }
+
+
 def _force_size(mechanism: Mechanism, truth: Trajectory) -> float:
-    """The largest force [N] that the motion has to do with."""
+    """The largest force [N] that the motion has to do with; a reaction that is NaN is none that is known."""
     force = max(driving_force(mechanism, twist) for twist in truth.twist)
     size = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
-    return max(force, float(np.abs(truth.reaction * size).max(initial=0.0)), np.finfo(float).tiny)
+    reaction = np.abs(np.nan_to_num(truth.reaction) * size)
+    return max(force, float(reaction.max(initial=0.0)), np.finfo(float).tiny)
 
 
 def _moves(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> list[tuple[Array, Array]]:
@@ -184,8 +195,11 @@ def _least(engine: Engine, mechanism: Mechanism, promise: Promise, truth: Trajec
     """What errors may be in a run whose steps are these parts of the coarse one: of rounding, and of declared give."""
     dt = SPAN * mechanism.time_scale / SAMPLES / COARSE
     size, force = _size(mechanism, truth, promise), _force_size(mechanism, truth)
-    motion = _drifted(mechanism, truth, SAMPLES * COARSE * parts) / size
     reactions = _rounded_reactions(mechanism, promise, truth, dt / 2)
+    motion = _drifted(mechanism, truth, SAMPLES * COARSE * parts) / size
+    if isinstance(engine, Pinocchio):
+        summed = _shares(mechanism, truth, promise, _rounded_about_origin(mechanism, truth))
+        motion, reactions = max(motion, summed["motion"]), max(reactions, summed["reactions"])
     softness = engine.softness(mechanism, dt / parts)
     if softness is not None:
         if softness == engine.softness(mechanism, dt):  # else it is tied to the step, and so to the promised order
@@ -246,8 +260,8 @@ def _left_by_sweeps(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
     return left
 
 
-def _left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: float) -> dict[str, float]:
-    """What Newton's method of Exudyn may leave in motions and reactions, as parts of them; nothing of another engine.
+def left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt: float) -> Constrained:
+    """What Newton's method of Exudyn may leave in motions (bodies, 3) and reactions (rows,); nothing of another engine.
 
     It ends where one norm of what is left of forces [N], torques [N m] and what is held [m or rad; of index 2 as rates]
     is below `relative` times what it begins with, which is about the largest force, and `absolute`, in the engine's own
@@ -256,14 +270,14 @@ def _left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
     """
     own = engine.within(mechanism)
     if not isinstance(own, Exudyn):
-        return {}
+        return Constrained(np.zeros_like(mechanism.pose), np.zeros(mechanism.row_count))
     length, mass, seconds = 1.0, 1.0, 1.0
     if own.own_units:
         length, seconds = mechanism.length_scale, mechanism.time_scale
         mass = max(body.mass for body in mechanism.bodies)
     newton, largest = mass * length / seconds**2, _force_size(mechanism, truth)
     left = own.relative * largest * max(1.0, mechanism.length_scale / length) / newton + own.absolute
-    rows, lasts = mechanism.rows(mechanism.pose), SPAN * mechanism.time_scale
+    rows, lasts = mechanism.rows(mechanism.pose), truth.t[-1]
     back, light = response(rows, mechanism.inertias), 1 / mechanism.inertias.reshape(-1)
     force = np.tile([left * newton, left * newton, left * newton * length], len(mechanism.bodies))
     gap = left * np.where(mechanism.turning, 1.0, length)
@@ -271,12 +285,7 @@ def _left_by_newton(engine: Engine, mechanism: Mechanism, truth: Trajectory, dt:
     rates = own.integrator == "TrapezoidalIndex2"
     held = np.abs(back.motion) @ gap * (lasts / seconds if rates else 1.0)
     pulled = np.abs(back.force) @ gap * (2 / dt / seconds if rates else 4 / dt**2)
-    moved = (pushed + held).reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]
-    arms = np.where(mechanism.turning, 1 / mechanism.length_scale, 1.0)
-    return {
-        "motion": float(moved.max()) / _size(mechanism, truth, Promise(1)),
-        "reactions": float((pulled * arms).max(initial=0.0)) / largest,
-    }
+    return Constrained((pushed + held).reshape(-1, 3), pulled)
 
 
 def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
@@ -297,6 +306,32 @@ def _drifted(mechanism: Mechanism, truth: Trajectory, steps: int) -> float:
         carried = (steps * np.abs(np.eye(len(held)) - held) + np.abs(held)) @ numbers.reshape(-1)
         worst = max(worst, float((carried.reshape(-1, 3) * turn).max()))
     return np.finfo(float).eps * worst
+
+
+def _rounded_about_origin(mechanism: Mechanism, truth: Trajectory) -> Constrained:
+    """What poses (bodies, 3) and reactions (rows,) lose in Pinocchio, which adds up forces in the world's frame.
+
+    For a body and all that hangs on it in the tree it sums m (a - g) and what acts [N], and their torques about the
+    world's origin, F |p|. These are rounded, u = eps of the sums, and act on the body as forces: with `rounded`
+    da = S M^-1 u, of which the motion is da t^2 / 2, and df = A^-1 J M^-1 u.
+    """
+    links = spanning_tree(mechanism).links
+    moved, pulled = np.zeros_like(mechanism.pose), np.zeros(mechanism.row_count)
+    for pose, twist in zip(truth.pose, truth.twist, strict=True):
+        law = ideal(mechanism, pose, twist)
+        acting = np.abs(mechanism.unconstrained(pose, twist)) + np.abs(law.motion)
+        summed = np.abs(mechanism.inertias * acting)
+        summed[:, :2] = np.hypot(summed[:, 0], summed[:, 1])[:, None]
+        summed[:, 2] += summed[:, 0] * np.hypot(pose[:, 0], pose[:, 1])
+        for link in reversed(links):
+            if link.parent is not None:
+                summed[link.parent] += summed[link.body]
+        rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
+        doubt = np.zeros(len(rows)), ROUNDINGS * np.finfo(float).eps * summed
+        free, give = mechanism.unconstrained(pose, twist), np.zeros((len(rows), 0))
+        off = rounded(rows, law, bias, mechanism.inertias, free, give, doubt)
+        moved, pulled = np.maximum(moved, off.motion), np.maximum(pulled, off.force)
+    return Constrained(moved * truth.t[-1] ** 2 / 2, pulled)
 
 
 def _given_way(softness: Softness, mechanism: Mechanism, truth: Trajectory) -> float:
