@@ -12,6 +12,10 @@ inverse square of its time constant. So where that is tied to the step, the erro
 MuJoCo's own: the free four-bar with RK4 at 1e-3 s is 7.40e-4 rad off with two steps, as MuJoCo before 3.7 is, and
 4.58e-3 rad with the five of our tuned variant.
 
+Its solver ends where no part of what is left of the forces is above 1e-8, whatever the tolerance: `mjx.math.norm` takes
+such a vector for zero. That number has a unit, so the model is in a small one of mass: in that of `mujoco`, about the
+whole mechanism's, light bodies beside heavy ones would never feel a gear.
+
 A program is compiled for each model, 5 s to half a minute: that is building and not stepping. JAX keeps it for models
 of the same structure, numbers apart; and for other processes in the user's cache folder, or where the environment's
 JAX_COMPILATION_CACHE_DIR says. It is told to use the processor alone, one thread, and doubles, before it is imported.
@@ -40,7 +44,7 @@ from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco.engine import MuJoCo
 from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
-from engines.mujoco.model import Model
+from engines.mujoco.model import Model, unit_of_mass
 from engines.single_run import Optional, Recorded, SingleRun, quiet, tree_states
 from engines.tree import Tree, spanning_tree
 from engines.user_cache import cache_folder
@@ -51,6 +55,8 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 EVALUATION_COST = 50e-6  # s, with three bodies, once compiled
+# Smaller than C MuJoCo's unit of mass by this, a power of two: a compliance of 1e-4 is still far above mjMINVAL.
+LIGHTER = 2.0**27
 NO_VELOCITY_TERM = "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step"
 
 
@@ -108,7 +114,7 @@ class Mjx(Optional):
                 what = f"a {type(joint).__name__.lower()} needs a contact, and our adapter of MJX builds none"
                 raise Unsupported(f"joint {joint.name!r}: {what}")
         self.require()
-        model = self.settings.model(mechanism, dt)
+        model = self.settings.model(mechanism, dt, unit=unit_of_mass(mechanism) / LIGHTER)
         if model.hooks.control or model.hooks.before:
             raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
         try:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -169,7 +170,8 @@ class MuJoCo(Engine, Valid):
         ):
             damping = slip_damping(mechanism)  # which such a row brings along, whatever the springs of loops have
         # The impedance of a gap of a millimetre and more; as shipped a closed gap is about twice as soft.
-        compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * stiffness.softening
+        softening = stiffness.softening if stiffness is not self.stiffness else self._softening(mechanism, dt)
+        compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(which for joint, which in zip(mechanism.joints, soft, strict=True) for _ in range(joint.size))
         return Softness(gain, damping, compliance, rows, complete=not lacking)
 
@@ -206,9 +208,12 @@ class MuJoCo(Engine, Valid):
         return MuJoCoRun(model, data, size, plain, divided)
 
     @validated
-    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False) -> Model:
-        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps."""
-        return self._model(mechanism, dt, as_text)
+    def model(self, mechanism: Mechanism, dt: Positive, as_text: bool = False, unit: Positive | None = None) -> Model:
+        """The compiled model alone; `as_text`: from text of ours with all digits, in kg, which `written_as` keeps.
+
+        `unit`: that of mass [kg], if not `engines.mujoco.model.unit_of_mass`.
+        """
+        return self._model(mechanism, dt, as_text, unit)
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
@@ -218,7 +223,7 @@ class MuJoCo(Engine, Valid):
         """
         return as_text(self._model(mechanism, dt, as_text=True), self.stiffness.softening)
 
-    def _model(self, mechanism: Mechanism, dt: float, as_text: bool) -> Model:
+    def _model(self, mechanism: Mechanism, dt: float, as_text: bool, unit: float | None = None) -> Model:
         stepwise = self.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints)
         integrator = "Euler" if stepwise else self.integrator
         options = {
@@ -240,12 +245,20 @@ class MuJoCo(Engine, Valid):
             self.rolls,
             self.rods,
             as_text,
+            unit,
         )
         model = build_model(mechanism, dt, settings)
         start = choose_solver(model, self.solvers)
         if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
-            ease(model, self.stiffness.softening, start)
+            return replace(model, softening=ease(model, self.stiffness.softening, start))
         return model
+
+    def _softening(self, mechanism: Mechanism, dt: float) -> float:
+        """By how much rows give way more than as shipped: of those that are eased only a model tells it."""
+        if isinstance(self.stiffness, Hardened) and self.stiffness.eased:
+            with suppress(Unsupported):
+                return self.model(mechanism, dt).softening or self.stiffness.softening
+        return self.stiffness.softening
 
 
 def _refuse_what_is_huge(data: Any) -> None:

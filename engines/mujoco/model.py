@@ -52,6 +52,7 @@ class Settings:
     rolls: RollBy
     rods: RodBy
     as_text: bool = False  # write it as text with all digits, masses in kg
+    unit: float | None = None  # kg: of mass, if not `unit_of_mass`
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ class Model:
     unit: float = 1.0  # kg: masses, forces and torques in the compiled model are in this
     halves: tuple[tuple[str, int], ...] = ()  # bodies of the model alone, and the one that each is a part of
     written_as: Written | None = None  # the model as text, where that was asked for
+    softening: float | None = None  # of its rows, where that is not what was asked for
 
     @contextmanager
     def hooked(self) -> Iterator[None]:
@@ -115,7 +117,7 @@ class Model:
 
 def build_model(mechanism: Mechanism, dt: float, settings: Settings) -> Model:
     """Compile a mechanism for steps of dt [s]. Raises Unsupported for a joint with no counterpart here."""
-    whole, unit = mechanism, 1.0 if settings.as_text else unit_of_mass(mechanism)
+    whole, unit = mechanism, 1.0 if settings.as_text else settings.unit or unit_of_mass(mechanism)
     mechanism = counted_in(mechanism, unit)
     for joint in mechanism.joints:
         if not isinstance(joint, Pin | Slot | Weld | Rod | Gear | Drive | Skate | Roll):

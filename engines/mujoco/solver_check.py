@@ -88,8 +88,10 @@ def _lost(compiled: Any, data: Any) -> float:
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 
-def ease(model: Model, softening: float, start: Any) -> None:
+def ease(model: Model, softening: float, start: Any) -> float:
     """Let every row give way tenfold, up to as shipped, until Newton's iterations lose no more than LOST in rounding.
+
+    Returns the softening that this leads to.
 
     `start`: a mujoco.MjData at the start, solved by the model's solver. `softening` is by how much rows are harder than
     as shipped. A compliance of 1e-12 of a row's own inverse inertia is too little where a light body carries a heavy
@@ -97,12 +99,13 @@ def ease(model: Model, softening: float, start: Any) -> None:
     """
     compiled = model.compiled
     if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not unsolved(compiled, start) < SOLVED:
-        return
+        return softening
     while softening < 1 and not mujoco.mj_isSparse(compiled) and _lost(compiled, start) > LOST:
         softening *= 10
         for scale in (compiled.body_invweight0, compiled.dof_invweight0, compiled.tendon_invweight0):
             scale[:] *= 10
         start = model.start()
+    return softening
 
 
 def choose_solver(model: Model, solvers: Sequence[str]) -> Any:

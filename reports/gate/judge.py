@@ -64,6 +64,12 @@ def solved(matrix: Array, right: Array) -> Array:
     return np.linalg.pinv(matrix, rcond=RANK_TOLERANCE, hermitian=True) @ right
 
 
+def giving_way(mechanism: Mechanism, soft: Softness) -> NDArray[np.bool_]:
+    """Which rows give way (rows,): those declared, but a drive only if its row has a compliance. Else it is held by its
+    rate, and no spring pulls it to an angle."""
+    return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
+
+
 def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
     """What each soft row feels while the rigid ones hold: the diagonal of the Schur complement (rows,)."""
     out = np.diag(matrix).copy()
@@ -78,7 +84,7 @@ def own_inertia(matrix: Array, gives: NDArray[np.bool_]) -> Array:
 def multipliers(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, soft: Softness | None
 ) -> tuple[Array, Array]:
-    """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones; drives are never soft."""
+    """Accelerations (bodies, 3) and reactions (rows,) of ideal joints, or of soft ones: see `giving_way`."""
     free = mechanism.unconstrained(pose, twist)
     if not mechanism.row_count:
         return free, np.zeros(0)
@@ -87,7 +93,7 @@ def multipliers(
     matrix = weighted @ rows.T
     right = mechanism.bias(pose, twist) - rows @ free.reshape(-1)
     if soft is not None:
-        gives = np.array(soft.rows) & ~np.isnan(mechanism.rate) & (mechanism.rate == 0)
+        gives = giving_way(mechanism, soft)
         if not soft.complete:
             right = np.where(gives, -rows @ free.reshape(-1), right)
         gap = np.nan_to_num(mechanism.gap(pose, t))
@@ -160,7 +166,7 @@ def _machine(mechanism: Mechanism, soft: Softness | None) -> Machine | None:
     """The compiled mechanism, with joints that give way where a softness is given; None without numba."""
     machine = Machine.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
-        machine.soften(soft, np.array(soft.rows) & (mechanism.rate == 0))
+        machine.soften(soft, giving_way(mechanism, soft))
     return machine
 
 

@@ -257,10 +257,11 @@ def _in_units(engine: Engine, recipe: Recipe, mechanism: Mechanism, decades: tup
     longer, heavier = decades
     of_length, of_mass, of_time = recipe.decades
     other, length = build(replace(recipe, decades=(of_length + longer, of_mass + heavier, of_time))), 10.0**longer
-    if abs(other.length_scale / (length * mechanism.length_scale) - 1) > SAME:
+    unit = np.array([length, length, 1.0])
+    begins = difference(mechanism, other.twist / unit, mechanism.twist)
+    if max(begins, abs(other.length_scale / (length * mechanism.length_scale) - 1)) > SAME:
         raise NotAsked("no joint has an arm: a metre stands for the mechanism's length, whatever the unit")
     run = _run(engine, other)
-    unit = np.array([length, length, 1.0])
     return _apart(mechanism, engine, run.pose[-1] / unit, run.twist[-1] / unit, other, run)
 
 

@@ -200,7 +200,7 @@ def _instant(
         case MuJoCo():
             bound, found = instant_mujoco.bound(engine), instant_mujoco.errors(engine, mechanism)
         case Mjx():
-            bound, found = instant_mujoco.mjx_bound(engine), instant_mujoco.mjx_errors(engine, mechanism)
+            bound, found = instant_mujoco.bound(engine.settings), instant_mujoco.mjx_errors(engine, mechanism)
         case Box2D():
             bound, found = instant_box2d.bound(engine), instant_box2d.errors(engine, mechanism)
         case Pymunk() if room > 1:

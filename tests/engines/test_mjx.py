@@ -12,6 +12,8 @@ import pytest
 from engines import Promise, Unpromised, Unsupported
 from engines.lagrange import TRUTH
 from engines.mjx import DEFAULT, NO_VELOCITY_TERM, TUNED, VARIANTS
+from reference.joints import Gear, Pin
+from reference.mechanism import Body, Mechanism
 from reports.model.catalogue import SCENES
 from reports.pages.engines.experiments import VelocityTerm, reactions_with, started_anew
 from tests.all_elements import ALONE
@@ -66,6 +68,19 @@ def test_a_device_that_is_not_there_is_a_refusal_in_one_line():
     environment = {**os.environ, "JAX_PLATFORMS": "cuda"}
     run = subprocess.run([sys.executable, "-c", NO_DEVICE], capture_output=True, text=True, env=environment, check=True)
     assert run.stdout == "JAX finds no device to run on here: JAX_PLATFORMS is 'cuda'\n"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed")
+def test_a_light_body_beside_a_heavy_one_feels_its_gear():
+    """Forces of 1e-4 N m stand beside 1e6 N; MJX's solver takes what is below 1e-8 in all for nothing."""
+    small, large = Body("small", 5e-4, 5e-10, (0.0, 0.0, 0.0)), Body("large", 1e5, 1e3, (1.0, 0.0, 0.0))
+    wheel = Body("wheel", 0.5, 5e-7, (1e-3, 0.0, 0.0))
+    pin = Pin("pin", None, "small", (-2e-3, 0.0), (-2e-3, 0.0))
+    mechanism = Mechanism((small, large, wheel), (pin, Gear("gear", "small", "wheel", 3.0, 0.0)), gravity=(0.0, -9.81))
+    model, held = DEFAULT.model(mechanism, 1e-3)
+    start = model.start()
+    assert DEFAULT.accelerations(model, held, start) == pytest.approx(start.qacc, rel=1e-9)
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from engines import Unsupported
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, MuJoCo
 from engines.mujoco.joints.roll import RollContact
 from engines.mujoco.methods import ROLLS, SKATES, SLOTS
-from reference.joints import Slot
+from reference.joints import Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
@@ -200,6 +200,18 @@ def test_a_skate_on_a_moving_body_is_held_by_rows_and_tendons_and_refused_by_con
     for engine in (DEFAULT, BLADE):
         with pytest.raises(Unsupported, match="runs on the body 'board'"):
             engine.build(blade_on_a_board(), 1e-3)
+
+
+@pytest.mark.parametrize(("mass", "length"), [(1.0, 1.0), (1e5, 1.0), (1.0, 1e-3)])
+def test_a_blade_stands_on_one_end_however_deep_the_weight_presses_it(mass: float, length: float) -> None:
+    """At two points it would not be free to turn."""
+    sled = Body("sled", 1.0, 0.1 * length**2, (0.0, 0.0, 0.0))
+    load = Body("load", mass, 0.1 * mass, (0.0, 2 * length, 0.0))
+    mechanism = Mechanism((sled, load), (Skate("blade", None, "sled", (0.0, length), 0.0),))
+    data = DEFAULT.model(mechanism, 1e-2).start()
+    assert data.ncon == 1
+    assert data.contact.pos[0, :2] == pytest.approx((0.0, length), abs=1e-12 * length)
+    assert data.efc_force[0] == pytest.approx(9.81 * data.model.body_mass.sum(), rel=1e-9)
 
 
 def test_a_long_coast_ends_straight_and_raises_no_alarm() -> None:

@@ -146,19 +146,59 @@ def test_the_inertia_of_a_light_body_far_away_is_asked_for_as_sharply_as_mujoco_
     assert subject.ask(case, 26, ("instant",)).faults[0] == "acceleration"
 
 
+@pytest.mark.parametrize(("seed", "number"), [(1199539626, 75), (510355852, 14)])
 def test_a_light_row_that_carries_a_heavy_body_gives_way_as_declared_and_ten_times_as_much_is_found(
-    monkeypatch: pytest.MonkeyPatch,
+    seed: int, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A gear of 2.5e-6 kg m^2 holds a torque of 1 N m, which acts on a body of 0.5 kg m^2."""
+    """A gear of 2.5e-6 kg m^2 holds a torque of 1 N m, which acts on a body of 0.5 kg m^2; and a body rolls that is a
+    thousand times as light along the contact's normal as across, at an angle to MuJoCo's two rows."""
     subject = Adapted(replace(EXTENDED, estimates=False))  # which would tell of it
-    case = subject.draw(1199539626, 75, EVERY, 2)
-    assert subject.ask(case, 75, ("motions",)).faults == ()
+    case = subject.draw(seed, number, EVERY, 2)
+    assert subject.ask(case, number, ("motions",)).faults == ()
 
     def softer(model: Model) -> None:
         model.compiled.tendon_invweight0[:] *= 10
 
     wrong(monkeypatch, softer)
-    assert "motion" in subject.ask(case, 75, ("motions",)).faults
+    assert "motion" in subject.ask(case, number, ("motions",)).faults
+
+
+def stiffer(share: float) -> Change:
+    """By this share, by `solref`, which is relative to the step or in rates."""
+
+    def change(model: Model) -> None:
+        model.compiled.eq_solref[:, 0] *= 1 - share
+
+    return change
+
+
+def softer(share: float) -> Change:
+    def change(model: Model) -> None:
+        model.compiled.tendon_invweight0[:] *= 1 + share
+
+    return change
+
+
+@pytest.mark.parametrize(("seed", "number", "change"), [(1886555343, 1, stiffer), (510355852, 23, softer)])
+def test_rows_tied_to_the_step_that_show_no_order_are_held_against_the_judges_own(
+    seed: int, number: int, change: Callable[[float], Change], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a rod that turns by 8 rad, in steps of 1/300 rad, without its term of velocities; and of a gear and a drive
+    that turn 1e5 kg m^2 by a body of 2e-6."""
+    subject = Adapted(TUNED)
+    case = subject.draw(seed, number, EVERY, 2)
+    assert subject.ask(case, number, ("motions",)).faults == ()
+    with monkeypatch.context() as here:
+        wrong(here, change(0.01))
+        assert subject.ask(case, number, ("motions",)).faults == ()
+    wrong(monkeypatch, change(0.5))
+    assert "motion" in subject.ask(case, number, ("motions",)).faults
+
+
+def test_nothing_is_asked_of_steps_in_which_the_judges_own_motion_turns_by_a_radian() -> None:
+    subject = Adapted(EXTENDED)
+    told = subject.ask(subject.draw(508863273, 21, EVERY, 4), 21, ("instant",))
+    assert told.not_asked == ("instant: steps are too long for what turns soon after the start",)
 
 
 def test_of_a_short_rod_whose_ends_move_apart_no_motion_is_asked_for_at_steps_of_many_radians() -> None:

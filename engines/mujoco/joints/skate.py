@@ -39,6 +39,7 @@ BLADE_FRICTION = (1e-5, 10.0)
 TILT = 0.5  # rad: only the blade's lower end touches
 GRAVITY = 9.81  # m/s^2, what presses the mechanism on the ground that it stands on
 PRESSED = 40  # bisections of the depth that carries the weight
+DOUBLED = 60  # times that a blade may be
 # A stiffness must not be zero in solref's direct form; this one pulls at a metre with a picometre per second squared.
 NO_STIFFNESS = -1e-12
 
@@ -158,14 +159,31 @@ def _add_blades(building: Building, skates: Sequence[Skate]) -> None:
 
 
 def _press(compiled: Any, _address: Sequence[int]) -> Hooks:
-    """Raise the ground until it carries the weight: the depth can't be told beforehand, the stiffness depends on it."""
+    """Raise the ground until it carries the weight: the depth can't be told beforehand, the stiffness depends on it.
+
+    Blades become longer until they stand in it with their lower ends alone; the other would hold another point too.
+    """
     weight = float(compiled.body_mass.sum()) * GRAVITY
-    ground, low, high = compiled.geom("ice").id, 0.0, float(compiled.geom_rbound.max())
-    data = mujoco.MjData(compiled)
-    for _ in range(PRESSED):
-        depth = (low + high) / 2
+    ground, data = compiled.geom("ice").id, mujoco.MjData(compiled)
+    blades = [geom for geom in range(compiled.ngeom) if compiled.geom(geom).name.startswith("blade ")]
+
+    def carried(depth: float) -> float:
         compiled.geom_pos[ground, 2] = depth
         mujoco.mj_forward(compiled, data)
-        carried = sum(data.efc_force[contact.efc_address] for contact in data.contact if contact.efc_address >= 0)
-        low, high = (depth, high) if carried < weight else (low, depth)
+        standing = [each.efc_address for each in data.contact if each.efc_address >= 0 and ground in each.geom]
+        return float(data.efc_force[standing].sum())
+
+    lifted = 2 * float(compiled.geom_size[blades[0], 1]) * math.sin(TILT)
+    for _ in range(DOUBLED):
+        if carried(lifted) >= weight:
+            break
+        for blade in blades:  # its z-axis points down, to the end that stays
+            half = compiled.geom_size[blade, 1]
+            compiled.geom_pos[blade] -= half * data.geom_xmat[blade].reshape(3, 3)[:, 2]
+            compiled.geom_size[blade, 1], compiled.geom_rbound[blade] = 2 * half, compiled.geom_rbound[blade] + half
+        lifted *= 2
+    low, high = 0.0, lifted
+    for _ in range(PRESSED):
+        depth = (low + high) / 2
+        low, high = (depth, high) if carried(depth) < weight else (low, depth)
     return Hooks()
