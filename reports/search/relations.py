@@ -12,29 +12,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Promise
+from engines import CLAIM, Engine
 from engines.bullet import Bullet
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
-from engines.pymunk import Pymunk
 from engines.tree import spanning_tree
 from reference.joints import Drive, Roll, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.instant_mujoco import solved
-from reports.search.instant_pymunk import grooves
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
     Fault,
     NotAsked,
-    carried,
     difference,
-    lost_in_products,
     response,
     turned_in_a_step,
-    written,
 )
 from reports.search.motions import left_by_newton
 from reports.search.parts import Recipe
@@ -160,8 +155,8 @@ def _apart(
     """How different a pose and a twist are from those of the mechanism itself; `away` [m] is how far the other stood.
 
     A shift costs digits of a place, those of its distance; and a velocity those of a place divided by a step. Raises
-    NotAsked where they differ and either run has warnings, or where a start that is rounded makes as much of a
-    difference, or rounding of J M^-1 J^T may: the `changed` description's, in its own `run`, or the mechanism's.
+    NotAsked where they differ and either run has warnings, or where rounding makes as much of a difference: in the
+    `changed` description and its own `run`, or in the mechanism's.
     """
     own = _run(engine, mechanism)
     step = STEP * mechanism.time_scale
@@ -193,35 +188,16 @@ def _apart(
             raise NotAsked("descriptions differ by less than what it says itself that it misses")
     if np.isfinite(own.pose[-1]).all() and turned_in_a_step(mechanism, step, own.pose[-1], own.twist[-1]) > 1:
         raise NotAsked(TOO_LONG)
-    both = ((mechanism, own), (changed, run))
-    seen = [(one, pose) for one, told in both for pose in told.pose[[0, -1]] if np.isfinite(pose).all()]
-    if found <= ROUNDINGS * max(lost_in_products(*each) for each in seen):
-        raise NotAsked("descriptions differ by no more than what rounding of J M^-1 J^T may make")
     apart = np.maximum(np.abs(pose - own.pose[-1]), np.abs(twist - own.twist[-1]) * step)
-    if np.all(apart <= _closed(engine, mechanism, away)):
-        raise NotAsked("descriptions differ by no more than what joints make of rounded places")
     if np.all(apart <= left_by_newton(engine, mechanism, own, step).motion):
         raise NotAsked("descriptions differ by no more than the tolerance of Newton's method that it declares")
-    for one, told in both:
+    for one, told in ((mechanism, own), (changed, run)):
         for change in _nudges(one, away):
             nudged, back = change(one)
             pose, twist, _ = back(_run(engine, nudged))
             if found <= ROUNDINGS * error(one, told, pose[-1], twist[-1]):
                 raise NotAsked("descriptions differ by no more than what it makes of rounding")
     return found
-
-
-def _closed(engine: Engine, mechanism: Mechanism, away: float) -> Array:
-    """By what (bodies, 3) poses, and twists within a step, may differ by what joints make of rounded places.
-
-    These are rounded anew in each description, by eps of how far `away` [m] they are, and joints close the gaps: a
-    small body is turned by it over its arm (`carried`), within a step, and combined runs carry more of it.
-    """
-    promise = engine.order(mechanism)
-    amplified = promise.amplified if isinstance(promise, Promise) else 1.0
-    gap = grooves(mechanism) if isinstance(engine.within(mechanism), Pymunk) else 0.0
-    rounded = ROUNDINGS * np.finfo(float).eps * amplified
-    return rounded * carried(mechanism, mechanism.pose, written(mechanism, away), gap).motion
 
 
 def _nudges(mechanism: Mechanism, away: float) -> Iterator[Change]:
