@@ -17,7 +17,7 @@ from unittest import mock
 import numpy as np
 import pytest
 
-from engines import Unsupported, box2d, bullet, exudyn, mjx
+from engines import Promise, Unsupported, box2d, bullet, exudyn, mjx, pinocchio
 from engines.conformance.same import Isometry
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -196,3 +196,26 @@ def test_iterations_of_bullet_that_converge_hide_nothing_of_a_description() -> N
 
     with turned_by(type(engine), lambda asked: far * abs(heading(asked)) / 0.7):
         assert relations.errors(engine, recipe, number)["turned"] > relations.bound(engine)
+
+
+def test_sums_about_the_origin_hide_no_more_of_pinocchio_than_their_rounding() -> None:
+    """A body of 2e-7 kg in which 200 kg slide, 144 m from the world's origin."""
+    engine = pinocchio.TUNED
+    if engine.missing:
+        pytest.skip(engine.missing)
+    own = build(Adapted(engine).draw(296980508, 27, taken(engine), 4))
+    error, bound = motions.errors(engine, own)["motion"]
+    assert 1e-6 < error < bound < 2e-4
+    size = motions._size(own, motions.judged(own), Promise(4))
+    with turned_by(type(engine), lambda _: 2 * bound * size / own.length_scale):
+        error, bound = motions.errors(engine, own)["motion"]
+    assert error > bound
+
+
+def test_the_torque_of_a_drive_in_pinocchio_is_found_beside_large_ones() -> None:
+    """Of 6e12 N m: as a difference of two answers, what a unit torque does was 1e-3 off."""
+    engine = pinocchio.TUNED
+    if engine.missing:
+        pytest.skip(engine.missing)
+    own = build(Adapted(engine).draw(1187272977, 48, taken(engine), 4))
+    assert motions.errors(engine, own)["motion"][0] < 1e-12
