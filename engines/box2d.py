@@ -4,10 +4,11 @@ A body is a dynamic body whose mass, centre and inertia are set directly; it may
 no contact is the subject. A Pin is a revolute joint, a Weld a weld joint, a Rod a distance joint, a Slot a wheel joint
 without its spring (a point on a line that is free to turn), or a prismatic joint where a Drive of rate zero keeps the
 angle. A Drive is the motor of the Pin or Slot between the same two bodies, with more torque than it can need. Version 3
-has no gears and no joint that holds a velocity across a blade; rolling is contact with friction, and no contact is
-built here. Its springs are given a frequency, and their stiffness is that of the mass which they feel, pose by pose; so
-what springs, dampers, forces and torques do to bodies is worked out by our code before a step and applied as forces, as
-users do.
+has no gears. Its prismatic and wheel joints hold a point on a line that is fixed in a body, so a place; a blade needs a
+velocity across a line that moves along with it, which may be anywhere, and there is no joint for that (3.1, in pyb2d3
+0.11.1). Rolling is contact with friction, and no contact is built here. Its springs are given a frequency, and their
+stiffness is that of the mass which they feel, pose by pose; so what springs, dampers, forces and torques do to bodies
+is worked out by our code before a step and applied as forces, as users do.
 
 What one step does (its solver.c): `substeps` times with h = dt / substeps it kicks, lets every joint correct the
 velocities once with a push against its gap (soft, below), drifts by p += v h, and corrects once more without the push.
@@ -65,7 +66,7 @@ SLACK = 1e-6  # Hz: a spring that keeps no weld joint from turning; zero would b
 JOINTS = "https://box2d.org/documentation/group__joint.html"  # all that there are
 LACKS = {
     Gear: f"box2d has no gears since version 3 ({JOINTS})",
-    Skate: f"none of box2d's joints stops a slip across a line ({JOINTS})",
+    Skate: f"box2d has no joint for a velocity across a blade alone: those for lines hold a place on them ({JOINTS})",
     Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
 }
 

@@ -15,6 +15,9 @@ limit on joint velocities are off; the wheel is built in double precision.
 One step (btMultiBodyDynamicsWorld) kicks with the forces at the old positions, corrects the velocities by impulses with
 a push against the gap (erp, 0.2 of it a step as shipped), and drifts with the new ones: semi-implicit Euler of first
 order. Accelerations are changes of velocity over the last step, so nothing is told at t = 0.
+
+A joint that moves less inertia than 2.2e-16 (SIMD_EPSILON) in the model's units, a millimetre's body in metres, say,
+feels no force (btMultiBody.cpp); it goes on as it began, which a warning tells.
 """
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
@@ -22,6 +25,7 @@ order. Accelerations are changes of velocity over the last step, so nothing is t
 
 from __future__ import annotations
 
+import math
 import tempfile
 import time
 from dataclasses import dataclass
@@ -47,6 +51,8 @@ STEP_COST = 9e-6  # s of a step of three bodies, as shipped
 FORCES_COST = 250e-6  # s, of force elements, which are worked out by numpy
 ITERATION_COST = 0.1e-6  # s, of an iteration for each row of a loop
 SHIPPED_ITERATIONS, SHIPPED_ERP = 50, 0.2
+NOTHING = float(np.finfo(float).eps)  # kg or kg m^2: SIMD_EPSILON, below which the inverse of an inertia is zero
+UNMOVED = "ours: unresolved from 0 s on, bullet takes an inertia below 2.2e-16 for none and moves it by no force"
 LACKS = {
     Rod: "our adapter of bullet builds no distance between points",
     Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
@@ -103,6 +109,17 @@ class Bullet(Optional):
         parameters = {"numSolverIterations": self.iterations, "solverResidualThreshold": self.residual, "erp": self.erp}
         world = World(mechanism, tree, drives, dt, parameters)
         return SingleRun(mechanism, dt, world.size, lambda samples, every: world.record(dt, samples, every))
+
+
+def _is_unmoved(mechanism: Mechanism, tree: Tree) -> bool:
+    """Whether a joint at the end of a chain moves no more than NOTHING."""
+    carrying = {link.parent for link in tree.links}
+    for link in tree.links:
+        body = mechanism.bodies[link.body]
+        moved = body.inertia + body.mass * math.hypot(*link.anchor) ** 2 if link.turns else body.mass
+        if link.columns and link.body not in carrying and moved < NOTHING:
+            return True
+    return False
 
 
 def _refused(mechanism: Mechanism, tree: Tree) -> dict[int, float]:
@@ -282,7 +299,8 @@ class World:
         stepping = time.process_time() - begin
         acceleration = differences(velocity, before, dt)
         motion = tree_states(self.tree, position, velocity, acceleration)
-        return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity))
+        warnings = (UNMOVED,) if _is_unmoved(self.mechanism, self.tree) else ()
+        return Recorded(*motion, stepping, self.mechanism.inertias, np.array(self.mechanism.gravity), warnings)
 
 
 DEFAULT = Bullet("default")

@@ -20,11 +20,11 @@ from engines.box2d import Box2D
 from reference.joints import Pin, Rod, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reports.search.law import Fault, NotAsked, carried, difference, lost_in_products, written
+from reports.search.law import ROUNDINGS, Fault, NotAsked, difference, lost_in_products, written
 
 Array = NDArray[np.float64]
 STEP = 0.1  # of the mechanism's own time scale: what forces change in it has to be seen beside rounded velocities
-ROUNDINGS = 100.0  # of the engine's numbers, which the rows of a pose and some sums leave
+SEEN = 2.0**-26  # of a number: small beside what a formula bends in it, large beside rounding in double precision
 
 
 def bound(engine: Box2D) -> float:
@@ -56,19 +56,47 @@ def first_step(engine: Box2D, mechanism: Mechanism) -> tuple[Trajectory, Array, 
         raise Fault("it was lost within a step")
     if told.warnings:
         raise NotAsked("it says itself that something is wrong")
-    start = mechanism.pose
-    free = mechanism.twist + dt * mechanism.unconstrained(start, mechanism.twist)
-    before, after = mechanism.rows(start), mechanism.rows(told.pose[1])
+    free = mechanism.twist + dt * mechanism.unconstrained(mechanism.pose, mechanism.twist)
+    states = np.array([*told.pose, mechanism.twist, np.zeros_like(free), np.zeros_like(free)])
+    law = _law(mechanism, dt, states)
+    return told, law, (free, mechanism.twist, _rounded(mechanism, dt, states, (law, free)) / ROUNDINGS)
+
+
+def _law(mechanism: Mechanism, dt: float, states: Array) -> Array:
+    """Velocities (bodies, 3) after both corrections, from states (5, bodies, 3).
+
+    They are the poses of the start and after the drift, the start's twist, and what is added to twists before each.
+    """
+    start, drifted, twist, kicked, added = states
+    free = twist + dt * mechanism.unconstrained(start, twist) + kicked
+    before, after = mechanism.rows(start), mechanism.rows(drifted)
     # How heavy a joint's rows are, the engine works out at the start; of a point's, solved together, in each pass anew.
     points = np.array([isinstance(joint, Pin | Weld) for joint in mechanism.joints for _ in range(joint.size)], bool)
     share, rate = _share(dt)
-    soft = _swept(mechanism, before, before, free, share, mechanism.rate - rate * _gap(mechanism))
-    law = _swept(mechanism, after, np.where(points[:, None], after, before), soft, 1.0, mechanism.rate)
-    # Places and velocities are rounded; over a step a place is a velocity, and joints make motions of what they miss.
-    far = float(np.abs(told.pose[..., :2]).max())
-    numbers = written(mechanism, far) / dt + np.abs(free) + np.abs(told.twist[1])
-    rounded = engine.precision * carried(mechanism, start, numbers).motion
-    return told, law, (free, mechanism.twist, rounded / bound(engine))
+    gap = _gap(mechanism) + before @ (start - mechanism.pose).reshape(-1)
+    soft = _swept(mechanism, before, before, free, share, mechanism.rate - rate * gap) + added
+    return _swept(mechanism, after, np.where(points[:, None], after, before), soft, 1.0, mechanism.rate)
+
+
+def _rounded(mechanism: Mechanism, dt: float, states: Array, twists: tuple[Array, ...]) -> Array:
+    """What numbers that are off by a unit of themselves change of the law (bodies, 3), as parts of that unit.
+
+    Rounded are the places, cosines and velocities that bodies are stored in, before and after each correction; the
+    `twists` are the largest. The law itself says what becomes of each: a force element pushes otherwise; a place that
+    is off is a gap, which the first correction closes at its own rate, and the second, which knows no gap, takes back
+    but for what rows have turned meanwhile; an arm or a line that is off by it lets a velocity slip. So it is evaluated
+    again with each number off by SEEN of itself. Rounding has no sign, so squares are added.
+    """
+    far = written(mechanism, float(np.abs(states[:2, :, :2]).max()))
+    size = np.array([1.0, 1.0, mechanism.length_scale])
+    fast = np.max([np.abs(twist * size).max(axis=1, keepdims=True) for twist in (states[2], *twists)], axis=0) / size
+    numbers = np.array([far, far, fast, fast, fast])
+    right, changed = _law(mechanism, dt, states), np.zeros_like(states[0])
+    for place in np.ndindex(states.shape):
+        off = states.copy()
+        off[place] += SEEN * numbers[place]
+        changed += ((_law(mechanism, dt, off) - right) / SEEN) ** 2
+    return np.sqrt(changed)
 
 
 def _swept(mechanism: Mechanism, rows: Array, weighed: Array, twist: Array, share: float, wanted: Array) -> Array:

@@ -238,15 +238,16 @@ def solved(engine: MuJoCo) -> MuJoCo:
     return replace(engine, tolerance=min(engine.tolerance, ROUNDED**2))
 
 
-def left_by_its_solver(engine: MuJoCo, mechanism: Mechanism, dt: float, seconds: float) -> float:
-    """How far bodies go [m] by accelerations of mjMINVAL, 1e-15 in m/s^2 and rad/s^2, in every coordinate of the tree.
+def left_by_its_solver(engine: MuJoCo, mechanism: Mechanism, dt: float, seconds: float) -> Array:
+    """How far bodies go, (bodies, 3) in m and rad, by accelerations of mjMINVAL, 1e-15 in m/s^2 and rad/s^2, in every
+    coordinate of the tree.
 
     MuJoCo's solver takes no step that is shorter, whatever the tolerance. From one step of the integrator to the next,
     which begins where the last one ended, slow accelerations change by less.
     """
     model = engine.model(mechanism, dt)
-    moved = np.abs(directions(model, model.start())).sum(axis=1).reshape(-1, 3) * [1.0, 1.0, mechanism.length_scale]
-    return float(moved.max()) * mujoco.mjMINVAL * seconds**2 / 2
+    moved = np.abs(directions(model, model.start())).sum(axis=1).reshape(-1, 3)
+    return moved * mujoco.mjMINVAL * seconds**2 / 2
 
 
 def refuse_without_a_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> None:

@@ -12,41 +12,40 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import CLAIM, Engine, Promise
+from engines import CLAIM, Engine
 from engines.bullet import Bullet
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
 from engines.mjx import Mjx
 from engines.mujoco import MuJoCo
-from engines.pymunk import Pymunk
-from reference.joints import Roll, Weld
+from engines.tree import spanning_tree
+from reference.joints import Drive, Roll, Weld
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reports.search.instant_mujoco import solved
-from reports.search.instant_pymunk import grooves
 from reports.search.law import (
     ESTIMATED,
     ROUNDINGS,
     Fault,
     NotAsked,
-    carried,
     difference,
-    lost_in_products,
+    response,
     turned_in_a_step,
-    written,
 )
+from reports.search.motions import left_by_newton
 from reports.search.parts import Recipe
 from reports.search.recipe import build
 
 Array = NDArray[np.float64]
 STEP = 0.01  # of the mechanism's own time scale
 STEPS = 5
-CONVERGED = 200_000  # iterations of Bullet, which solves a loop's rows one by one: 2e4 left 1e-3, where masses differ
+CONVERGED = 1e-12  # of the slowest mode, after the iterations of a step of Bullet
+MOST_ITERATIONS = 2_000_000
 # Rounding alone differs. A method that combines runs carries up to a hundred times as much of it, one that hardens its
 # constraints gives away half of the digits.
 SAME = 1e-7
 # The same of an engine that computes with fewer digits, and says so as its `precision`: of what moves, places keep few.
 ROUGHLY = 1e4
-NUDGES = 3
+NUDGES, NUDGED = 3, 1e-3
 # rad: what Box2D reads of a weld's angle is off by half of this, in each direction by another (`instant_box2d`); it is
 # the only one with so few digits that has welds.
 MISREAD = 2 * 2.8e-5
@@ -75,20 +74,45 @@ def bound(engine: Engine) -> float:
 def errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
     """By what the poses and velocities differ, relative to the motion; raises NotAsked, Fault and Unsupported.
 
-    MuJoCo and MJX are asked without what their solver leaves within its tolerance, and Bullet with as many iterations
-    as a loop needs, for what they leave is declared, and another in each description. See `instant_mujoco.solved`.
+    MuJoCo and MJX are asked without what their solver leaves within its tolerance (`instant_mujoco.solved`), and Bullet
+    with as many iterations as its loops need, for what they leave is declared, and another in each description.
     """
     match engine:
         case MuJoCo():
             engine = solved(engine)
         case Mjx():
             engine = replace(engine, settings=solved(engine.settings))
-        case Bullet() if engine.iterations < CONVERGED:
+        case Bullet():
             found = _errors(engine, recipe, number)
             if max(found.values()) <= bound(engine):
                 return found
-            engine = replace(engine, iterations=CONVERGED, residual=0.0)
+            engine = replace(engine, iterations=_iterations(build(recipe), number), residual=0.0)
     return _errors(engine, recipe, number)
+
+
+def _iterations(mechanism: Mechanism, number: int) -> int:
+    """After how many iterations of Bullet nothing is left of its slowest mode, in both descriptions; raises NotAsked.
+
+    It solves the rows J that close a tree one after the other, for the tree's own coordinates: Gauss-Seidel of
+    A = J S M^-1 J^T, with S what the tree leaves free. An iteration leaves the spectral radius of 1 - L^-1 A, L its
+    lower triangle, and the axes of the world are those of a pin's rows, so that this differs between descriptions.
+    """
+    change = CHANGES.get(NAMES[number % len(NAMES)])
+    slowest = max(_left(each) for each in (mechanism, change(mechanism)[0] if change else mechanism))
+    iterations = math.ceil(math.log(CONVERGED) / math.log(slowest)) if slowest > 0 else 1
+    if iterations > MOST_ITERATIONS:
+        raise NotAsked(f"iterations leave {slowest:.6f} of the slowest mode each, so that they don't converge")
+    return iterations
+
+
+def _left(mechanism: Mechanism) -> float:
+    tree, rows, light = spanning_tree(mechanism), mechanism.rows(mechanism.pose), 1 / mechanism.inertias.reshape(-1)
+    solved = [tree.closes_by(joint) or isinstance(joint, Drive) for joint in mechanism.joints for _ in joint.labels]
+    held, closing = rows[~np.array(solved)], rows[np.array(solved)]
+    loose = np.eye(len(light)) - response(held, mechanism.inertias).motion @ held
+    matrix = closing @ (loose * light) @ closing.T
+    change = np.eye(len(matrix)) - np.linalg.pinv(np.tril(matrix)) @ matrix
+    return float(np.clip(np.abs(np.linalg.eigvals(change)).max(initial=0.0), 0.0, 1 - 1e-12))
 
 
 def _errors(engine: Engine, recipe: Recipe, number: int) -> dict[str, float]:
@@ -131,24 +155,22 @@ def _apart(
     """How different a pose and a twist are from those of the mechanism itself; `away` [m] is how far the other stood.
 
     A shift costs digits of a place, those of its distance; and a velocity those of a place divided by a step. Raises
-    NotAsked where they differ and either run has warnings, or where a start that is rounded makes as much of a
-    difference, or rounding of J M^-1 J^T may: the `changed` description's, in its own `run`, or the mechanism's.
+    NotAsked where they differ and either run has warnings, or where rounding makes as much of a difference: in the
+    `changed` description and its own `run`, or in the mechanism's.
     """
     own = _run(engine, mechanism)
-    moved = own.pose[-1] - mechanism.pose
     step = STEP * mechanism.time_scale
-    rounded = _rounded(engine, mechanism) * max(away, float(np.abs(mechanism.pose[:, :2]).max()))
     misread = MISREAD / bound(engine) if engine.precision and _welded(mechanism) else 0.0
-    rest, far = 1e-6 * mechanism.pose, np.array([[rounded, 0.0, misread]])
-    fast = far / step
 
-    def error(pose: Array, twist: Array) -> float:
+    def error(one: Mechanism, told: Trajectory, pose: Array, twist: Array) -> float:
+        rounded = _rounded(engine, one) * max(away, float(np.abs(one.pose[:, :2]).max()))
+        moved, far = told.pose[-1] - one.pose, np.array([[rounded, 0.0, misread]])
         return max(
-            difference(mechanism, pose - mechanism.pose, moved, (mechanism.twist * STEPS * step, rest, far)),
-            difference(mechanism, twist, own.twist[-1], (mechanism.twist, fast)),
+            difference(one, pose - one.pose, moved, (one.twist * STEPS * step, 1e-6 * one.pose, far)),
+            difference(one, twist, told.twist[-1], (one.twist, far / step)),
         )
 
-    found = error(pose, twist)
+    found = error(mechanism, own, pose, twist)
     if found <= bound(engine):
         return found
     if own.warnings or run.warnings:
@@ -166,45 +188,29 @@ def _apart(
             raise NotAsked("descriptions differ by less than what it says itself that it misses")
     if np.isfinite(own.pose[-1]).all() and turned_in_a_step(mechanism, step, own.pose[-1], own.twist[-1]) > 1:
         raise NotAsked(TOO_LONG)
-    both = ((mechanism, own), (changed, run))
-    seen = [(one, pose) for one, told in both for pose in told.pose[[0, -1]] if np.isfinite(pose).all()]
-    if found <= ROUNDINGS * max(lost_in_products(*each) for each in seen):
-        raise NotAsked("descriptions differ by no more than what rounding of J M^-1 J^T may make")
-    if _closed(engine, mechanism, pose - own.pose[-1], twist - own.twist[-1], away):
-        raise NotAsked("descriptions differ by no more than what joints make of rounded places")
-    for change in _nudges(engine, mechanism, away):
-        nudged, back = change(mechanism)
-        pose, twist, _ = back(_run(engine, nudged))
-        if found <= ROUNDINGS * error(pose[-1], twist[-1]):
-            raise NotAsked("descriptions differ by no more than what it makes of rounding")
+    apart = np.maximum(np.abs(pose - own.pose[-1]), np.abs(twist - own.twist[-1]) * step)
+    if np.all(apart <= left_by_newton(engine, mechanism, own, step).motion):
+        raise NotAsked("descriptions differ by no more than the tolerance of Newton's method that it declares")
+    for one, told in ((mechanism, own), (changed, run)):
+        for change in _nudges(one, away):
+            nudged, back = change(one)
+            pose, twist, _ = back(_run(engine, nudged))
+            if found <= ROUNDINGS * error(one, told, pose[-1], twist[-1]):
+                raise NotAsked("descriptions differ by no more than what it makes of rounding")
     return found
 
 
-def _closed(engine: Engine, mechanism: Mechanism, pose: Array, twist: Array, away: float) -> bool:
-    """Whether differences (bodies, 3) of poses and twists are no more than what joints make of rounded places.
+def _nudges(mechanism: Mechanism, away: float) -> Iterator[Change]:
+    """Shifts by NUDGED of how far `away` [m] it stands, and turns by as much: every number of every step rounds anew.
 
-    These are rounded anew in each description, by eps of how far `away` [m] they are, and joints close the gaps: a
-    small body is turned by it over its arm (`carried`), within a step, and combined runs carry more of it.
-    """
-    promise = engine.order(mechanism)
-    amplified = promise.amplified if isinstance(promise, Promise) else 1.0
-    gap = grooves(mechanism) if isinstance(engine.within(mechanism), Pymunk) else 0.0
-    rounded = ROUNDINGS * np.finfo(float).eps * amplified
-    moved = rounded * carried(mechanism, mechanism.pose, written(mechanism, away), gap).motion
-    return bool(np.all(np.abs(pose) <= moved) and np.all(np.abs(twist) * STEP * mechanism.time_scale <= moved))
-
-
-def _nudges(engine: Engine, mechanism: Mechanism, away: float) -> Iterator[Change]:
-    """Shifts and turns by a rounding: what an engine makes of them is its condition.
-
-    That is of nearly dependent rows, masses far apart, weights of combined runs, gaps that are closed although they are
-    but rounded, and of steps in which a light body is flung about.
+    What an engine makes of it is its condition: of nearly dependent rows, masses far apart, weights of combined runs,
+    gaps that are closed although they are but rounded, and of steps in which a light body is flung about. Shifted by a
+    unit of rounding, steps round as before. What depends on the place or the direction itself changes by NUDGED alone.
     """
     random = np.random.default_rng(NUDGES)
-    digit = max(float(np.finfo(float).eps), engine.precision)
-    far = digit * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
+    far = NUDGED * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
     for x, y, turn in random.uniform(-1.0, 1.0, (NUDGES, 3)).tolist():
-        yield Isometry(turn=digit * turn, shift=(far * x, far * y))
+        yield Isometry(turn=NUDGED * turn, shift=(far * x, far * y))
 
 
 def _welded(mechanism: Mechanism) -> bool:

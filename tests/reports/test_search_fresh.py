@@ -40,6 +40,7 @@ DOP853 = lagrange.VARIANTS[-1]
         (pymunk.TUNED, 796316743, 4, 1),  # a slide 100 m from the point of its slot, in a mechanism of 5 cm
         (mujoco.TUNED, 689539221, 4, 22),  # a force on a body of 50 t that a weld of 0.1 g passes on
         (pymunk.DEFAULT, 1828094220, 4, 21),  # forces of poses that are a radian off
+        (pymunk.TUNED, 1737682144, 2, 32),  # lost at three steps in which rows turn, and right at an eighth
     ],
 )
 def test_what_fresh_seeds_found_of_oracles_is_asked_and_no_fault(
@@ -72,7 +73,7 @@ def test_where_products_lose_a_body_descriptions_differ_and_by_twice_as_much_it_
     lost = max(lost_in_products(each, each.pose) for each in (own, turned))
     assert 1e-6 < lost < 1e-4
     told = Adapted(DOP853).ask(case, 63, ("relations",))
-    assert "rounding of J M^-1 J^T" in told.not_asked[0]
+    assert "what it makes of rounding" in told.not_asked[0]
     twist = DOP853.build(own, STEP * own.time_scale)(1, STEPS).twist[-1]
     speed = 40 * lost * float(np.abs(twist * [1.0, 1.0, own.length_scale]).max())  # ten roundings are let pass
     assert Adapted(Beside(DOP853, speed=speed)).ask(case, 63, ("relations",)).faults == ("turned",)
@@ -81,7 +82,7 @@ def test_where_products_lose_a_body_descriptions_differ_and_by_twice_as_much_it_
 def test_places_that_are_rounded_anew_turn_small_bodies_and_a_speed_beside_it_is_found() -> None:
     case, own = recipe(195484576, 12, EVERY, 4), mechanism(195484576, 12, EVERY, 4)
     told = Adapted(pymunk.TUNED).ask(case, 12, ("relations",))
-    assert "what joints make of rounded places" in told.not_asked[0]
+    assert "what it makes of rounding" in told.not_asked[0]
     speed = 1e-5 * float(np.abs(own.twist[:, :2]).max())
     found = Adapted(Beside(pymunk.TUNED, speed=speed)).ask(case, 12, ("relations",))
     assert found.faults == ("in other lengths",)
