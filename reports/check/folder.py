@@ -6,9 +6,10 @@ import re
 import xml.etree.ElementTree as xml
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from reports.check.request import CheckReport, CheckRequest, Refused
-from reports.check.telling import number
+from reports.write.tables import number
 
 HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
 LOOKED_AT = 65536  # bytes of a file: a model says early what it is
@@ -46,6 +47,16 @@ def rows(answers: Answers) -> list[tuple[str, ...]]:
         told = (advised["words"], number(advised["error"]), times) if advised else ("none that was tried", "-", "-")
         out.append((request.word, f"{error}{missed}", _cause(data["parts"]), *told))
     return out
+
+
+def document(answers: Answers) -> list[dict[str, Any]]:
+    """The data of each model, or why it was refused: see `reports.check.document.schema`."""
+    return [
+        {"model": request.word, "refused": answer.sentence, "found": None}
+        if isinstance(answer, Refused)
+        else {"model": request.word, "refused": None, "found": answer.data}
+        for request, answer in answers
+    ]
 
 
 def _cause(parts: dict[str, float | None]) -> str:

@@ -115,6 +115,7 @@ def _named(word: str) -> tuple[Engine, ...]:
 
 def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
     """What a word means. Raises BadInput."""
+    from reports.cli.streams import said
     from reports.run.installed import built, distributions_in, installed
     from reports.versions.catalogue import distributions, engine_of
     from reports.versions.column import modules_in
@@ -126,12 +127,14 @@ def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
             names = ", ".join(dict.fromkeys(each.name for each in engines))
             raise BadInput(f"{word}: no engine needs {name!r}; there are {names}")
         places = distributions(engines, known) if known is not None else (name,)
-        return Side(word, engine or known or name, installed(places, version), True)
-    place = built(Path(word))
+        return Side(word, engine or known or name, installed(places, version, said), True)
+    place = built(Path(word), said)
     versions = distributions_in(place)
     known = engine_of(engines, [*versions, *modules_in(place)])
     if known is None and engine is None:
-        held = ", ".join([*versions, *modules_in(place)][:5]) or "no package"
+        held = ", ".join([*versions, *modules_in(place)][:5])
+        if not held:
+            raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
         raise BadInput(f"{word} holds {held}, which no engine needs; name the engine with --engine")
     told = ", ".join(f"{each} {number}" for each, number in versions.items())
     # A wheel's name repeats what is in it, with forty letters of platforms.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import multiprocessing
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ from engines import Engine, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene, told_apart, with_settings
 from reports.cli.selection import known_engines
+from reports.cli.streams import said
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput, nearest
@@ -109,7 +109,7 @@ def _new(found: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str],
 def registered() -> Known:
     """What is registered. What is wrong there is told on stderr, a line each, and left out."""
     for line in catalogue.TROUBLES:
-        print(f"crosscheck: {line}", file=sys.stderr)
+        said(line)
     return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
@@ -129,7 +129,7 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
                 raise ValueError(bad[each])
             known, _ = known.with_(each)
         except ValueError as reason:
-            print(f"crosscheck: left out, since it is not as it was when it was run: {reason}", file=sys.stderr)
+            said(f"left out, since it is not as it was when it was run: {reason}")
     return known
 
 

@@ -178,13 +178,14 @@ def chosen(engine: str | None, variant: str | None) -> list[Subject]:
 
 def of_release(release: str, engine: str | None, variant: str | None) -> Subject:
     """MuJoCo alone in another release. Raises BadInput where it can't be had, or something else is asked for too."""
+    from reports.cli.streams import said
     from reports.run.installed import installed
     from reports.search.release import DISTRIBUTIONS
     from reports.search.subjects import Alone
 
     if engine not in (None, "mujoco") or variant not in (None, "alone"):
         raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
-    installed(DISTRIBUTIONS, release)
+    installed(DISTRIBUTIONS, release, said)
     return Alone(release)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +10,7 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder
+from reports.cli.streams import said
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def versions(
                     if not everything and len(numbers) == 1:
                         raise
                     wrong.append(f"{name} {number}: {reason}")
-                    print(f"crosscheck: {wrong[-1]}", file=sys.stderr)
+                    said(wrong[-1])
                     continue
                 found.append(column)
                 if table is not None:
@@ -94,7 +94,7 @@ def installed_once(words: Iterable[str]) -> None:
     from reports.versions.catalogue import distributions
 
     for name, _, number in (word.partition("==") for word in words):
-        installed(distributions(VARIANTS, name), number)
+        installed(distributions(VARIANTS, name), number, said)
 
 
 def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:
@@ -143,8 +143,7 @@ def _column(
     from reports.versions.catalogue import distributions
     from reports.versions.column import VersionRequest, modules_in
 
-    console.say(f"{name} {number}: installed, unless it is there already")
-    place = installed(distributions(engines, name), number)
+    place = installed(distributions(engines, name), number, said)
     begin = monotonic()
     request = VersionRequest(
         scenes,
