@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings
+from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings, refuse_existing
 from reports.model.ending import BadInput, FileTrouble
 
 if TYPE_CHECKING:
@@ -35,21 +35,15 @@ def animate(
     """Write a picture that moves: the exact motion, what engines make of it, and how their errors grow."""
     if to not in KINDS:
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_scenes
+    from reports.cli.known import one_scene
     from reports.run.files import folder_for
 
-    known, names, _ = with_words(registered(), [scene], None, settings or (), motion=True)
-    chosen = choose_scenes(names, known.scenes, known.pages)
-    if len(chosen) != 1:
-        told = ", ".join(one.name for one in chosen)
-        raise BadInput(f"{scene!r} names {len(chosen)} scenes; give one of {told}")
+    known, chosen = one_scene(scene, settings or ())
     methods = _methods(engines, known.engines)
-    path = output or Path(f"{chosen[0].name}.{to}")
-    if not force and (path.is_symlink() or path.exists()):
-        raise FileTrouble(f"{path} is there already: give another --output, or --force to replace it")
+    path = output or Path(f"{chosen.name}.{to}")
+    refuse_existing([path], "--output", force)
     folder_for(path.absolute().parent, "give another --output")  # before anything is run
-    shown = _shown(chosen[0], methods, every, results)
+    shown = _shown(chosen, methods, every, results)
     from reports.cli.terminal import Terminal
 
     for word, why in shown.lost.items():

@@ -15,7 +15,7 @@ import numpy as np
 from engines import Engine, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene, told_apart, with_settings
-from reports.cli.selection import known_engines
+from reports.cli.selection import choose_scenes, known_engines
 from reports.cli.streams import said
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost
@@ -165,6 +165,15 @@ def with_words(
     except ValueError as reason:
         raise BadInput(str(reason)) from None
     return known, tuple(names), engines
+
+
+def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Known, Scene]:
+    """(what is known, the scene) of a command that asks one for its motion. Raises BadInput."""
+    known, names, _ = with_words(registered(), [word], None, settings, motion=True)
+    found = choose_scenes(names, known.scenes, known.pages)
+    if len(found) != 1:
+        raise BadInput(f"{word!r} names {len(found)} scenes; give one of {', '.join(each.name for each in found)}")
+    return known, found[0]
 
 
 def _words_of(known: Known, word: str) -> list[str]:

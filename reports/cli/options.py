@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from reports.model.ending import FileTrouble
 
 # Below the current folder, in the checkout too: no command writes to what is published.
 FOLDER = Path("crosscheck-results")
@@ -37,6 +40,13 @@ Scheduler = Annotated[
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document, with all digits, instead of text.")]
 AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a comment, instead of text.")]
+
+
+def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
+    """Raises FileTrouble for a file that is there, unless it may be replaced. A link counts that leads nowhere."""
+    for path in paths:
+        if not force and (path.is_symlink() or path.exists()):
+            raise FileTrouble(f"{path} is there already: give another {option}, or --force to replace it")
 
 
 def with_folder(command: str, results: Path) -> str:

@@ -140,12 +140,6 @@ def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion
     assert found.parts.step < 1e-2
 
 
-def test_a_loop_that_is_open_at_the_start_says_what_to_give(tmp_path):
-    start = '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'
-    with pytest.raises(InvalidMechanism, match=r"row 'C y' is open by .* give a keyframe in which it is closed"):
-        found_in(tmp_path, FOUR_BAR.replace("</mujoco>", start))
-
-
 def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reach_it(tmp_path):
     own = FOUR_BAR.replace('<connect name="C"', '<connect name="C" solref="0.04 1"')
     lines = answer(found_in(tmp_path, own)).code

@@ -43,12 +43,6 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
         xml.parse(here / "sub" / name)
 
 
-def test_a_model_within_its_tolerance_ends_well(here, capfd):
-    (here / "four_bar.xml").write_text(FOUR_BAR)
-    assert call("check", "four_bar.xml", "--duration", 0.05, "--tolerance", 0.1) == 0
-    assert "the tolerance of 0.1 is met." in " ".join(capfd.readouterr().out.split())
-
-
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
@@ -77,7 +71,6 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("check", "a.xml", "--duration", -1), "--duration is -1"),
         (("check", "a.xml", "--tolerance", "nan"), "--tolerance is nan"),
         (("check", "a.xml", "--step", 5), "--step is 5"),
-        (("check", "a.xml"), "there is no such file"),
         (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
         (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
         (("export", "pendulum_1", "--step", 0), "--step is 0"),
@@ -170,11 +163,6 @@ def _quick(monkeypatch):
 
 BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'
 BAD = {
-    "not_planar.xml": (
-        '<mujoco><worldbody><body name="a"><joint name="one" axis="0 1 0"/><geom size=".1"/><body><joint name="two" '
-        'axis="1 0 0"/><geom size=".1"/></body></body></worldbody></mujoco>',
-        "joint 'two': it is not parallel to joint 'one'",
-    ),
     "no_inertia.xml": (
         '<mujoco><worldbody><body><joint/><inertial pos="0 0 0" mass="1" diaginertia="0 0 0"/></body></worldbody>'
         "</mujoco>",
@@ -182,7 +170,7 @@ BAD = {
     ),
     "open_loop.xml": (
         FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
-        "row 'C y' is open by 0.263 m",
+        "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed",
     ),
     "empty.xml": ("", "MuJoCo can't compile it"),
     "no_robot.urdf": ("<robot name='x'/>", ""),
