@@ -56,14 +56,6 @@ def make():
 """
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _quick():
-    """Few settings are tried: what is asked here is whether they are told rightly."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.check.checked.PATIENCE", 0.4)
-        yield
-
-
 def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
     (folder / name).write_text(text)
     return check(read(word, folder, (), "", step), name, duration, tolerance)

@@ -20,14 +20,6 @@ from reports.check.telling import answer, number, sections
 from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _quick():
-    """Few settings are tried: what is asked here is what is said of them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.check.checked.PATIENCE", 0.3)
-        yield
-
-
 @pytest.fixture(scope="module")
 def soft(tmp_path_factory):
     """What is found in a four-bar as MuJoCo is shipped."""

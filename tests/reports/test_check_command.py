@@ -155,12 +155,6 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypat
     assert not list(here.iterdir())
 
 
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
-    """Few settings are tried: what is asked here is whether a model is refused."""
-    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
-
-
 BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'
 BAD = {
     "no_inertia.xml": (
