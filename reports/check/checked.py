@@ -109,8 +109,9 @@ def tried(
     Left out is what takes too long: by how often the engine would step, from what it took so far.
     """
     model, mechanism = reading.model, reading.mechanism
-    unpruned = plan.goal is not None or plan.quick or plan.patience == float("inf")
-    smallest = 0.0 if unpruned else model.dt * max(own.stepping, 1e-4) / LONGEST
+    every_one = plan.quick or plan.everything or plan.patience == float("inf")
+    unlimited = plan.goal is not None or plan.quick or plan.patience == float("inf")
+    smallest = 0.0 if unlimited else model.dt * max(own.stepping, 1e-4) / LONGEST
     changes = model.changes(min(smallest, model.dt), plan.goal is not None)
     order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
     begin, rates = time.process_time(), {changes[0].options: max(own.stepping, 1e-5) / (samples * every)}
@@ -120,15 +121,14 @@ def tried(
         alike = [each for each in done if each.change.options == change.options]
         if plan.goal is not None and done[-1].error <= plan.goal:
             break
-        parts = alike[:1] == done[:1] and len(alike) <= SMALLER
-        if _stays(alike) and not ((unpruned and plan.goal is None) or plan.everything or parts):
-            continue
         told(place, len(order))
         steps = samples * every * model.dt / change.dt
         cost = steps * rates.get(change.options, max(rates.values()))
         if time.process_time() - begin + cost > plan.patience:
             continue
-        if not (unpruned or plan.everything or parts) and cost > _enough(done, tolerance):
+        for_parts = plan.goal is None and alike[:1] == done[:1] and len(alike) <= SMALLER
+        dear = plan.goal is None and cost > _enough(done, tolerance)
+        if (dear or _stays(alike)) and not (every_one or for_parts):
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
@@ -154,9 +154,15 @@ def _few(changes: list[Change]) -> list[int]:
 
 
 def _stays(found: list[Tried]) -> bool:
-    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away."""
+    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or,
+    of one that is larger than what a motion tells, hardly changed it.
+    """
+
+    def stays(before: float, after: float) -> bool:
+        return after >= FALLS * before if before < SATURATED else abs(after - before) <= ALIKE * before
+
     last = [each.error for each in sorted(found, key=lambda each: -each.change.dt)][-3:]
-    return len(last) == 3 and np.isfinite(last[0]) and all(b >= FALLS * a for a, b in pairwise(last))
+    return len(last) == 3 and bool(np.isfinite(last).all()) and all(stays(a, b) for a, b in pairwise(last))
 
 
 def cheapest(found: list[Tried], tolerance: float) -> Tried | None:
@@ -182,6 +188,8 @@ def same_step(found: list[Tried], own: Tried) -> list[Tried]:
 
 Array = NDArray[np.float64]
 FALLS = 0.75  # of the error before: a smaller step is taken to help
+SATURATED = 1.0  # rad, or lengths of the mechanism: above, an error no longer tells its causes
+ALIKE = 0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
 QUICK = 1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
 
 
@@ -336,6 +344,8 @@ def check(
     Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
     """
     mechanism, model, plan = reading.mechanism, reading.model, plan or Plan(PATIENCE)
+    if not 0 < model.dt < float("inf"):
+        raise InvalidMechanism(f"the model's own step is {model.dt:g} s; it must be a finite time above zero")
     told("comparing the accelerations at t = 0")
     agreement = refuse_disagreement(reading)
     every = max(1, round(duration / SAMPLES / model.dt))

@@ -86,7 +86,8 @@ def body(name: str, sections: Sequence[Section]) -> str:
     drawn = dict(section.picture for section in sections if section.picture is not None)
     files = {title: f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}" for title, svg in drawn.items()}
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
-    reader.validateLink = lambda address: True  # type: ignore[method-assign]  # it would leave out data
+    # Our own pictures, which it would leave out, and no address that the name of a body may hold.
+    reader.validateLink = lambda address: address in files.values()  # type: ignore[method-assign]
     return reader.render(markdown(name, sections, files))
 
 

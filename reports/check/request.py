@@ -53,12 +53,15 @@ class CheckRequest:
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """What was found, as the answer, as sections and as plain data; `trouble`: why nothing was written, if asked to."""
+    """What was found, as the answer, as sections, as a line of a table and as plain data; `trouble`: why nothing was
+    written, if asked to.
+    """
 
     request: CheckRequest
     verdict: str
     answer: Section
     sections: tuple[Section, ...]
+    line: tuple[str, ...]
     data: dict[str, Any]
     trouble: str = ""
 
@@ -96,7 +99,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     from reports.check.applying import applied
     from reports.check.checked import check, read
     from reports.check.document import data
-    from reports.check.telling import answer, sections
+    from reports.check.telling import answer, line, sections
 
     def told(words: str) -> None:
         if request.notes:
@@ -126,7 +129,7 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
         from reports.check.pictures import pictures  # a second of imports
 
         drawn = pictures(shown_of(found))
-    return CheckReport(request, found.verdict, answer(found), sections(found, drawn), data(found), trouble)
+    return CheckReport(request, found.verdict, answer(found), sections(found, drawn), line(found), data(found), trouble)
 
 
 def _one_line(request: CheckRequest, reason: Exception) -> str:

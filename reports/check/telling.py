@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from reports.check.checked import Checked, Tried, best
+from reports.check.checked import SATURATED, Checked, Parts, Tried, best
 from reports.check.judging import UNITS
 from reports.check.rendering import Section
 from reports.write import tables
@@ -14,7 +14,6 @@ MOST_NAMED = 6
 MOST_NOTES = 4  # of what is left out, on the first screen
 CHEAPER = 0.9  # of the user's CPU time: what differs by less may be the clock's noise
 BETTER = 0.9  # of an error: what takes less away is no setting of its own on the first screen
-SATURATED = 1.0  # rad, or lengths of the mechanism
 ROUNDING = 1e-12  # of a radian, and of the mechanism's length
 
 
@@ -51,6 +50,26 @@ def sections(found: Checked, pictures: dict[str, tuple[str, str]] | None = None)
         _own(found, pictures.get("errors")),
         replace(_table(found), picture=pictures.get("worst")),
     )
+
+
+def line(found: Checked) -> tuple[str, ...]:
+    """In a table of many models: how wrong, why, the advice, its error, and its CPU time in that of the user's."""
+    own, advised = found.table[0], found.advised
+    told = ("none that was tried", "-", "-")
+    if advised is not None:
+        told = (advised.change.words, number(advised.error), number(_ratio(advised, own)))
+    return f"{number(own.error)}{' (missed)' if found.asked and not found.met else ''}", _cause(found.parts), *told
+
+
+def _cause(parts: Parts) -> str:
+    """Which part of the error is the largest."""
+    if parts.step == 0 or math.isinf(parts.step):
+        return "-" if parts.step == 0 else "gave up"
+    if not parts.divided:
+        return "step and softness"
+    if not parts.falling and parts.rest > max(parts.softness, 0.5 * parts.step):
+        return "neither softness nor step"
+    return "softness" if parts.softness > parts.step else "step"
 
 
 def _why(found: Checked) -> str:

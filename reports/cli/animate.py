@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings, refuse_existing
+from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings, listed, refuse_existing
 from reports.model.ending import BadInput, FileTrouble
 
 if TYPE_CHECKING:
@@ -55,18 +55,14 @@ def animate(
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
     """The engines of these names. Raises BadInput for one that is not known, and for too many."""
     from engines.registry import method
-    from reports.model.ending import nearest
 
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST]
     known = {method(engine): engine for engine in engines}
-    names = [name.strip() for word in words for name in word.split(",") if name.strip()]
-    for name in names:
-        if name not in known:
-            raise nearest("method", name, known)
+    names = listed("--engines", words, known)
     if len(names) > MOST:
         raise BadInput(f"--engines names {len(names)} methods; more than {MOST} can't be told apart in one picture")
-    return [known[name] for name in dict.fromkeys(names)]
+    return [known[name] for name in names]
 
 
 def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Shown:

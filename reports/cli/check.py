@@ -24,7 +24,7 @@ LONGEST = 1000.0  # s of motion
 WIDTH = 120  # columns at most
 OVERWRITE = "\r\x1b[K"  # on a terminal
 # What a check imports: the process from which workers are forked does so while this one gets ready.
-EARLY = ("reports.check.applying", "reports.check.document", "reports.check.telling", "engines.lagrange.compiled.entry")
+EARLY = ("reports.check.applying", "reports.check.document", "reports.check.telling", "numba")
 # The words of `switch_off` in engines/mujoco/reading and engines/pymunk/reading, which are not imported for a help.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "

@@ -21,6 +21,7 @@ from reports.cli.options import (
     Scheduler,
     VariantName,
     Workers,
+    listed,
     with_folder,
 )
 from reports.model.ending import BadInput
@@ -88,9 +89,9 @@ def search(
     if release is not None:
         subjects = [of_release(release, engine, variant)]
     own = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    wanted = listed("--kinds", kinds, (*own, TOGGLE)) if kinds is not None else own
+    wanted = listed("--kinds", [kinds], (*own, TOGGLE)) if kinds is not None else own
     subjects = [one for one in subjects if {*wanted} & {*one.kinds, TOGGLE}]
-    asked_of = listed("--oracles", oracles, ORACLES)
+    asked_of = listed("--oracles", [oracles], ORACLES)
     batches: Iterable[list[Chunk]]
     if fresh:
         batches = plan.fresh(subjects, cases or TEN)
@@ -148,14 +149,6 @@ class Count:
         return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
 
 
-def listed(option: str, words: str, known: Sequence[str]) -> tuple[str, ...]:
-    """Words with commas between them, each of them known. Raises BadInput."""
-    out = tuple(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
-    if not out or not {*out} <= {*known}:
-        raise BadInput(f"{option} is {words!r}; it must be one or some of {', '.join(known)}, with commas between them")
-    return out
-
-
 def chosen(engine: str | None, variant: str | None) -> list[Subject]:
     """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
     from engines.loading import is_reference
@@ -178,14 +171,13 @@ def chosen(engine: str | None, variant: str | None) -> list[Subject]:
 
 def of_release(release: str, engine: str | None, variant: str | None) -> Subject:
     """MuJoCo alone in another release. Raises BadInput where it can't be had, or something else is asked for too."""
-    from reports.cli.streams import said
     from reports.run.installed import installed
     from reports.search.release import DISTRIBUTIONS
     from reports.search.subjects import Alone
 
     if engine not in (None, "mujoco") or variant not in (None, "alone"):
         raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
-    installed(DISTRIBUTIONS, release, said)
+    installed(DISTRIBUTIONS, release)
     return Alone(release)
 
 

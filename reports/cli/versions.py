@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -94,7 +94,7 @@ def installed_once(words: Iterable[str]) -> None:
     from reports.versions.catalogue import distributions
 
     for name, _, number in (word.partition("==") for word in words):
-        installed(distributions(VARIANTS, name), number, said)
+        installed(distributions(VARIANTS, name), number)
 
 
 def _asked(engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool) -> dict[str, tuple[str, ...]]:
@@ -141,21 +141,11 @@ def _column(
     from reports.cli.selection import QUICK_CELL
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
-    from reports.versions.column import VersionRequest, modules_in
 
-    place = installed(distributions(engines, name), number, said)
-    begin = monotonic()
-    request = VersionRequest(
-        scenes,
-        name,
-        modules_in(place),
-        place,
-        (results / STORE).absolute(),
-        most=QUICK_CELL if trees else float("inf"),
-        trees=trees,
-        fresh=fresh,
-        folder=Path.cwd(),
-    )
+    said(f"{name} {number}: installed by pip, unless it is there already")
+    place = installed(distributions(engines, name), number)
+    begin, most = monotonic(), QUICK_CELL if trees else float("inf")
+    request = request_of(name, place, scenes, results / STORE, most=most, trees=trees, fresh=fresh)
     found = run_column(console, f"{name} {number}", number, request, engines, check)
     told = found.trouble or found.mark
     line = f"{name} {number}: {len(found.rows)} rows after {monotonic() - begin:.0f} s"
@@ -163,6 +153,13 @@ def _column(
     if told:
         console.tell(f"{name} {number}: {told}")
     return found
+
+
+def request_of(engine: str, place: Path, scenes: tuple[Scene, ...], store: Path, **terms: Any) -> VersionRequest:
+    """What is asked of the version or build that lies in `place`; `terms`: further fields."""
+    from reports.versions.column import VersionRequest, modules_in
+
+    return VersionRequest(scenes, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
 
 
 def run_column(

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
@@ -32,7 +32,6 @@ OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
 MOST = 60  # versions and builds that are kept; more than any command uses in one go
-Say = Callable[[str], None]
 SHOWN = 6  # versions that are named when another was asked for
 # Older MuJoCo imports its windows together with itself, and so packages that nobody needs here.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
@@ -44,11 +43,10 @@ def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
     return {**os.environ, **WITHOUT_WINDOWS, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-def installed(names: Sequence[str], version: str, say: Say = lambda words: None) -> Path:
+def installed(names: Sequence[str], version: str) -> Path:
     """The folder with this version of the first of these distributions that has it; installed unless it is there.
 
-    `say` is told before pip is called. Raises BadInput, in one line: the version does not exist, or has no wheel for
-    this Python, or there is no network.
+    Raises BadInput, in one line: the version does not exist, or has no wheel for this Python, or there is no network.
     """
     if not VERSION.fullmatch(version):
         raise BadInput(f"{version!r} is no version; give one like 3.6.0")
@@ -58,14 +56,14 @@ def installed(names: Sequence[str], version: str, say: Say = lambda words: None)
             return _used(folder)
     reasons = []
     for name, folder in places.items():
-        why = _install(f"{name}=={version}", folder, say)
+        why = _install([f"{name}=={version}"], folder)
         if not why:
             return _used(folder)
         reasons.append((name, why))
     raise BadInput(_sentence(version, reasons))
 
 
-def built(path: Path, say: Say = lambda words: None) -> Path:
+def built(path: Path) -> Path:
     """The folder with a build: of a wheel, of a folder of sources (pip builds them), or that folder itself.
 
     A folder without pyproject.toml and setup.py is taken as it is: what `pip install --target` makes. Sources and
@@ -83,7 +81,7 @@ def built(path: Path, say: Say = lambda words: None) -> Path:
         raise BadInput(f"{path}: there is no such folder or wheel; give NAME==VERSION, a .whl file or a folder")
     folder = _place(name)
     if not folder.is_dir():
-        why = _install(str(path), folder, say, wheels_only=path.is_file())
+        why = _install([str(path)], folder, wheels_only=path.is_file())
         if why:
             raise BadInput(f"{path} can't be installed: {why}")
     return _used(folder)
@@ -120,9 +118,8 @@ def _used(folder: Path) -> Path:
     return folder
 
 
-def _install(what: str, folder: Path, say: Say, wheels_only: bool = True) -> str:
+def _install(what: Sequence[str], folder: Path, wheels_only: bool = True) -> str:
     """Install into the folder, which gets its name when it is whole; why it can't be, empty if it was."""
-    say(f"pip installs {what}{'' if wheels_only else ', which it builds: this may take minutes'}")
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
@@ -133,7 +130,7 @@ def _install(what: str, folder: Path, say: Say, wheels_only: bool = True) -> str
             command += ["--only-binary", ":all:"] if wheels_only else []
             # From another folder: a package beside the user must not hide pip's own.
             run = subprocess.run(
-                [*command, "--", what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
+                [*command, "--", *what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
             )
             if run.returncode or not target.is_dir():
                 return _reason(run.stderr or run.stdout, run.returncode)

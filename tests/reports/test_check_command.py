@@ -22,7 +22,7 @@ from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
-from tests.reports.test_check import FOUR_BAR, found_in
+from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
@@ -198,6 +198,11 @@ BAD = {
         '<keyframe><key qpos="nan"/></keyframe></mujoco>',
         "qpos of joint 0 is nan at the start; it must be a finite number",
     ),
+    "no_step.xml": (
+        FOUR_BAR.replace('"0.002"', '"0"'),
+        "the model's own step is 0 s; it must be a finite time above zero",
+    ),
+    "backwards.py": (f"{PENDULUM}\nspace = make()\nspace.step(-0.01)", "the model's own step is -0.01 s; it must be"),
     "still.py:space": ("import pymunk\nspace = pymunk.Space()", "nothing in it can move"),
     "missing.xml": (None, "there is no such file"),
     "picture.png": (None, "is no model; give"),

@@ -87,9 +87,7 @@ def read_object(model: Any, without: Sequence[str] = (), step: float | None = No
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
-    """MuJoCo takes NaN and infinity as they come, and every number after them is none; and any step."""
-    if not 0 < model.opt.timestep < np.inf:
-        raise refuse("option timestep", f"it is {model.opt.timestep:g} s; it must be a finite time above zero")
+    """MuJoCo takes NaN and infinity as they come, and every number after them is none."""
     joint, actuator = mujoco.mjtObj.mjOBJ_JOINT, mujoco.mjtObj.mjOBJ_ACTUATOR
     places = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
     for name, kind, owners in (("qpos", joint, places), ("qvel", joint, model.dof_jntid), ("ctrl", actuator, None)):

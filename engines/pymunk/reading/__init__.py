@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from math import inf
 from pathlib import Path
 
 import pymunk
@@ -13,7 +12,7 @@ import pymunk
 from engines.pymunk.reading.joints import described
 from engines.pymunk.reading.own_model import OwnPymunk, switch_off
 from engines.pymunk.reading.script import made, rewritten
-from engines.reading import Note, Reading, Source, refuse, refuse_at_start
+from engines.reading import Note, Reading, Source, refuse_at_start
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 
@@ -77,8 +76,6 @@ class Reader:
         if not path.is_file():
             raise ValueError(f"{file}: there is no such file")
         found = made(path, file, name)
-        if found.dt is not None and not 0 < found.dt < inf:
-            raise refuse("space.step", f"the script steps by {found.dt:g} s; it must be a finite time above zero")
         own = step or (found.dt and found.dt * found.parts)
         try:
             reading = read(found.space, own and own / found.parts, without, found.parts)

@@ -7,7 +7,7 @@ import contextlib
 import io
 import sys
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -65,38 +65,29 @@ def made(path: Path, file: str, name: str) -> Made:
     """
     module = types.ModuleType(MODULE)
     module.__file__ = str(path)
-
-    def execute() -> None:
-        exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
-
-    with _at_home(path, module):
+    with _at_home(path, module), _stopping(lambda space: _is_wanted(space, module, name)):
         # Without a name, a script that makes its space only where it is the program is taken as the program.
         for called in (MODULE,) if name else (MODULE, "__main__"):
             module.__dict__["__name__"] = called
-            _, stepped = _run(file, execute, lambda space: _is_wanted(space, module, name))
-            if stepped is not None:
+            try:
+                exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
+            except _Stepped as stepped:
                 return _with_parts(Made(stepped.space, stepped.dt, *_where(path, name, stepped)))
+            except (Exception, SystemExit, KeyboardInterrupt) as reason:
+                raise _raised(file, reason) from None
             if name or _spaces(module) or _guard(path) is None:
                 break
         value, word = _named(module, file, name)
         if not callable(value):
             return _checked(file, Made(value, None, word, _guard(path)))
-        space, stepped = _run(file, value, lambda space: True)
-        if stepped is not None:
-            return _with_parts(Made(stepped.space, stepped.dt, *_where(path, word, stepped)))
-        return _checked(file, Made(space, None, word, _guard(path), function=True))
-
-
-def _run(file: str, call: Callable[[], Any], wanted: Callable[[Any], bool]) -> tuple[Any, _Stepped | None]:
-    """(what a call gives, None), or (None, the first step of a space that is wanted). Raises ValueError in one line."""
-    with _stopping(wanted):
-        try:
-            return call(), None
-        except _Stepped as stepped:
-            return None, stepped
-        except (Exception, SystemExit, KeyboardInterrupt) as reason:
-            words = " ".join(str(reason).split())
-            raise ValueError(f"{file} raised {type(reason).__name__}{f': {words}' if words else ''}") from None
+        with _stopping(lambda space: True):
+            try:
+                space: Any = value()
+                return _checked(file, Made(space, None, word, _guard(path), function=True))
+            except _Stepped as stepped:
+                return _with_parts(Made(stepped.space, stepped.dt, *_where(path, word, stepped)))
+            except (Exception, SystemExit, KeyboardInterrupt) as reason:
+                raise _raised(file, reason) from None
 
 
 def _checked(file: str, found: Made) -> Made:
@@ -110,6 +101,11 @@ def _with_parts(found: Made) -> Made:
     """A step of the script's own is taken off the space: a copy would have it too, and step the wrong space."""
     own = vars(found.space).pop("step", None)
     return replace(found, parts=int(getattr(own, "parts", 1)))
+
+
+def _raised(file: str, reason: BaseException) -> ValueError:
+    words = " ".join(str(reason).split())
+    return ValueError(f"{file} raised {type(reason).__name__}{f': {words}' if words else ''}")
 
 
 def _named(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
