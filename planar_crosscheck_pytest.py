@@ -15,8 +15,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,30 +66,27 @@ class Crosscheck:
 
         beside = self._folder / str(model).rpartition(":")[0] if ":" in str(model) else self._folder / str(model)
         inside = isinstance(model, str | Path) and beside.exists()
-        with _failing():
-            found = check(model, tolerance, duration, folder=self._folder if inside else None, **terms)
-            if not found.fine:
-                raise ValueError(plain([found.answer]))
-            return found
+        folder = self._folder if inside else None
+        found = _failing(lambda: check(model, tolerance, duration, folder=folder, **terms))
+        if not found.fine:
+            pytest.fail(plain([found.answer]), pytrace=False)
+        return found
 
     def conform(self, engine: Engine, expected_failures: Mapping[str, str] | None = None) -> None:
         """Fail the test if an engine does not conform, or if a failure that was expected does not come true."""
         from planar_crosscheck import conform
 
-        with _failing():
-            conform(engine, expected_failures)
+        _failing(lambda: conform(engine, expected_failures))
 
 
-@contextmanager
-def _failing() -> Iterator[None]:
-    """Inside, what is raised fails the test by its words alone."""
+def _failing(call: Callable[[], Any]) -> Any:
+    """What a call gives; what it raises fails the test by its words alone."""
     told = ""
     try:
-        yield
+        return call()
     except (ValueError, AssertionError) as reason:
-        told = str(reason)
-    if told:
-        pytest.fail(told, pytrace=False)
+        told = str(reason) or repr(reason)
+    pytest.fail(told, pytrace=False)  # here, or pytest would tell both
 
 
 @pytest.fixture
