@@ -1,14 +1,10 @@
-"""What pytest finds of us in any project: the fixtures `crosscheck` and `conformance`, and the grid by `-m crosscheck`.
+"""What pytest finds of us in any project: the fixture `crosscheck`, and the grid by `-m crosscheck`.
 
     def test_my_linkage(crosscheck):
         crosscheck.check("linkage.xml", tolerance=1e-4)
 
     def test_my_engine(crosscheck):
         crosscheck.conform(MyEngine(), expected_failures={"orders_are_kept": "a known bug, number 12"})
-
-    @pytest.mark.conforms(MyEngine())  # the same with a test for every question and mechanism
-    def test_it_conforms(conformance):
-        conformance()
 
 An installation registers this module under pytest11, so it is imported whenever somebody's tests are run: what takes
 time is imported when it is used. `pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...`
@@ -47,10 +43,6 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         args += ["--pyargs", GRID]
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "conforms(*engines): the engines that the fixture `conformance` checks")
-
-
 def _require_ours() -> None:
     """Fail in a sentence where another package hides one of ours: its name is as general as `reports`."""
     from planar_crosscheck import clash
@@ -74,27 +66,27 @@ class Crosscheck:
 
         beside = self._folder / str(model).rpartition(":")[0] if ":" in str(model) else self._folder / str(model)
         inside = isinstance(model, str | Path) and beside.exists()
-        found = None
-        try:
-            found = check(model, tolerance, duration, folder=self._folder if inside else None, **terms)
-            told = "" if found.fine else plain([found.answer])
-        except ValueError as reason:
-            told = str(reason)
-        if found is None or told:
-            pytest.fail(told, pytrace=False)
+        folder = self._folder if inside else None
+        found = _failing(lambda: check(model, tolerance, duration, folder=folder, **terms))
+        if not found.fine:
+            pytest.fail(plain([found.answer]), pytrace=False)
         return found
 
     def conform(self, engine: Engine, expected_failures: Mapping[str, str] | None = None) -> None:
         """Fail the test if an engine does not conform, or if a failure that was expected does not come true."""
         from planar_crosscheck import conform
 
-        told = ""
-        try:
-            conform(engine, expected_failures)
-        except AssertionError as reason:
-            told = str(reason)
-        if told:
-            pytest.fail(told, pytrace=False)
+        _failing(lambda: conform(engine, expected_failures))
+
+
+def _failing(call: Callable[[], Any]) -> Any:
+    """What a call gives; what it raises fails the test by its words alone."""
+    told = ""
+    try:
+        return call()
+    except (ValueError, AssertionError) as reason:
+        told = str(reason) or repr(reason)
+    pytest.fail(told, pytrace=False)  # here, or pytest would tell both
 
 
 @pytest.fixture
@@ -102,31 +94,3 @@ def crosscheck(request: pytest.FixtureRequest) -> Crosscheck:
     """Checks models and engines of one's own; see the first lines of planar_crosscheck_pytest.py."""
     _require_ours()
     return Crosscheck(request.path.parent)
-
-
-def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test a case of `conformance`; a test that names no engine fails."""
-    if "conformance" not in metafunc.fixturenames:
-        return
-    _require_ours()
-    from engines.conformance import cases
-
-    engines = [engine for marker in metafunc.definition.iter_markers("conforms") for engine in marker.args]
-    if not engines:
-        where = metafunc.definition.name
-        pytest.fail(f"{where}: it names no engine; mark it pytest.mark.conforms(ENGINE)", pytrace=False)
-    metafunc.parametrize("conformance", list(cases(*engines)), ids=str, indirect=True)
-
-
-@pytest.fixture
-def conformance(request: pytest.FixtureRequest) -> Callable[[], None]:
-    """What asks one check: it fails with the check's sentence, and skips with the reason where nothing is asked."""
-
-    def ask() -> None:
-        result = request.param.result()
-        if result.status == "fails":
-            pytest.fail(result.sentence, pytrace=False)
-        if result.status != "holds":
-            pytest.skip(f"{result.status}: {result.sentence}")
-
-    return ask

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from engines import Unsupported
-from reports.check.checked import Checked
+from reports.check.checked import Applied, Checked
 
 MUCH_MORE = 1.1  # times what was promised: then not all settings have reached the model
-
-
-@dataclass(frozen=True)
-class Applied:
-    """The file that was written: its largest error, and the CPU time of stepping [s]; `notes` say what stands in it."""
-
-    file: str
-    words: str
-    error: float
-    cpu: float
-    notes: tuple[str, ...]
 
 
 def applied(found: Checked, target: Path) -> Applied:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,6 +31,7 @@ from reports.check.judging import (
     refuse_disagreement,
     soft_motion,
 )
+from reports.write.tables import number
 
 PATIENCE = 5.0  # s of CPU time for all settings together
 LONGEST = 1.0  # s of it for one run: smaller steps than that allows are left out
@@ -39,22 +40,16 @@ SEARCH = 60.0  # s of CPU time to look for settings that reach a goal
 
 @dataclass(frozen=True)
 class Plan:
-    """Which documented settings are tried: all that `patience` [s of CPU time] allows; if it is infinite, all.
+    """Which documented settings are tried: those that may be advised, as far as `patience` [s of CPU time] allows.
 
     `goal`: an error; then ever smaller steps, until a setting is within it. `quick`: four settings, and rougher parts.
+    `everything`: the others too, that are dearer than one with a tenth of the error that is asked for.
     """
 
     patience: float
     goal: float | None = None
     quick: bool = False
-
-    @classmethod
-    def usual(cls, quick: bool = False) -> Plan:
-        return cls(PATIENCE, quick=quick)
-
-    @classmethod
-    def search(cls, goal: float) -> Plan:
-        return cls(SEARCH, goal)
+    everything: bool = False
 
 
 MEMBERS = ("words", "reads", "read")
@@ -81,10 +76,22 @@ class Tried:
     """One setting: its largest error in the measure of a tolerance, and the CPU time of stepping [s]."""
 
     change: Change
-    error: float
-    cost: float
     errors: Errors
     run: Trajectory
+    front: bool = False  # no other that was tried is both cheaper and better
+
+    @property
+    def error(self) -> float:
+        return self.errors.largest
+
+    @property
+    def cost(self) -> float:
+        return self.run.stepping
+
+    @property
+    def reaction(self) -> float:
+        """Of the largest true one of its kind."""
+        return self.errors.worst["reaction"]
 
 
 def tried(
@@ -95,34 +102,47 @@ def tried(
     own: Trajectory,
     told: Callable[[int, int], None],
     plan: Plan,
+    tolerance: float,
 ) -> list[Tried]:
     """Runs at the documented settings, coarse steps first. `own`: at the user's own, which come first in the answer.
 
     Left out is what takes too long: by how often the engine would step, from what it took so far.
     """
     model, mechanism = reading.model, reading.mechanism
-    unpruned = plan.goal is not None or plan.quick or plan.patience == float("inf")
-    smallest = 0.0 if unpruned else model.dt * max(own.stepping, 1e-4) / LONGEST
+    every_one = plan.quick or plan.everything or plan.patience == float("inf")
+    unlimited = plan.goal is not None or plan.quick or plan.patience == float("inf")
+    smallest = 0.0 if unlimited else model.dt * max(own.stepping, 1e-4) / LONGEST
     changes = model.changes(min(smallest, model.dt), plan.goal is not None)
     order = sorted(_few(changes) if plan.quick else range(1, len(changes)), key=lambda index: -changes[index].dt)
-    begin, rate = time.process_time(), max(own.stepping, 1e-5) / (samples * every)
-    wrong = errors(mechanism, truth, own)
-    found = [(0, Tried(changes[0], wrong.largest, own.stepping, wrong, own))]
-    for number, index in enumerate(order):
-        if plan.goal is not None and found[-1][1].error <= plan.goal:
+    begin, rates = time.process_time(), {changes[0].options: max(own.stepping, 1e-5) / (samples * every)}
+    found = [(0, Tried(changes[0], errors(mechanism, truth, own), own))]
+    for place, index in enumerate(order):
+        done, change = [each for _, each in found], changes[index]
+        alike = [each for each in done if each.change.options == change.options]
+        if plan.goal is not None and done[-1].error <= plan.goal:
             break
-        change = changes[index]
-        if plan.goal is not None and _stays([each for _, each in found if each.change.options == change.options]):
-            continue
-        told(number, len(order))
+        told(place, len(order))
         steps = samples * every * model.dt / change.dt
-        if time.process_time() - begin + steps * rate > plan.patience:
+        cost = steps * rates.get(change.options, max(rates.values()))
+        if time.process_time() - begin + cost > plan.patience:
+            continue
+        for_parts = plan.goal is None and alike[:1] == done[:1] and len(alike) <= SMALLER
+        dear = plan.goal is None and cost > _enough(done, tolerance)
+        if (dear or _stays(alike)) and not (every_one or for_parts):
             continue
         run = model.run(samples, every, change)
-        rate = max(rate, run.stepping / steps)
-        wrong = errors(mechanism, truth, run)
-        found.append((index, Tried(change, wrong.largest, run.stepping, wrong, run)))
-    return [each for _, each in sorted(found, key=lambda pair: pair[0])]
+        rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
+        found.append((index, Tried(change, errors(mechanism, truth, run), run)))
+    table = [each for _, each in sorted(found, key=lambda pair: pair[0])]
+    front = best(table)
+    return [replace(each, front=each in front) for each in table]
+
+
+def _enough(found: list[Tried], tolerance: float) -> float:
+    """CPU time [s] of a setting with a tenth of the advised one's error: what takes longer is not advised."""
+    advised = cheapest(found, tolerance)
+    decade = None if advised is None else cheapest(found, advised.error / 10)
+    return float("inf") if decade is None else decade.cost
 
 
 def _few(changes: list[Change]) -> list[int]:
@@ -134,9 +154,15 @@ def _few(changes: list[Change]) -> list[int]:
 
 
 def _stays(found: list[Tried]) -> bool:
-    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away."""
+    """Whether smaller steps have stopped to help: the last two of them took less than a quarter of the error away, or,
+    of one that is larger than what a motion tells, hardly changed it.
+    """
+
+    def stays(before: float, after: float) -> bool:
+        return after >= FALLS * before if before < SATURATED else abs(after - before) <= ALIKE * before
+
     last = [each.error for each in sorted(found, key=lambda each: -each.change.dt)][-3:]
-    return len(last) == 3 and np.isfinite(last[0]) and all(b >= FALLS * a for a, b in pairwise(last))
+    return len(last) == 3 and bool(np.isfinite(last).all()) and all(stays(a, b) for a, b in pairwise(last))
 
 
 def cheapest(found: list[Tried], tolerance: float) -> Tried | None:
@@ -162,6 +188,8 @@ def same_step(found: list[Tried], own: Tried) -> list[Tried]:
 
 Array = NDArray[np.float64]
 FALLS = 0.75  # of the error before: a smaller step is taken to help
+SATURATED = 1.0  # rad, or lengths of the mechanism: above, an error no longer tells its causes
+ALIKE = 0.01  # of such an error: two coarse steps are seldom so near by chance, and twice one after the other
 QUICK = 1e-9  # of the declared motion, where little time is to be spent: it is compared with errors of two digits
 
 
@@ -215,6 +243,19 @@ LOOKS = 10  # times a sample at most: how often a motion is asked what it meets;
 SMALLER = 4  # runs of the user's own settings at smaller steps that the parts are told from
 
 
+@dataclass(frozen=True)
+class Applied:
+    """The file that --apply has written: its largest error, and the CPU time of stepping [s]; `notes`: what stands in
+    it.
+    """
+
+    file: str
+    words: str
+    error: float
+    cpu: float
+    notes: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Checked:
     """All that was found; errors in the measure of a tolerance: angles [rad] and places in lengths of the mechanism."""
@@ -226,18 +267,37 @@ class Checked:
     agreement: float  # of the accelerations at t = 0
     facts: Facts
     judge: IdealMotion
-    own: Trajectory
-    own_errors: Errors
     judge_errors: Errors
-    cost: float
     opens: Opening | None
     parts: Parts
-    table: list[Tried]
+    table: list[Tried]  # the user's own settings first
+    asked: bool = True  # whether somebody named the tolerance
+    applied: Applied | None = None
+
+    @property
+    def own(self) -> Trajectory:
+        return self.table[0].run
+
+    @property
+    def own_errors(self) -> Errors:
+        return self.table[0].errors
 
     @property
     def met(self) -> bool:
         """Whether the user's own settings are within the tolerance."""
         return self.own_errors.largest <= self.tolerance
+
+    @property
+    def verdict(self) -> str:
+        """The answer in one sentence."""
+        assumed, engine = self.reading.model.assumed, self.reading.model.engine
+        start = f"With {assumed}, {self.name} in {engine}" if assumed else f"{self.name} in {engine}"
+        end = (
+            f"; the tolerance of {number(self.tolerance)} is {'met' if self.met else 'missed'}." if self.asked else "."
+        )
+        if not self.own_errors.finished:
+            return f"{start} gives up before {self.duration:g} s{end}"
+        return f"{start} is off by up to {number(self.own_errors.largest)} in {self.duration:g} s{end}"
 
     @property
     def advised(self) -> Tried | None:
@@ -250,10 +310,6 @@ class Checked:
         return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
 
     @property
-    def fronts(self) -> list[Tried]:
-        return best(self.table)
-
-    @property
     def chaotic(self) -> bool:
         """Whether neighbouring starts part exponentially within the motion."""
         return self.judge.horizon < self.duration
@@ -261,7 +317,11 @@ class Checked:
     def until_horizon(self, each: Errors) -> float:
         """The largest error before neighbouring starts part exponentially."""
         early = each.whole[each.t <= self.judge.horizon]
-        return float(early.max()) if np.isfinite(early).all() else float("inf")
+        return _largest(early)
+
+    @property
+    def error_until_horizon(self) -> float:
+        return self.until_horizon(self.own_errors)
 
     def rerun(self, reading: Reading) -> tuple[float, float]:
         """(error, CPU time [s]) of the same model with other settings, read anew, in the same motion."""
@@ -277,12 +337,15 @@ def check(
     tolerance: float,
     told: Callable[[str], None] = lambda words: None,
     plan: Plan | None = None,
+    asked: bool = True,
 ) -> Checked:
     """Check a model for a motion of `duration` [s]. `told` is given a few words before each part of the work.
 
     Raises Unsupported where the motion meets what ideal joints lack, and InvalidMechanism where it can't be followed.
     """
-    mechanism, model, plan = reading.mechanism, reading.model, plan or Plan.usual()
+    mechanism, model, plan = reading.mechanism, reading.model, plan or Plan(PATIENCE)
+    if not 0 < model.dt < float("inf"):
+        raise InvalidMechanism(f"the model's own step is {model.dt:g} s; it must be a finite time above zero")
     told("comparing the accelerations at t = 0")
     agreement = refuse_disagreement(reading)
     every = max(1, round(duration / SAMPLES / model.dt))
@@ -303,12 +366,11 @@ def check(
     facts = facts_of(mechanism, truth)
     told("running your own settings")
     own = model.run(samples, every)
-    own_errors, judge_errors = errors(mechanism, truth, own), errors(mechanism, truth, judge.looser)
 
     def progress(number: int, count: int) -> None:
         told(f"trying documented settings, {number + 1} of {count}")
 
-    table = tried(reading, truth, samples, every, own, progress, plan)
+    table = tried(reading, truth, samples, every, own, progress, plan, tolerance)
     told("telling softness from the step")
     smaller = same_step(table, table[0])[1 : 1 + SMALLER]
     parts = parts_of(reading, truth, own, smaller, QUICK if plan.quick else TOLERANCE, judge.horizon)
@@ -320,13 +382,11 @@ def check(
         agreement,
         facts,
         judge,
-        own,
-        own_errors,
-        judge_errors,
-        own.stepping,
+        errors(mechanism, truth, judge.looser),
         opening(mechanism, own),
         parts,
         table,
+        asked,
     )
 
 

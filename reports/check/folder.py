@@ -6,9 +6,9 @@ import re
 import xml.etree.ElementTree as xml
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from reports.check.request import CheckReport, CheckRequest, Refused
-from reports.check.telling import number
 
 HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
 LOOKED_AT = 65536  # bytes of a file: a model says early what it is
@@ -34,30 +34,22 @@ def models(folder: Path) -> list[Path]:
 
 def rows(answers: Answers) -> list[tuple[str, ...]]:
     """Under HEADER, a model each."""
-    out = []
-    for request, answer in answers:
-        if isinstance(answer, Refused):
-            out.append((request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-"))
-            continue
-        data, advised = answer.data, answer.data["advised"]
-        missed = " (missed)" if data["asked"] and not data["met"] else ""
-        error = "gave up" if data["error"] is None else number(data["error"])
-        times = number(advised["cpu"] / data["cpu"]) if advised and data["cpu"] else "-"
-        told = (advised["words"], number(advised["error"]), times) if advised else ("none that was tried", "-", "-")
-        out.append((request.word, f"{error}{missed}", _cause(data["parts"]), *told))
-    return out
+    return [
+        (request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-")
+        if isinstance(answer, Refused)
+        else (request.word, *answer.line)
+        for request, answer in answers
+    ]
 
 
-def _cause(parts: dict[str, float | None]) -> str:
-    """Which part of the error is the largest."""
-    if not parts["step"]:
-        return "gave up" if parts["step"] is None else "-"
-    softness = parts["softness"] or 0.0
-    if not parts["falling"] and parts["divided"] and (parts["rest"] or 0.0) > max(softness, 0.5 * parts["step"]):
-        return "neither softness nor step"
-    if not parts["divided"]:
-        return "step and softness"
-    return "softness" if softness > parts["step"] else "step"
+def document(answers: Answers) -> list[dict[str, Any]]:
+    """The data of each model, or why it was refused: see `reports.check.document.schema`."""
+    return [
+        {"model": request.word, "refused": answer.sentence, "found": None}
+        if isinstance(answer, Refused)
+        else {"model": request.word, "refused": None, "found": answer.data}
+        for request, answer in answers
+    ]
 
 
 def _short(request: CheckRequest, answer: Refused) -> str:

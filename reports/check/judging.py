@@ -100,6 +100,11 @@ class IdealMotion:
     cut: bool = False
 
     @property
+    def grown(self) -> float:
+        """How many times at the end."""
+        return float(self.growth[-1])
+
+    @property
     def tenfold(self) -> float:
         """In how many seconds, on average, a small disturbance of the start grows tenfold; infinite if it does not.
 
@@ -181,7 +186,6 @@ def _size(difference: Array, unit: Array) -> Array:
 
 # Of the largest acceleration: rounding of equations that are solved twice, with room for badly scaled masses.
 AGREE = 1e-6
-QUANTITIES = ("angle", "position", "reaction", "energy")
 UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
@@ -190,7 +194,7 @@ class Errors:
     """Of one run over its samples (times,); NaN where it gave up, or where there is nothing to compare."""
 
     t: Array
-    of: dict[str, Array]  # by QUANTITIES
+    of: dict[str, Array]  # by UNITS
     whole: Array  # the larger of angles [rad] and places in lengths of the mechanism: what a tolerance is for
     finished: bool
 
@@ -199,9 +203,15 @@ class Errors:
         """Infinite for a run that gave up."""
         return float(np.nanmax(self.whole)) if self.finished else float("inf")
 
-    def worst(self, quantity: str) -> float:
-        values = self.of[quantity]
-        return float(np.nanmax(values)) if np.isfinite(values).any() else float("nan")
+    @property
+    def worst(self) -> dict[str, float]:
+        """Of each quantity; NaN where it is not known."""
+        known = {name: bool(np.isfinite(values).any()) for name, values in self.of.items()}
+        return {name: float(np.nanmax(self.of[name])) if known[name] else float("nan") for name in self.of}
+
+    @property
+    def over_time(self) -> dict[str, list[float]]:
+        return {"t": self.t.tolist(), **{name: values.tolist() for name, values in self.of.items()}}
 
 
 def errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Errors:

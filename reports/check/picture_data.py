@@ -12,9 +12,9 @@ from reference.forces import Spring
 from reference.joints import Rod, Slot
 from reference.mechanism import Mechanism
 from reference.plane import rotated
-from reference.trajectory import body_points, ground_points
+from reference.trajectory import Trajectory, body_points, ground_points
 from reports.check.checked import Checked, Tried
-from reports.check.judging import QUANTITIES, Errors
+from reports.check.judging import UNITS, Errors, IdealMotion
 
 Array = NDArray[np.float64]
 Lines = list[list[list[float]]]  # lines of points of two coordinates [m]
@@ -34,7 +34,8 @@ class Pose:
 class PictureData:
     """Errors over the times t [s] of three runs, those of quantities that are known, and a moment [s] in two poses.
 
-    `advised` is None where the user's own settings are enough; `horizon` [s] where errors do not grow exponentially.
+    `advised` is None where the user's own settings are enough; `horizon` [s] where errors do not grow exponentially;
+    `label`: what the first run is called.
     """
 
     t: list[float]
@@ -48,6 +49,7 @@ class PictureData:
     ground: list[list[float]]
     ideal: Pose
     found: Pose
+    label: str = "your settings"
 
     def as_text(self) -> str:
         """JSON, in which NaN may stand."""
@@ -63,9 +65,21 @@ def from_text(text: str) -> PictureData:
 def shown_of(found: Checked, advised: Tried | None = None) -> PictureData:
     """What is drawn of a check; `advised`: the settings beside the user's own, if not those that it advises."""
     advised = advised or found.advised
-    own, judge, mechanism = found.own_errors, found.judge_errors, found.reading.mechanism
-    known = [quantity for quantity in QUANTITIES if np.isfinite(own.of[quantity]).any()]
     other = None if advised is None or found.met else advised.errors
+    return picture_data(found.reading.mechanism, found.judge, found.judge_errors, found.own, found.own_errors, other)
+
+
+def picture_data(
+    mechanism: Mechanism,
+    ideal: IdealMotion,
+    judge: Errors,
+    run: Trajectory,
+    own: Errors,
+    other: Errors | None = None,
+    label: str = PictureData.label,
+) -> PictureData:
+    """Of a run with its errors, beside the ideal motion, the judge's errors, and another run's."""
+    known = [quantity for quantity in UNITS if np.isfinite(own.of[quantity]).any()]
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
     return PictureData(
         own.t.tolist(),
@@ -74,11 +88,12 @@ def shown_of(found: Checked, advised: Tried | None = None) -> PictureData:
         _curves(judge, known),
         [] if other is None else other.t.tolist(),
         None if other is None else _curves(other, known),
-        found.judge.horizon if found.judge.horizon < found.duration else None,
+        ideal.horizon if ideal.horizon < ideal.trajectory.t[-1] else None,
         float(own.t[sample]),
         ground_points(mechanism).tolist(),
-        pose_of(mechanism, found.judge.trajectory.pose[sample]),
-        pose_of(mechanism, found.own.pose[sample]),
+        pose_of(mechanism, ideal.trajectory.pose[sample]),
+        pose_of(mechanism, run.pose[sample]),
+        label,
     )
 
 

@@ -18,11 +18,8 @@ BARS: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 def pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
     """By 'errors' and 'worst': what each shows, and the SVG."""
     named = {
-        "errors": ("Errors of your settings over time, beside the judge's own error", _errors(shown)),
-        "worst": (
-            f"The mechanism at {shown.moment:.3g} s, where your settings are most wrong",
-            _worst(shown),
-        ),
+        "errors": (f"Errors of {shown.label} over time, beside the judge's own error", _errors(shown)),
+        "worst": (f"The mechanism at {shown.moment:.3g} s, where the error of {shown.label} is largest", _worst(shown)),
     }
     return {key: (title, svg(figure, title)) for key, (title, figure) in named.items()}
 
@@ -37,7 +34,7 @@ def _errors(shown: PictureData) -> Figure:
         for panel, quantity in zip(panels, quantities, strict=False):
             style_axes(panel, theme)
             panel.set_yscale("log")
-            lines = [(shown.t, shown.own, "your settings", theme.first, "-")]
+            lines = [(shown.t, shown.own, shown.label, theme.first, "-")]
             if shown.advised is not None:
                 lines.append((shown.advised_t, shown.advised, "advised settings", theme.second, "--"))
             lines.append((shown.judge_t, shown.judge, "the judge's own error", theme.quiet, ":"))
@@ -62,7 +59,10 @@ def _worst(shown: PictureData) -> Figure:
         panel = figure.subplots()
         plane(panel, theme, shown.ground, "held to the ground")
         ideal(panel, theme, shown.ideal, "ideal joints")
-        beside(panel, theme, shown.found, "your settings")
+        dashed: dict[str, Any] = {"color": theme.first, "linestyle": "--"}
+        _draw(panel, shown.found.rails, linewidth=0.6, color=theme.first, alpha=0.5)
+        _draw(panel, shown.found.links, linewidth=0.8, **dashed)
+        _draw(panel, shown.found.bars, shown.label, linewidth=1.5, markersize=4, **dashed, **BARS)
         legend = figure.legend(loc="outside lower center", ncols=3, frameon=False)
         for text in legend.get_texts():
             text.set_color(theme.ink)
@@ -84,14 +84,6 @@ def ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> Non
     _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
     _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
     _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BARS)
-
-
-def beside(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
-    """The pose of a run, dashed over the other."""
-    dashed: dict[str, Any] = {"color": theme.first, "linestyle": "--"}
-    _draw(panel, pose.rails, linewidth=0.6, color=theme.first, alpha=0.5)
-    _draw(panel, pose.links, linewidth=0.8, **dashed)
-    _draw(panel, pose.bars, label, linewidth=1.5, markersize=4, **dashed, **BARS)
 
 
 def _draw(panel: Any, lines: Lines, label: str | None = None, **look: Any) -> None:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import base64
 import textwrap
+from base64 import b64encode
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
-
-from reports.check.telling import Section
 
 STYLE = """
 :root { color-scheme: light dark }
@@ -17,6 +16,21 @@ th, td { text-align: left; padding: .25rem .75rem; border-bottom: 1px solid #888
 pre { padding: .75rem; border: 1px solid #8886; overflow-x: auto }
 img { max-width: 100%; height: auto }
 """
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the report. `facts`: what a sentence is about, and the sentence; `code`: lines to copy; `picture`: what
+    it shows, and the SVG.
+    """
+
+    title: str
+    sentences: tuple[str, ...] = ()
+    facts: tuple[tuple[str, str], ...] = ()
+    code: tuple[str, ...] = ()
+    header: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    picture: tuple[str, str] | None = None
 
 
 def plain(sections: Sequence[Section], width: int = 120) -> str:
@@ -41,16 +55,15 @@ def plain(sections: Sequence[Section], width: int = 120) -> str:
 
 def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> str:
     """`files`: the path of each picture's file by what the picture shows."""
-    lines = [f"# {_plain_name(name)}", ""]
+    from reports.write.tables import markdown as table
+
+    lines = [f"# {' '.join(name.split())}", ""]
     for section in sections:
-        lines += [f"## {section.title}", ""]
-        lines += [f"* {_cell(sentence)}" for sentence in section.sentences]
-        lines += [f"* {label}: {_cell(sentence)}" for label, sentence in section.facts]
-        if section.code:
-            lines += ["", "```", *section.code, "```"]
-        if section.rows:
-            lines += ["", f"| {' | '.join(map(_cell, section.header))} |", f"|{' --- |' * len(section.header)}"]
-            lines += [f"| {' | '.join(map(_cell, row))} |" for row in section.rows]
+        lines += [f"## {section.title}", ""] if section.title else []
+        lines += [f"* {_inert(sentence)}" for sentence in section.sentences]
+        lines += [f"* {label}: {_inert(sentence)}" for label, sentence in section.facts]
+        lines += ["", "```", *section.code, "```"] if section.code else []
+        lines += ["", _inert(table(section.header, section.rows, len(section.header)))] if section.rows else []
         if section.picture is not None:
             lines += ["", f"![{section.picture[0]}]({files[section.picture[0]]})"]
         lines.append("")
@@ -67,30 +80,16 @@ def html(name: str, sections: Sequence[Section]) -> str:
 
 def body(name: str, sections: Sequence[Section]) -> str:
     """What stands in the page, which a notebook can show too."""
-    parts = [f"<h1>{escape(name)}</h1>"]
-    for section in sections:
-        parts += [f"<h2>{escape(section.title)}</h2>"] if section.title else []
-        parts += [f"<p>{escape(sentence)}</p>" for sentence in section.sentences]
-        parts += [f"<p><b>{label}</b>: {escape(sentence)}</p>" for label, sentence in section.facts]
-        if section.code:
-            parts.append(f"<pre>{escape(chr(10).join(section.code))}</pre>")
-        if section.rows:
-            head = "".join(f"<th>{escape(cell)}</th>" for cell in section.header)
-            rows = "".join(
-                "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in section.rows
-            )
-            parts.append(f"<table><tr>{head}</tr>{rows}</table>")
-        if section.picture is not None:
-            # An image of its own: as elements of this page two drawings would share the names of their clips.
-            title, drawing = section.picture
-            data = base64.b64encode(drawing.encode()).decode()
-            parts.append(f'<img alt="{escape(title)}" src="data:image/svg+xml;base64,{data}">')
-    return "\n".join(parts)
+    from markdown_it import MarkdownIt
+
+    # Images of their own: as elements of this page two drawings would share the names of their clips.
+    drawn = dict(section.picture for section in sections if section.picture is not None)
+    files = {title: f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}" for title, svg in drawn.items()}
+    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
+    # Our own pictures, which it would leave out, and no address that the name of a body may hold.
+    reader.validateLink = lambda address: address in files.values()  # type: ignore[method-assign]
+    return reader.render(markdown(name, sections, files))
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("<", "&lt;")
-
-
-def _plain_name(name: str) -> str:
-    return " ".join(name.split())
+def _inert(text: str) -> str:
+    return text.replace("<", "&lt;")

@@ -7,14 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from engines import Unsupported
-from engines.importers import read_object
-from reference.checks import InvalidMechanism
-from reports.check.applying import Applied, applied
-from reports.check.checked import Checked, Plan, check, read
-from reports.check.telling import Section, answer, data, sections, verdict
+if TYPE_CHECKING:
+    from reports.check.checked import Plan
+    from reports.check.rendering import Section
 
 USUAL_TOLERANCE = 1e-4  # of settings that are advised where nobody has asked for one
 
@@ -23,8 +20,8 @@ USUAL_TOLERANCE = 1e-4  # of settings that are advised where nobody has asked fo
 class CheckRequest:
     """`word`: the model as on the command line, seen from `folder`; `notes`: a file that tells how far the work is.
 
-    `tolerance`: None if nobody asked for one; `search`: for settings that meet it, until they are found; `apply`: the
-    file that they are written into.
+    `tolerance`: None if nobody asked for one; `quick`, `everything`: see `Plan`; `search`: for settings that meet it,
+    until they are found; `apply`: the file that they are written into.
     """
 
     word: str
@@ -36,6 +33,7 @@ class CheckRequest:
     step: float | None = None
     pictures: bool = False
     quick: bool = False
+    everything: bool = False
     search: bool = False
     apply: str = ""
     notes: str = ""
@@ -46,19 +44,24 @@ class CheckRequest:
 
     @property
     def plan(self) -> Plan:
+        from reports.check.checked import PATIENCE, SEARCH, Plan
+
         if not self.search:
-            return Plan.usual(self.quick)
-        return Plan.search(USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
+            return Plan(PATIENCE, quick=self.quick, everything=self.everything)
+        return Plan(SEARCH, USUAL_TOLERANCE if self.tolerance is None else self.tolerance)
 
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """What was found, as the answer, as sections and as plain data; `trouble`: why nothing was written, if asked to."""
+    """What was found, as the answer, as sections, as a line of a table and as plain data; `trouble`: why nothing was
+    written, if asked to.
+    """
 
     request: CheckRequest
     verdict: str
     answer: Section
     sections: tuple[Section, ...]
+    line: tuple[str, ...]
     data: dict[str, Any]
     trouble: str = ""
 
@@ -89,6 +92,15 @@ class Refused:
 def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     """In a worker: the check, or why there is none. `model`: an engine's own object, in the place of a file."""
 
+    # Here: who only asks is sooner there.
+    from engines import Unsupported
+    from engines.importers import read_object
+    from reference.checks import InvalidMechanism
+    from reports.check.applying import applied
+    from reports.check.checked import check, read
+    from reports.check.document import data
+    from reports.check.telling import answer, line, sections
+
     def told(words: str) -> None:
         if request.notes:
             Path(request.notes).write_text(words, encoding="utf-8")
@@ -101,39 +113,23 @@ def answered(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
         else:
             reading = read_object(model, request.without, request.step)
         name = reading.title or Path(request.word).name
-        found = check(reading, name, request.duration, tolerance, told, request.plan)
+        found = check(reading, name, request.duration, tolerance, told, request.plan, request.tolerance is not None)
     except (Unsupported, InvalidMechanism, ValueError) as reason:
         return Refused(_one_line(request, reason))
-    written, trouble = None, ""
+    trouble, drawn = "", {}
     if request.apply:
         told("writing the advised settings and running them")
         try:
-            written = applied(found, Path(request.folder) / request.apply)
+            found = replace(found, applied=applied(found, Path(request.folder) / request.apply))
         except (Unsupported, InvalidMechanism, ValueError) as reason:
             trouble = _one_line(request, reason)
-    return _report(request, found, written, trouble, told)
-
-
-def _report(request: CheckRequest, found: Checked, written: Applied | None, trouble: str, told: Any) -> CheckReport:
-    drawn = {}
     if request.pictures:
         told("drawing")
         from reports.check.picture_data import shown_of
         from reports.check.pictures import pictures  # a second of imports
 
         drawn = pictures(shown_of(found))
-    asked = request.tolerance is not None
-    first, *others = sections(found, drawn, asked)
-    brief = answer(found, asked)
-    if written is not None:
-        notes = "".join(f"; {note}" for note in written.notes)
-        fact = (
-            "written",
-            f"{written.file}: {written.words}; run from the file: off by {written.error:.2g}, at "
-            f"{1e3 * written.cpu:.2g} ms of CPU time{notes}",
-        )
-        first, brief = (replace(each, facts=(*each.facts, fact)) for each in (first, brief))
-    return CheckReport(request, verdict(found, asked), brief, (first, *others), data(found, asked, written), trouble)
+    return CheckReport(request, found.verdict, answer(found), sections(found, drawn), line(found), data(found), trouble)
 
 
 def _one_line(request: CheckRequest, reason: Exception) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings
+from reports.cli.options import FOLDER, REFERENCES, STORE, Folder, Settings, listed, refuse_existing
 from reports.model.ending import BadInput, FileTrouble
 
 if TYPE_CHECKING:
@@ -35,21 +35,15 @@ def animate(
     """Write a picture that moves: the exact motion, what engines make of it, and how their errors grow."""
     if to not in KINDS:
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_scenes
+    from reports.cli.known import one_scene
     from reports.run.files import folder_for
 
-    known, names, _ = with_words(registered(), [scene], None, settings or (), motion=True)
-    chosen = choose_scenes(names, known.scenes, known.pages)
-    if len(chosen) != 1:
-        told = ", ".join(one.name for one in chosen)
-        raise BadInput(f"{scene!r} names {len(chosen)} scenes; give one of {told}")
+    known, chosen = one_scene(scene, settings or ())
     methods = _methods(engines, known.engines)
-    path = output or Path(f"{chosen[0].name}.{to}")
-    if not force and (path.is_symlink() or path.exists()):
-        raise FileTrouble(f"{path} is there already: give another --output, or --force to replace it")
+    path = output or Path(f"{chosen.name}.{to}")
+    refuse_existing([path], "--output", force)
     folder_for(path.absolute().parent, "give another --output")  # before anything is run
-    shown = _shown(chosen[0], methods, every, results)
+    shown = _shown(chosen, methods, every, results)
     from reports.cli.terminal import Terminal
 
     for word, why in shown.lost.items():
@@ -61,18 +55,14 @@ def animate(
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
     """The engines of these names. Raises BadInput for one that is not known, and for too many."""
     from engines.registry import method
-    from reports.model.ending import nearest
 
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST]
     known = {method(engine): engine for engine in engines}
-    names = [name.strip() for word in words for name in word.split(",") if name.strip()]
-    for name in names:
-        if name not in known:
-            raise nearest("method", name, known)
+    names = listed("--engines", words, known)
     if len(names) > MOST:
         raise BadInput(f"--engines names {len(names)} methods; more than {MOST} can't be told apart in one picture")
-    return [known[name] for name in dict.fromkeys(names)]
+    return [known[name] for name in names]
 
 
 def _shown(scene: Scene, engines: list[Engine], every: int, results: Path) -> Shown:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers
-from reports.model.ending import BadInput
+from reports.cli.options import FOLDER, STORE, Folder, Scheduler, Workers, listed
 
 if TYPE_CHECKING:
     from reports.cli.terminal import Terminal
@@ -86,17 +85,10 @@ def atlas(
 
 def chosen(scenes: str | None) -> tuple[Subject, ...]:
     """The maps of these names. Raises BadInput."""
-    from reports.model.ending import nearest
     from reports.pages.atlas.subjects import SUBJECTS
 
     known = {subject.name: subject for subject in SUBJECTS}
-    words = [*known] if scenes is None else [word.strip() for word in scenes.split(",") if word.strip()]
-    if not words:
-        raise BadInput(f"--scenes is {scenes!r}; it must be one or some of {', '.join(known)}")
-    for word in words:
-        if word not in known:
-            raise nearest("map", word, known)
-    return tuple(known[word] for word in dict.fromkeys(words))
+    return SUBJECTS if scenes is None else tuple(known[word] for word in listed("--scenes", [scenes], known))
 
 
 def run_columns(terminal: Terminal, store: Store, columns: Sequence[Column], crew: Workforce) -> int:

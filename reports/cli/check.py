@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic
@@ -15,23 +15,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from reports.model.ending import BadInput, Broken
-from reports.run.files import write_whole
 
 if TYPE_CHECKING:
+    from reports.check.folder import Answers
     from reports.check.request import CheckReport, CheckRequest, Refused
 
 LONGEST = 1000.0  # s of motion
-SUFFIX = ".svg"
 WIDTH = 120  # columns at most
+OVERWRITE = "\r\x1b[K"  # on a terminal
+# What a check imports: the process from which workers are forked does so while this one gets ready.
+EARLY = ("reports.check.applying", "reports.check.document", "reports.check.telling", "numba")
 # The words of `switch_off` in engines/mujoco/reading and engines/pymunk/reading, which are not imported for a help.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
     "spring, damper, gravity or equality"
 )
-
-
-class Missed(Broken):
-    """The model's own settings miss the tolerance."""
 
 
 def check(
@@ -69,48 +67,60 @@ def check(
     Exit status 1 if a tolerance that was asked for is missed.
     """
     if as_schema:
-        from reports.check.schema import schema
+        from reports.check.document import schema
 
         return _say(json.dumps(schema(), indent=1))
-    _refuse_bad(model, duration, tolerance, fix_to, step, limit, {"html": html, "markdown": markdown, "junit": junit})
+    files = {"html": html, "markdown": markdown, "junit": junit}
+    sizes = {"duration": (duration, LONGEST), "tolerance": (tolerance, 1.0), "fix-to": (fix_to, 1.0)}
+    _refuse_bad(model, sizes | {"limit": (limit, 1e6)}, step, duration, files)
     if tolerance is not None and fix_to is not None:
         raise BadInput("--tolerance and --fix-to both name an error; give one of them")
-    from reports.check.request import CheckRequest
+    from reports.run.worker import start_early
 
-    wanted = tolerance if fix_to is None else fix_to
-    common: dict[str, Any] = {"duration": duration, "tolerance": wanted, "without": tuple(without or ()), "key": key}
-    common |= {"step": step, "quick": quick, "search": fix_to is not None}
-    if Path(model).is_dir():
-        for name, given in (("apply", apply), ("html", html), ("all", everything)):
-            if given:
-                raise BadInput(f"--{name} is for one model, and {model} is a folder; give one of its models")
-        return _check_folder(Path(model), common, limit, markdown, junit, as_json)
-    pictures = html is not None or markdown is not None
-    target = "" if apply is None else str(apply)
-    request = CheckRequest(model, os.getcwd(), pictures=pictures, apply=target, **common)
-    answer = asked(request, limit)
-    _write(answer, html, markdown, junit)
-    _print(answer, as_json, everything)
-    if answer.trouble:
-        raise BadInput(answer.trouble)
-    if not answer.fine:
-        raise Missed(answer.verdict)
+    start_early(*EARLY)
+    from reports.check.request import CheckRequest, Refused
+
+    folder = Path(model).is_dir()
+    for name, given in (("apply", apply), ("html", html), ("all", everything)) if folder else ():
+        if given:
+            raise BadInput(f"--{name} is for one model, and {model} is a folder; give one of its models")
+    drawn = not folder and (html is not None or markdown is not None)
+    common: dict[str, Any] = {"duration": duration, "tolerance": tolerance if fix_to is None else fix_to, "key": key}
+    common |= {"without": tuple(without or ()), "step": step, "quick": quick, "search": fix_to is not None}
+    common |= {"apply": str(apply or ""), "pictures": drawn, "everything": everything or as_json or drawn}
+    begin = monotonic()
+    answers = _answers([CheckRequest(word, os.getcwd(), **common) for word in _models(model)], limit)
+    if folder:
+        _print_folder(model, answers, as_json)
+    else:
+        (_, answer), *_ = answers
+        if isinstance(answer, Refused):
+            raise BadInput(answer.sentence)
+        _print(answer, as_json, everything)
+    _write(model, answers, files, monotonic() - begin)
+    told = [answer for _, answer in answers if not isinstance(answer, Refused)]
+    for answer in told:
+        if answer.trouble:
+            raise BadInput(answer.trouble)
+    missed = [answer for answer in told if not answer.fine]
+    if missed and folder:
+        names = ", ".join(answer.request.word for answer in missed)
+        raise Broken(f"{len(missed)} of {len(answers)} models miss {common['tolerance']:g}: {names}")
+    if missed:
+        raise Broken(missed[0].verdict)
 
 
 def _refuse_bad(
     model: str,
-    duration: float,
-    tolerance: float | None,
-    fix_to: float | None,
+    sizes: Mapping[str, tuple[float | None, float]],
     step: float | None,
-    limit: float,
-    files: dict[str, Path | None],
+    duration: float,
+    files: Mapping[str, Path | None],
 ) -> None:
     """Raises BadInput before anything is run."""
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
-    sizes = (("duration", duration, LONGEST), ("tolerance", tolerance, 1.0), ("fix-to", fix_to, 1.0))
-    for name, value, most in (*sizes, ("limit", limit, 1e6)):
+    for name, (value, most) in sizes.items():
         if value is not None and not 0 < value <= most:
             raise BadInput(f"--{name} is {value:g}; it must be greater than zero and at most {most:g}")
     if step is not None and not 0 < step <= duration:
@@ -120,144 +130,121 @@ def _refuse_bad(
             raise BadInput(f"--{name} is {str(path)!r}, which is a folder; give a file")
 
 
-def asked(request: CheckRequest, limit: float) -> CheckReport:
-    """The answer to a CheckRequest, from a supervised process, with progress on stderr. Raises BadInput in one line."""
-    from reports.check.request import Refused
+def _models(model: str) -> list[str]:
+    """The model, or those of a folder. Raises BadInput for a folder without any."""
+    if not Path(model).is_dir():
+        return [model]
+    from reports.check.folder import models
 
-    for _, answer in _answers([request], limit, 1):
-        if isinstance(answer, Refused):
-            raise BadInput(answer.sentence)
-        return answer
-    raise BadInput(f"{request.word}: no answer came back")
+    found = [str(path) for path in models(Path(model))]
+    if not found:
+        raise BadInput(f"{model}: it holds no model; give a folder with MJCF, URDF or scripts that import pymunk")
+    return found
 
 
-def _answers(
-    requests: list[CheckRequest], limit: float, workers: int
-) -> Iterator[tuple[CheckRequest, CheckReport | Refused]]:
-    """Each request with its answer, as they come."""
+def _answers(requests: list[CheckRequest], limit: float) -> Answers:
+    """Each request with its answer, from supervised processes, with progress on stderr. Raises WorkersLost."""
     from dataclasses import replace
 
     from reports.check.request import Refused, answered
     from reports.model.outcomes import Loss, Outcome
     from reports.run.files import temporary_folder
+    from reports.run.queue import usable
     from reports.run.supervisor import supervise
 
+    found: dict[str, CheckReport | Refused] = {}
     with temporary_folder() as folder:
-        notes = folder / "progress"
-        tell = _Progress(notes)
-        items = [replace(each, notes=str(notes)) for each in requests] if len(requests) == 1 else requests
+        tell = _Progress(folder / "progress")
+        items = [replace(each, notes=str(tell.notes)) for each in requests] if len(requests) == 1 else requests
         try:
-            for item, result, _ in supervise(answered, items, limit, workers, watch=tell, wall=limit + 60):
-                tell.clear()
+            for item, result, _ in supervise(answered, items, limit, len(usable()), watch=tell, wall=limit + 60):
                 if isinstance(result, Loss):
                     ended = result.outcome == Outcome.TIMED_OUT
                     how = result.sentence if ended else f"its process was lost: {result.sentence}"
                     remedy = "; give a larger --limit if that was to be expected" if ended else ""
-                    yield item, Refused(f"{item.word}: {how}{remedy}")
-                else:
-                    yield item, result
+                    result = Refused(f"{item.word}: {how}{remedy}")
+                found[item.word] = result
+                if len(requests) > 1:
+                    tell.show(f"{len(found)} of {len(requests)}: {item.word}")
         finally:
             tell.clear()
-
-
-def _check_folder(
-    folder: Path, common: dict[str, Any], limit: float, markdown: Path | None, junit: Path | None, as_json: bool
-) -> None:
-    """Every model of a folder, in as many processes as there are processors; one table."""
-    from reports.check import rendering
-    from reports.check.folder import HEADER, junit_xml, models, rows
-    from reports.check.request import CheckReport, CheckRequest
-    from reports.check.telling import Section
-    from reports.write.tables import markdown as table
-
-    begin, paths = monotonic(), models(folder)
-    if not paths:
-        raise BadInput(f"{folder}: it holds no model; give a folder with MJCF, URDF or scripts that import pymunk")
-    requests = [CheckRequest(str(path), os.getcwd(), **common) for path in paths]
-    found = {}
-    for request, answer in _answers(requests, limit, os.cpu_count() or 1):
-        found[request] = answer
-        print(f"{monotonic() - begin:5.1f} s  {len(found)} of {len(requests)}: {request.word}", file=sys.stderr)
-    answers = [(request, found[request]) for request in requests]
-    files = {junit: junit_xml(answers, monotonic() - begin)} if junit is not None else {}
-    if markdown is not None:
-        files[markdown] = f"# {folder}\n\n{table(HEADER, rows(answers), left=6)}\n"
-    write_whole(files, "give another file")
-    if as_json:
-        told = [
-            {"model": request.word, "refused": None, "found": answer.data}
-            if isinstance(answer, CheckReport)
-            else {"model": request.word, "refused": answer.sentence, "found": None}
-            for request, answer in answers
-        ]
-        _say(json.dumps(told, indent=1, allow_nan=False))
-    else:
-        _say(rendering.plain([Section("", header=HEADER, rows=tuple(rows(answers)))]))
-    missed = [request.word for request, answer in answers if isinstance(answer, CheckReport) and not answer.fine]
-    if missed:
-        raise Missed(f"{len(missed)} of {len(answers)} models miss {common['tolerance']:g}: {', '.join(missed)}")
+    return [(request, found[request.word]) for request in requests]
 
 
 class _Progress:
     """A line that is overwritten on a terminal; one line for each part of the work into a file or a pipe."""
 
     def __init__(self, notes: Path) -> None:
-        self._notes, self._said, self._begin, self._wide = notes, "", monotonic(), 0
+        self.notes, self._said, self._begin = notes, "", monotonic()
 
     def __call__(self, running: list[Any]) -> None:
         with suppress(OSError):
-            words = self._notes.read_text(encoding="utf-8")
-            own = words if sys.stderr.isatty() else words.split(",")[0]
-            if own and own != self._said:
-                self._said = own
-                self._show(f"{monotonic() - self._begin:5.1f} s  {own}")
+            words = self.notes.read_text(encoding="utf-8")
+            self.show(words if sys.stderr.isatty() else words.partition(",")[0])
 
-    def _show(self, line: str) -> None:
-        if sys.stderr.isatty():
-            print(f"\r{line.ljust(self._wide)}", end="", file=sys.stderr, flush=True)
-            self._wide = len(line)
-        else:
-            print(line, file=sys.stderr, flush=True)
+    def show(self, words: str) -> None:
+        if words and words != self._said:
+            self._said, line = words, f"{monotonic() - self._begin:5.1f} s  {words}"
+            told, end = (f"{OVERWRITE}{line}", "") if sys.stderr.isatty() else (line, "\n")
+            print(told, end=end, file=sys.stderr, flush=True)
 
     def clear(self) -> None:
-        if sys.stderr.isatty() and self._wide:
-            print(f"\r{' ' * self._wide}\r", end="", file=sys.stderr, flush=True)
-            self._wide = 0
+        if sys.stderr.isatty() and self._said:
+            print(OVERWRITE, end="", file=sys.stderr, flush=True)
 
 
-def _write(answer: CheckReport, html: Path | None, markdown: Path | None, junit: Path | None) -> None:
+def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
+    """The files that are asked for. Raises FileTrouble."""
     from reports.check import rendering
+    from reports.check.request import CheckReport
+    from reports.run.files import write_whole
 
-    name, files = f"{answer.data['name']} in {answer.data['engine']}", dict[Path, str]()
-    if html is not None:
-        files[html] = rendering.html(name, answer.sections)
-    if markdown is not None:
-        drawn = [section.picture for section in answer.sections if section.picture is not None]
-        paths = {title: f"{markdown.stem}_{number}{SUFFIX}" for number, (title, _) in enumerate(drawn, start=1)}
-        files |= {markdown.with_name(paths[title]): drawing for title, drawing in drawn}
-        files[markdown] = rendering.markdown(name, answer.sections, paths)
+    texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
+    answer = answers[0][1]
+    if markdown is not None and Path(model).is_dir():
+        from reports.check.folder import HEADER, rows
+        from reports.write.tables import markdown as table
+
+        texts[markdown] = f"# {model}\n\n{table(HEADER, rows(answers), left=len(HEADER))}\n"
+    elif isinstance(answer, CheckReport):
+        name = f"{answer.data['name']} in {answer.data['engine']}"
+        if html is not None:
+            texts[html] = rendering.html(name, answer.sections)
+        if markdown is not None:
+            drawn = [section.picture for section in answer.sections if section.picture is not None]
+            paths = {title: f"{markdown.stem}_{number}.svg" for number, (title, _) in enumerate(drawn, start=1)}
+            texts |= {markdown.with_name(paths[title]): drawing for title, drawing in drawn}
+            texts[markdown] = rendering.markdown(name, answer.sections, paths)
     if junit is not None:
         from reports.check.folder import junit_xml
 
-        files[junit] = junit_xml([(answer.request, answer)], 0.0)
-    if files:
-        write_whole(files, "give another file")
+        texts[junit] = junit_xml(answers, seconds)
+    write_whole(texts, "give another file")
+
+
+def _print_folder(model: str, answers: Answers, as_json: bool) -> None:
+    from reports.check.folder import HEADER, document, rows
+    from reports.cli.terminal import Terminal, print_table
+
+    if as_json:
+        return _say(json.dumps(document(answers), indent=1, allow_nan=False))
+    return print_table(Terminal(WIDTH), f"Models of {model}", HEADER, rows(answers), len(HEADER))
 
 
 def _print(answer: CheckReport, as_json: bool, everything: bool) -> None:
-    from reports.check import rendering
+    from reports.check.rendering import plain
 
     if as_json:
         return _say(json.dumps(answer.data, indent=1, allow_nan=False))
     width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
     if everything:
-        return _say(rendering.plain(answer.sections, width))
+        return _say(plain(answer.sections, width))
     written = "" if answer.data["applied"] else "; to have these settings written: --apply FILE"
-    return _say(f"{rendering.plain([answer.answer], width)}All that was read, measured and tried: --all{written}.")
+    return _say(f"{plain([answer.answer], width)}All that was read, measured and tried: --all{written}.")
 
 
 def _say(text: str) -> None:
-    from reports.cli.terminal import written
+    from reports.cli.streams import written
 
     with written():
         print(text)

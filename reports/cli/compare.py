@@ -12,16 +12,13 @@ import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, REFERENCES, STORE, AsJson, AsMarkdown, Folder
-from reports.cli.versions import SCENES, USUAL, named_scenes, run_column
+from reports.cli.versions import SCENES, USUAL, named_scenes, request_of, run_column
 from reports.model.ending import BadInput, Broken
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from engines import Engine
     from reports.cli.terminal import Terminal
     from reports.model.measure import Measurement
-    from reports.versions.column import VersionColumn
     from reports.versions.comparison import Comparison, Difference
 
 WIDTH = 150  # into a file or a pipe
@@ -57,7 +54,9 @@ def compare(
     if cost is not None and not 0 < cost < math.inf:
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     from engines.registry import OTHERS, VARIANTS
+    from reports.cli.selection import QUICK_CELL
     from reports.cli.terminal import telling
+    from reports.model.cells import QUICK
     from reports.model.ending import nearest
     from reports.run.files import temporary_folder
     from reports.versions.comparison import compared
@@ -78,10 +77,11 @@ def compare(
     with telling(WIDTH, as_json, as_markdown) as console:
         with kept() as check, temporary_folder() as folder:
             stores = [(results if side.kept else folder / str(index)) / STORE for index, side in enumerate(sides)]
-            columns = [
-                _column(console, side, engine, own, chosen, store, check)
-                for side, store in zip(sides, stores, strict=True)
-            ]
+            asked = {"every": QUICK, "most": 10 * QUICK_CELL, "variants": tuple(dict.fromkeys(e.variant for e in own))}
+            columns = []
+            for side, store in zip(sides, stores, strict=True):
+                request = request_of(engine or side.engine, side.place, chosen, store, **asked)
+                columns.append(run_column(console, side.label, side.label, request, own, check))
         for side, column in zip(sides, columns, strict=True):
             if told := column.trouble or column.mark:
                 console.tell(f"{side.label}: {told}")
@@ -115,10 +115,12 @@ def _named(word: str) -> tuple[Engine, ...]:
 
 def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
     """What a word means. Raises BadInput."""
+    from reports.cli.streams import said
     from reports.run.installed import built, distributions_in, installed
     from reports.versions.catalogue import distributions, engine_of
     from reports.versions.column import modules_in
 
+    said(f"{word}: installed by pip, unless it is there already")
     name, equals, version = word.partition("==")
     if equals:
         known = engine_of(engines, [name])
@@ -131,39 +133,14 @@ def _side(word: str, engine: str | None, engines: tuple[Engine, ...]) -> Side:
     versions = distributions_in(place)
     known = engine_of(engines, [*versions, *modules_in(place)])
     if known is None and engine is None:
-        held = ", ".join([*versions, *modules_in(place)][:5]) or "no package"
+        held = ", ".join([*versions, *modules_in(place)][:5])
+        if not held:
+            raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
         raise BadInput(f"{word} holds {held}, which no engine needs; name the engine with --engine")
     told = ", ".join(f"{each} {number}" for each, number in versions.items())
     # A wheel's name repeats what is in it, with forty letters of platforms.
     name = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
     return Side(f"{told} ({name})" if told else name, engine or known or "", place, False)
-
-
-def _column(
-    console: Terminal,
-    side: Side,
-    reference: str | None,
-    engines: list[Engine],
-    scenes: tuple,
-    store: Path,
-    check: Callable[[], None],
-) -> VersionColumn:
-    from reports.cli.selection import QUICK_CELL
-    from reports.model.cells import QUICK
-    from reports.versions.column import VersionRequest, modules_in
-
-    request = VersionRequest(
-        scenes,
-        reference or side.engine,
-        modules_in(side.place),
-        side.place,
-        store.absolute(),
-        variants=tuple(dict.fromkeys(each.variant for each in engines)),
-        every=QUICK,
-        most=10 * QUICK_CELL,
-        folder=Path.cwd(),
-    )
-    return run_column(console, side.label, side.label, request, engines, check)
 
 
 def _print(console: Terminal, found: Comparison, sides: list[Side]) -> None:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reports.cli.options import REFERENCES
-from reports.model.ending import BadInput, FileTrouble
+from reports.cli.options import REFERENCES, refuse_existing
+from reports.cli.streams import written
+from reports.model.ending import BadInput
 from reports.run.files import write_whole
 
 if TYPE_CHECKING:
@@ -36,11 +37,10 @@ def export(
         raise BadInput(f"--to is {to!r}; it must be one of {', '.join(sorted(known))}")
     if not 0 < step < float("inf"):
         raise BadInput(f"--step is {step:g}; it must be a finite time above zero")
-    chosen = _scene(scene)
-    text = _written(known[to], chosen, step, variant)
-    if out is None:
-        from reports.cli.terminal import written
+    from reports.cli.known import one_scene
 
+    text = _written(known[to], one_scene(scene)[1], step, variant)
+    if out is None:
         with written():
             print(text, end="")
         return
@@ -55,8 +55,9 @@ def view(
 ) -> None:
     """Look at a scene: in an engine's viewer where there is a display, or else as an animation in a file."""
     from engines import Unsupported
+    from reports.cli.known import one_scene
 
-    chosen = _scene(scene)
+    _, chosen = one_scene(scene)
     if out is None:
         try:
             for show in _viewers().values():
@@ -94,17 +95,6 @@ def _viewers() -> dict[str, Any]:
     )
 
 
-def _scene(word: str) -> Scene:
-    from reports.cli.known import registered, with_words
-    from reports.cli.selection import choose_scenes
-
-    known, names, _ = with_words(registered(), [word], None, (), motion=True)
-    found = choose_scenes(names, known.scenes, known.pages)
-    if len(found) != 1:
-        raise BadInput(f"{word} is {len(found)} scenes: {', '.join(each.name for each in found)}; name one")
-    return found[0]
-
-
 def _written(writer: Any, scene: Scene, step: float, variant: str) -> str:
     from engines import Unsupported
 
@@ -136,7 +126,6 @@ def told(scene: Scene) -> list[str]:
 
 
 def _write(path: Path, text: str, force: bool) -> None:
-    if not force and (path.is_symlink() or path.exists()):
-        raise FileTrouble(f"{path} is there already: give another --out, or --force to replace it")
+    refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
     print(f"written: {path}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import multiprocessing
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -16,7 +15,8 @@ import numpy as np
 from engines import Engine, registry
 from engines.loading import is_reference, load
 from reference.scene import Scene, told_apart, with_settings
-from reports.cli.selection import known_engines
+from reports.cli.selection import choose_scenes, known_engines
+from reports.cli.streams import said
 from reports.model import catalogue
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput, nearest
@@ -109,7 +109,7 @@ def _new(found: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str],
 def registered() -> Known:
     """What is registered. What is wrong there is told on stderr, a line each, and left out."""
     for line in catalogue.TROUBLES:
-        print(f"crosscheck: {line}", file=sys.stderr)
+        said(line)
     return Known(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
@@ -129,7 +129,7 @@ def with_remembered(known: Known, texts: Iterable[str], motion: bool = False) ->
                 raise ValueError(bad[each])
             known, _ = known.with_(each)
         except ValueError as reason:
-            print(f"crosscheck: left out, since it is not as it was when it was run: {reason}", file=sys.stderr)
+            said(f"left out, since it is not as it was when it was run: {reason}")
     return known
 
 
@@ -165,6 +165,15 @@ def with_words(
     except ValueError as reason:
         raise BadInput(str(reason)) from None
     return known, tuple(names), engines
+
+
+def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Known, Scene]:
+    """(what is known, the scene) of a command that asks one for its motion. Raises BadInput."""
+    known, names, _ = with_words(registered(), [word], None, settings, motion=True)
+    found = choose_scenes(names, known.scenes, known.pages)
+    if len(found) != 1:
+        raise BadInput(f"{word!r} names {len(found)} scenes; give one of {', '.join(each.name for each in found)}")
+    return known, found[0]
 
 
 def _words_of(known: Known, word: str) -> list[str]:

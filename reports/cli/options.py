@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from reports.model.ending import BadInput, FileTrouble, nearest
 
 # Below the current folder, in the checkout too: no command writes to what is published.
 FOLDER = Path("crosscheck-results")
@@ -37,6 +40,25 @@ Scheduler = Annotated[
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document, with all digits, instead of text.")]
 AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a comment, instead of text.")]
+
+
+def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
+    """Raises FileTrouble for a file that is there, unless it may be replaced. A link counts that leads nowhere."""
+    for path in paths:
+        if not force and (path.is_symlink() or path.exists()):
+            raise FileTrouble(f"{path} is there already: give another {option}, or --force to replace it")
+
+
+def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
+    """Words with commas between them, each of them known. Raises BadInput."""
+    names, found = tuple(known), [name.strip() for word in words for name in word.split(",")]
+    out = tuple(dict.fromkeys(filter(None, found)))
+    if not out:
+        raise BadInput(f"{option} names nothing; give one or some of {', '.join(names)}, with commas between them")
+    for name in out:
+        if name not in names:
+            raise nearest(option, name, names)
+    return out
 
 
 def with_folder(command: str, results: Path) -> str:

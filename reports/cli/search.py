@@ -21,6 +21,7 @@ from reports.cli.options import (
     Scheduler,
     VariantName,
     Workers,
+    listed,
     with_folder,
 )
 from reports.model.ending import BadInput
@@ -88,9 +89,9 @@ def search(
     if release is not None:
         subjects = [of_release(release, engine, variant)]
     own = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    wanted = listed("--kinds", kinds, (*own, TOGGLE)) if kinds is not None else own
+    wanted = listed("--kinds", [kinds], (*own, TOGGLE)) if kinds is not None else own
     subjects = [one for one in subjects if {*wanted} & {*one.kinds, TOGGLE}]
-    asked_of = listed("--oracles", oracles, ORACLES)
+    asked_of = listed("--oracles", [oracles], ORACLES)
     batches: Iterable[list[Chunk]]
     if fresh:
         batches = plan.fresh(subjects, cases or TEN)
@@ -146,14 +147,6 @@ class Count:
     @property
     def told(self) -> str:
         return f"{self.cases} cases were asked in {self.spent:.0f} s.{self.first}"
-
-
-def listed(option: str, words: str, known: Sequence[str]) -> tuple[str, ...]:
-    """Words with commas between them, each of them known. Raises BadInput."""
-    out = tuple(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
-    if not out or not {*out} <= {*known}:
-        raise BadInput(f"{option} is {words!r}; it must be one or some of {', '.join(known)}, with commas between them")
-    return out
 
 
 def chosen(engine: str | None, variant: str | None) -> list[Subject]:

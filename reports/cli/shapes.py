@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from reports.cli.options import refuse_existing
 from reports.model.ending import BadInput, FileTrouble
 from reports.run.files import write_whole
 
@@ -39,10 +40,7 @@ def shapes(
     if not 2 <= points <= MOST_POINTS:
         raise BadInput(f"--points is {points}; give from 2 to {MOST_POINTS}")
     targets = {name: folder / f"{motion.stem}_shapes.{name}" for name in kinds}
-    for path in () if force else targets.values():
-        # A link counts, even one that leads nowhere.
-        if path.is_symlink() or path.exists():
-            raise FileTrouble(f"{path} is there already: give another --folder, or --force to replace it")
+    refuse_existing(targets.values(), "--folder", force)
     text = _text(motion)
     # Here, since numpy and scipy take longer to load than all else.
     from reference.chapter.centrodes import from_poses

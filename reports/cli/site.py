@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +10,7 @@ import typer
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, Folder, with_folder
 from reports.cli.report import CHECKOUT
+from reports.cli.streams import said
 from reports.cli.terminal import Terminal
 from reports.model.ending import BadInput
 
@@ -60,14 +60,14 @@ def site(
         lecture=_of_checkout("lecture.ipynb"),
     )
     if source.registry.trouble:  # at once, for the rest takes a while
-        print(f"crosscheck: parts of the site will be missing: {source.registry.trouble}", file=sys.stderr)
+        said(f"parts of the site will be missing: {source.registry.trouble}")
     source.answers = _answers(console, results)
     files = build(source)
     with kept() as check:
         size = write_site(output, files)
         check()
     for trouble in source.troubles:
-        print(f"crosscheck: {trouble}", file=sys.stderr)
+        said(trouble)
     console.say(f"{len(files)} files written to {output}, {size / 1e6:.2f} MB when compressed; index.html is the first")
     if serve:
         console.say(f"http://localhost:{port} shows it; Ctrl-C ends")

@@ -23,6 +23,11 @@ def written() -> Iterator[None]:
         raise FileTrouble(f"the output can't be written: {reason.strerror or reason}") from None
 
 
+def said(words: str) -> None:
+    """A line on standard error, at once."""
+    print(f"crosscheck: {words}", file=sys.stderr, flush=True)
+
+
 def open_streams() -> None:
     """Give streams that are closed the null device, lest a file that is opened take their number, and be written."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):

@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.cli.interruption import kept
-from reports.cli.streams import written
+from reports.cli.streams import said, written
 from reports.model.ending import FINE, BadInput, Broken
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def opened(path: Path) -> Iterator[Store]:
 
     with Store(path) as store:
         if store.notice:
-            print(f"crosscheck: {store.notice}", file=sys.stderr)
+            said(store.notice)
         yield store
 
 

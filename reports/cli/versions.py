@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from reports.cli.interruption import kept
 from reports.cli.options import FOLDER, STORE, AsJson, AsMarkdown, Folder
+from reports.cli.streams import said
 from reports.model.ending import BadInput
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def versions(
                     if not everything and len(numbers) == 1:
                         raise
                     wrong.append(f"{name} {number}: {reason}")
-                    print(f"crosscheck: {wrong[-1]}", file=sys.stderr)
+                    said(wrong[-1])
                     continue
                 found.append(column)
                 if table is not None:
@@ -141,22 +141,11 @@ def _column(
     from reports.cli.selection import QUICK_CELL
     from reports.run.installed import installed
     from reports.versions.catalogue import distributions
-    from reports.versions.column import VersionRequest, modules_in
 
-    console.say(f"{name} {number}: installed, unless it is there already")
+    said(f"{name} {number}: installed by pip, unless it is there already")
     place = installed(distributions(engines, name), number)
-    begin = monotonic()
-    request = VersionRequest(
-        scenes,
-        name,
-        modules_in(place),
-        place,
-        (results / STORE).absolute(),
-        most=QUICK_CELL if trees else float("inf"),
-        trees=trees,
-        fresh=fresh,
-        folder=Path.cwd(),
-    )
+    begin, most = monotonic(), QUICK_CELL if trees else float("inf")
+    request = request_of(name, place, scenes, results / STORE, most=most, trees=trees, fresh=fresh)
     found = run_column(console, f"{name} {number}", number, request, engines, check)
     told = found.trouble or found.mark
     line = f"{name} {number}: {len(found.rows)} rows after {monotonic() - begin:.0f} s"
@@ -164,6 +153,13 @@ def _column(
     if told:
         console.tell(f"{name} {number}: {told}")
     return found
+
+
+def request_of(engine: str, place: Path, scenes: tuple[Scene, ...], store: Path, **terms: Any) -> VersionRequest:
+    """What is asked of the version or build that lies in `place`; `terms`: further fields."""
+    from reports.versions.column import VersionRequest, modules_in
+
+    return VersionRequest(scenes, engine, modules_in(place), place, store.absolute(), folder=Path.cwd(), **terms)
 
 
 def run_column(

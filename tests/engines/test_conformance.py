@@ -183,34 +183,6 @@ def test_what_is_not_supported_is_no_pass():
     assert "hollow" in result.sentence
 
 
-THEIRS = """
-import pytest
-from tests.wrong.adapters import MISTAKES, Wrong
-from tests.wrong.talkers import TALKERS
-
-@pytest.mark.conforms(Wrong("reactions have the other sign"))
-def test_it_conforms(conformance):
-    conformance()
-"""
-
-
-def test_three_lines_of_another_package_check_its_engine(pytester):
-    pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
-    pytester.makepyfile(THEIRS)
-    result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
-    counted = result.parseoutcomes()
-    assert counted["failed"] > 5
-    assert counted["passed"] > 200
-    result.stdout.fnmatch_lines(["*wrong reactions have the other sign: reactions_have_sign_and_size: hanging bar*"])
-
-
-def test_a_test_that_names_no_engine_is_refused(pytester):
-    pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
-    pytester.makepyfile("def test_it_conforms(conformance):\n    conformance()\n")
-    result = pytester.runpytest_inprocess("-p", "no:cacheprovider")
-    result.stdout.fnmatch_lines(["*it names no engine; mark it pytest.mark.conforms(ENGINE)*"])
-
-
 def told(capsys, *words: str) -> tuple[int, list[str], str]:
     """Exit status, lines on standard output, and what stands on the other."""
     with pytest.raises(SystemExit) as ended:

@@ -24,12 +24,12 @@ from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.check import rendering
 from reports.check.checked import check, read
+from reports.check.document import data, schema
 from reports.check.facts import facts_of
 from reports.check.judging import accelerations, errors, judged
 from reports.check.picture_data import from_text, shown_of
 from reports.check.pictures import pictures
-from reports.check.schema import schema
-from reports.check.telling import answer, data, sections, verdict
+from reports.check.telling import answer, sections
 from tests.present import present
 from tests.toys import Disc
 
@@ -54,14 +54,6 @@ def make():
     space.add(bob, pymunk.PivotJoint(space.static_body, bob, (0, 0), (-0.5, 0)))
     return space
 """
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _quick():
-    """Few settings are tried: what is asked here is whether they are told rightly."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.check.checked.PATIENCE", 0.4)
-        yield
 
 
 def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tolerance=1e-4, step=None):
@@ -115,7 +107,7 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     again = found_in(tmp_path, mended)
     assert again.met
     assert again.own_errors.largest == pytest.approx(found.advised.error, rel=1e-6)
-    assert verdict(again).endswith("the tolerance of 1e-4 is met.")
+    assert again.verdict.endswith("the tolerance of 1e-4 is met.")
 
 
 def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
@@ -140,12 +132,6 @@ def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion
     assert found.parts.step < 1e-2
 
 
-def test_a_loop_that_is_open_at_the_start_says_what_to_give(tmp_path):
-    start = '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'
-    with pytest.raises(InvalidMechanism, match=r"row 'C y' is open by .* give a keyframe in which it is closed"):
-        found_in(tmp_path, FOUR_BAR.replace("</mujoco>", start))
-
-
 def test_an_equality_with_values_of_its_own_is_told_that_a_default_does_not_reach_it(tmp_path):
     own = FOUR_BAR.replace('<connect name="C"', '<connect name="C" solref="0.04 1"')
     lines = answer(found_in(tmp_path, own)).code
@@ -159,7 +145,7 @@ def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     found = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
     # Of first order, so of the size of a step times a rate of 10 rad/s; the crank's own forces nobody knows.
-    assert 0 < found.own_errors.worst("reaction") < 0.1
+    assert 0 < found.own_errors.worst["reaction"] < 0.1
     assert ("motion", "all of it is prescribed, so a small error of the start has nothing to grow in") in answer(
         found
     ).facts
@@ -196,7 +182,7 @@ def test_the_judge_of_a_check_is_the_truth_of_a_scene(tmp_path):
     truth = scene.motion(judge.trajectory.t)
     own = errors(scene.mechanism(), truth, judge.trajectory)
     assert own.largest < 1e-10
-    assert own.worst("reaction") < 1e-9
+    assert own.worst["reaction"] < 1e-9
     # What the judge says of its own error is no less than a hundredth of what it is, and no more than a lot above.
     assert errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
 
@@ -290,7 +276,7 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     assert max(map(len, screen.splitlines())) <= 120
     page = rendering.html("four bar", told)
     # As elements of one page the second drawing would be clipped by the first's frame.
-    assert page.count("data:image/svg+xml;base64,") == page.count('<img alt="') == 2
+    assert page.count("data:image/svg+xml;base64,") == page.count("<img ") == 2
     assert "<svg" not in page
     assert "<script" not in page
     files = {title: f"{key}.svg" for key, (title, _) in drawn.items()}
@@ -304,7 +290,7 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     for name, setting in (("advised", found.advised), ("next_decade", found.decade)):
         assert numbers[name] == (setting and next(t for t in numbers["tried"] if t["words"] == setting.change.words))
     for setting, each in zip(found.table, numbers["tried"], strict=True):
-        told = (setting.change.words, setting.error, setting.errors.worst("reaction"))
+        told = (setting.change.words, setting.error, setting.errors.worst["reaction"])
         assert (each["words"], each["error"], each["reaction"]) == told
 
 

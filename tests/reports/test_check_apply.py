@@ -22,12 +22,6 @@ LOOP = f"{STEPS_ITSELF}\nfor _ in range(30):\n    space.step(0.01)\nprint(bob.po
 INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\n        world.step(0.01)\n"
 
 
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
-    """Few settings are tried where none are looked for."""
-    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
-
-
 def checked(folder, word, **terms) -> CheckReport:
     """The answer in this process, of half a second of motion."""
     found = answered(CheckRequest(word, str(folder), 0.5, **terms))
@@ -141,6 +135,17 @@ def test_quick_tries_four_settings_and_tells_the_same_causes(tmp_path):
     # The declared motion is known to a thousandth of itself at the rougher tolerance.
     assert quick.data["parts"]["softness"] == pytest.approx(whole.data["parts"]["softness"], rel=1e-3)
     assert quick.data["error"] == whole.data["error"]
+
+
+def test_only_settings_that_may_be_advised_are_run_unless_all_are_asked_for(tmp_path):
+    (tmp_path / "model.xml").write_text(FOUR_BAR)
+    some, every = (checked(tmp_path, "model.xml", everything=each).data for each in (False, True))
+    names = [[each["words"] for each in found["tried"]] for found in (some, every)]
+    assert set(names[0]) < set(names[1])
+    # Of the same errors; which of two is cheaper the clock says, but both are enough.
+    assert max(found["advised"]["error"] for found in (some, every)) <= 1e-4
+    assert some["next_decade"] is not None
+    assert (some["error"], some["parts"]) == (every["error"], every["parts"])
 
 
 def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):

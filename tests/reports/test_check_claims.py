@@ -13,18 +13,11 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
 from reports.check.checked import Checked, Plan, parts_of, tried
+from reports.check.document import data
 from reports.check.facts import facts_of
-from reports.check.judging import Errors, errors, opening
-from reports.check.telling import answer, data, number, sections, verdict
+from reports.check.judging import errors, opening
+from reports.check.telling import answer, number, sections
 from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _quick():
-    """Few settings are tried: what is asked here is what is said of them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.check.checked.PATIENCE", 0.3)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -39,13 +32,19 @@ def swing(tmp_path_factory):
     return found_in(tmp_path_factory.mktemp("swing"), PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2)
 
 
-def priced(found: Checked, *rows: tuple[float, float], tolerance: float, own: int = 0) -> Checked:
-    """The same check with settings of these errors and costs; the user's own are those of the row `own`."""
-    table = [replace(found.table[0], error=error, cost=cost) for error, cost in rows]
-    table = [replace(each, change=replace(each.change, words=f"setting {i}")) for i, each in enumerate(table)]
-    whole = np.full_like(found.own_errors.t, rows[own][0])
-    errors = Errors(found.own_errors.t, found.own_errors.of, whole, finished=True)
-    return replace(found, table=table, own_errors=errors, cost=rows[own][1], tolerance=tolerance)
+def priced(found: Checked, *rows: tuple[float, float], tolerance: float) -> Checked:
+    """The same check with settings of these errors and costs, the user's own first."""
+    own = found.table[0]
+    table = [
+        replace(
+            own,
+            change=replace(own.change, words=f"setting {index}"),
+            errors=replace(own.errors, whole=np.full_like(own.errors.t, error)),
+            run=replace(own.run, stepping=cost),
+        )
+        for index, (error, cost) in enumerate(rows)
+    ]
+    return replace(found, table=table, tolerance=tolerance)
 
 
 def told(found: Checked, label: str) -> str:
@@ -90,10 +89,10 @@ def test_the_verdict_meets_where_the_error_is_within_the_tolerance_and_misses_wh
     for error, word in ((1e-4, "met"), (1.001e-4, "missed")):
         found = priced(soft, (error, 1.0), tolerance=1e-4)
         said = "model.xml in MuJoCo is off by up to 1e-4 in 0.2 s"
-        assert verdict(found) == f"{said}; the tolerance of 1e-4 is {word}."
-        assert verdict(found, asked=False) == f"{said}."
-    gone = replace(soft, own_errors=replace(soft.own_errors, finished=False))
-    assert verdict(gone, asked=False) == "model.xml in MuJoCo gives up before 0.2 s."
+        assert found.verdict == f"{said}; the tolerance of 1e-4 is {word}."
+        assert replace(found, asked=False).verdict == f"{said}."
+    gone = replace(soft.table[0], errors=replace(soft.own_errors, finished=False))
+    assert replace(soft, table=[gone], asked=False).verdict == "model.xml in MuJoCo gives up before 0.2 s."
 
 
 def test_what_is_assumed_is_said_first_and_only_where_it_is(swing, soft, tmp_path):
@@ -102,7 +101,7 @@ def test_what_is_assumed_is_said_first_and_only_where_it_is(swing, soft, tmp_pat
     assert told(swing, "assumed") == data(swing)["assumed"]
     assert data(swing)["assumed"]
     named = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2, step=1 / 60)
-    assert verdict(named).startswith("swing.py in pymunk")
+    assert named.verdict.startswith("swing.py in pymunk")
     assert told(named, "assumed").startswith("a step of 16.67 ms, as in the model")
     assert data(soft)["assumed"] == ""
     assert data(soft)["cpu"] == soft.own.stepping > 0
@@ -112,7 +111,7 @@ def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
     """A run of more than LONGEST leaves no time for others, and is itself one of the settings."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
-    (only,) = tried(reading, truth, 100, 1, slow, lambda number, count: None, Plan(0.0))
+    (only,) = tried(reading, truth, 100, 1, slow, lambda number, count: None, Plan(0.0), 1e-4)
     assert only.run is slow
     assert only.error == errors(reading.mechanism, truth, slow).largest
     assert "none of the 1 documented settings" in told(replace(soft, table=[only]), "advice")
@@ -125,7 +124,7 @@ def off_by(found: Checked, size: float, step: float):
     """The user's own settings at another step, with a run that is this far off the judge's motion [m, rad]."""
     truth = found.judge.trajectory
     run = replace(truth, pose=truth.pose + size * np.array([0.0, 0.0, 1.0]))
-    return replace(found.table[0], run=run, error=size, change=replace(found.table[0].change, dt=step))
+    return replace(found.table[0], run=run, change=replace(found.table[0].change, dt=step))
 
 
 @pytest.mark.parametrize(
@@ -256,7 +255,7 @@ def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared_and_said_
     assert facts.redundant == 1
 
     def worst(change):
-        return errors(mechanism, truth, replace(truth, reaction=true + change)).worst("reaction")
+        return errors(mechanism, truth, replace(truth, reaction=true + change)).worst["reaction"]
 
     assert worst([50.0, 0, 50.0, 0, 0, 0]) == 0
     assert worst([0, 0.981, 0, 0, 0, 0]) == pytest.approx(0.1)
@@ -274,7 +273,7 @@ def test_what_the_quantities_are_is_said_where_they_are_printed(soft):
     lifted = replace(truth, pose=truth.pose + np.array([0.0, 1e-3, 0.0]))
     weight = sum(body.mass for body in mechanism.bodies) * 9.81 * 1e-3
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1)).max()
-    assert errors(mechanism, truth, lifted).worst("energy") == pytest.approx(weight / kinetic, rel=1e-6)
+    assert errors(mechanism, truth, lifted).worst["energy"] == pytest.approx(weight / kinetic, rel=1e-6)
 
 
 @pytest.mark.parametrize("falling", [True, False])

@@ -22,7 +22,7 @@ from engines.mujoco.reading.settings import switch_off as of_mujoco
 from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check.request import CheckReport, CheckRequest, Refused, answered
 from reports.cli.check import SWITCHED_OFF
-from tests.reports.test_check import FOUR_BAR, found_in
+from tests.reports.test_check import FOUR_BAR, PENDULUM, found_in
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
@@ -35,18 +35,12 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
     out, err = capfd.readouterr()
     assert json.loads(out)["met"] is False
     assert err.splitlines()[-1].endswith("the tolerance of 1e-4 is missed.")
-    assert "following the ideal motion" in err  # progress
+    assert re.search(r"^ +\d+\.\d s  \w+", err, re.MULTILINE)  # progress
     assert "data:image/svg+xml" in (here / "out.html").read_text()
     page = (here / "sub/out.md").read_text()
     for name in ("out_1.svg", "out_2.svg"):
         assert f"]({name})" in page
         xml.parse(here / "sub" / name)
-
-
-def test_a_model_within_its_tolerance_ends_well(here, capfd):
-    (here / "four_bar.xml").write_text(FOUR_BAR)
-    assert call("check", "four_bar.xml", "--duration", 0.05, "--tolerance", 0.1) == 0
-    assert "the tolerance of 0.1 is met." in " ".join(capfd.readouterr().out.split())
 
 
 @pytest.mark.parametrize(
@@ -77,7 +71,6 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("check", "a.xml", "--duration", -1), "--duration is -1"),
         (("check", "a.xml", "--tolerance", "nan"), "--tolerance is nan"),
         (("check", "a.xml", "--step", 5), "--step is 5"),
-        (("check", "a.xml"), "there is no such file"),
         (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
         (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
         (("export", "pendulum_1", "--step", 0), "--step is 0"),
@@ -162,19 +155,8 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypat
     assert not list(here.iterdir())
 
 
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
-    """Few settings are tried: what is asked here is whether a model is refused."""
-    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.4)
-
-
 BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'
 BAD = {
-    "not_planar.xml": (
-        '<mujoco><worldbody><body name="a"><joint name="one" axis="0 1 0"/><geom size=".1"/><body><joint name="two" '
-        'axis="1 0 0"/><geom size=".1"/></body></body></worldbody></mujoco>',
-        "joint 'two': it is not parallel to joint 'one'",
-    ),
     "no_inertia.xml": (
         '<mujoco><worldbody><body><joint/><inertial pos="0 0 0" mass="1" diaginertia="0 0 0"/></body></worldbody>'
         "</mujoco>",
@@ -182,7 +164,7 @@ BAD = {
     ),
     "open_loop.xml": (
         FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
-        "row 'C y' is open by 0.263 m",
+        "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed",
     ),
     "empty.xml": ("", "MuJoCo can't compile it"),
     "no_robot.urdf": ("<robot name='x'/>", ""),
@@ -216,6 +198,11 @@ BAD = {
         '<keyframe><key qpos="nan"/></keyframe></mujoco>',
         "qpos of joint 0 is nan at the start; it must be a finite number",
     ),
+    "no_step.xml": (
+        FOUR_BAR.replace('"0.002"', '"0"'),
+        "the model's own step is 0 s; it must be a finite time above zero",
+    ),
+    "backwards.py": (f"{PENDULUM}\nspace = make()\nspace.step(-0.01)", "the model's own step is -0.01 s; it must be"),
     "still.py:space": ("import pymunk\nspace = pymunk.Space()", "nothing in it can move"),
     "missing.xml": (None, "there is no such file"),
     "picture.png": (None, "is no model; give"),

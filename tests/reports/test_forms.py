@@ -11,7 +11,7 @@ from engines.lagrange.engine import Lagrange
 from reports.cli.commands import invoke
 from reports.cli.selection import choose_cells, left_out
 from reports.cli.terminal import print_table, telling
-from reports.model.catalogue import PAGES
+from reports.model.catalogue import with_scenes
 from reports.model.cells import QUICK
 from reports.model.ending import BadInput, Broken
 from reports.write.templates import without_links_to_nothing
@@ -63,12 +63,14 @@ class Slow(Lagrange):
 
 def test_a_slow_engine_that_is_named_runs_its_shortest_step_and_the_others_are_told_with_the_reason():
     scene, slow = Disc(), Slow("rk4", "projection")
-    quick = choose_cells([scene], [slow], PAGES, full=False, steps=(), named=False)
-    named = choose_cells([scene], [slow], PAGES, full=False, named=True)
-    assert [cell.every for cell in quick] == []
-    assert [cell.every for cell in named if cell.engine is slow] in ([], [QUICK[0]])
-    for cell, why in left_out([scene], [slow], PAGES, False, named):
-        assert re.fullmatch(r"step_cost says \d+ s, and a run may take 0\.8 s", why), (cell.every, why)
+    pages = with_scenes((), (scene,), (slow,))
+    assert choose_cells([scene], [slow], pages, full=False) == ()
+    named = choose_cells([scene], [slow], pages, full=False, named=True)
+    assert [cell.every for cell in named] == [QUICK[0]]
+    left = left_out([scene], [slow], pages, False, named)
+    assert [cell.every for cell, _ in left] == list(QUICK[1:])
+    for cell, why in left:
+        assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", why)
 
 
 def test_a_small_store_gives_the_pages_that_it_has_rows_of_and_no_link_leads_nowhere(tmp_path, capfd):

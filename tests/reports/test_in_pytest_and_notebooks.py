@@ -21,7 +21,6 @@ from engines.pymunk import DEFAULT
 from reference.checks import InvalidMechanism
 from reference.linkage import linkage
 from reference.scenes.four_bar.scenes import FreeFourBar
-from tests import ROOT
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 
 POINTS = {"A": (0, 0), "B": (0, 0.3), "C": (0.8, 0.6), "D": (0.7, 0)}
@@ -38,7 +37,7 @@ def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkey
     assert values["found"].data["met"] is False
     assert values["mechanism"].degrees_of_freedom() == (1, 1)
     shown = values["beside"]._repr_html_()
-    for words in ("mujoco default at 2 ms", "<th>largest</th>", "<svg"):
+    for words in ("mujoco default at 2 ms", "<th>largest</th>", "data:image/svg+xml"):
         assert words in shown
 
 
@@ -81,7 +80,7 @@ def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch
     truth = scene.motion(found.run.t)
     assert np.abs(found.truth.pose - truth.pose).max() < 1e-9
     off = np.abs(found.run.pose - truth.pose)[..., 2].max()
-    assert found.rows()[0]["largest"] == pytest.approx(off, rel=1e-6)
+    assert found.errors.worst["angle"] == pytest.approx(off, rel=1e-6)
     with pytest.raises(ValueError, match="no engine is called 'pymunky'; there are pymunk default"):
         planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
     with pytest.raises(ValueError, match="dt is 3 s and duration"):
@@ -114,6 +113,7 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
         planar_crosscheck.check({})
 
 
+FEW = ("reactions_have_sign_and_size", "has_a_name")
 THEIRS = """
 import pytest
 
@@ -125,33 +125,25 @@ def test_wrong(crosscheck):
 
 def test_missing(crosscheck):
     crosscheck.check("nothing.xml")
+
+def test_engine(crosscheck):
+    from tests.wrong.adapters import Wrong
+    crosscheck.conform(Wrong("reactions have the other sign"))
 """
 
 
-def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_is_missing(pytester):
+def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_is_missing(pytester, monkeypatch):
+    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(each for each in CHECKS if each.name in FEW))
     pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
     folder = pytester.mkdir("sub")
     (folder / "test_mine.py").write_text(THEIRS)
     (folder / "model.xml").write_text(FOUR_BAR)
     result = pytester.runpytest_inprocess("-p", "no:cacheprovider", "-q")
-    result.assert_outcomes(passed=1, failed=2)
+    result.assert_outcomes(passed=1, failed=3)
     result.stdout.fnmatch_lines(["four bar in MuJoCo is off by*; the tolerance of 1e-7 is missed."])
     result.stdout.fnmatch_lines(["*<option timestep=*", "nothing.xml: there is no such file"])
+    result.stdout.fnmatch_lines(["wrong reactions have the other sign does not conform:"])
     assert "During handling" not in result.stdout.str()
-
-
-def test_the_grid_is_brought_by_its_mark_alone_and_options_of_its_names_stay_anybodys(pytester):
-    plugin = ("-p", "planar_crosscheck_pytest", "-p", "no:cacheprovider", "-q")
-    pytester.makeini(f"[pytest]\npythonpath = {ROOT}\n")
-    pytester.makepyfile("def test_of_mine(request):\n    assert request.config.getoption('--engine') == 'mine'\n")
-    pytester.makeconftest("def pytest_addoption(parser): parser.addoption('--engine')")
-    for more in ((), ("-m", "not crosscheck")):
-        pytester.runpytest_subprocess(*plugin, "--engine", "mine", *more).assert_outcomes(passed=1)
-    pytester.makeconftest("")
-    chosen = ("--scene", "pendulum_1", "--engine", "pymunk default")
-    result = pytester.runpytest_subprocess(*plugin, "-m", "crosscheck", *chosen, "--collect-only")
-    result.stdout.fnmatch_lines(["*::test_a_method_is_as_exact*pendulum_1-pymunk default*", "3/* deselected*"])
-    assert "test_of_mine" not in result.stdout.str()
 
 
 # ------------------------------------------------------------------------------------------------------ conformance
@@ -174,12 +166,11 @@ def test_the_grid_is_brought_by_its_mark_alone_and_options_of_its_names_stay_any
 def test_failures_that_are_expected_have_to_come_true(monkeypatch, expected, sentence):
     from tests.wrong.adapters import Wrong
 
-    few = ("reactions_have_sign_and_size", "has_a_name")
-    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in few))
+    monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in FEW))
     engine = Wrong("reactions have the other sign")
     if not sentence:
         results = conform(engine, expected)
-        assert {case.check.name for case, _ in results} == set(few)
+        assert {case.check.name for case, _ in results} == set(FEW)
         return
     with pytest.raises(AssertionError, match=sentence) as raised:
         planar_crosscheck.conform(engine, expected)

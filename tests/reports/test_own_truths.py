@@ -29,12 +29,6 @@ WHEEL = (
 LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body>'
 
 
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
-    """Few settings are tried: what is asked here is what is read."""
-    monkeypatch.setattr("reports.check.checked.PATIENCE", 0.1)
-
-
 def mjcf(bodies, more="", flags="", rate=0.0, control=0.0, joint=""):
     """The reading of a model without weight and contact, with its first coordinate at a rate."""
     model = mujoco.MjModel.from_xml_string(

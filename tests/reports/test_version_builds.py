@@ -203,6 +203,7 @@ def test_a_version_that_can_not_be_had_is_one_line(said, told, here, monkeypatch
         invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
     assert "\n" not in str(refused.value)
     assert refused.value.status == 2
+    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # before the wait
     assert not (here / "crosscheck-results").exists()
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.check.checked import Checked, Plan, Tried, check, read
+from reports.check.document import data
 from reports.check.picture_data import shown_of
-from reports.check.telling import data
 from reports.model.tasks import Task, Values
 
 MODELS = Path(__file__).parent / "models"
